@@ -27,7 +27,6 @@ namespace tacto::cli {
 namespace {
 
 constexpr std::string_view kFooter =
-    "Help on a verb or a topic (sim, units, exit-codes): tactograph help TOPIC\n"
     "Exit codes: 0 done, 1 internal error, 2 command line, 3 file or device not found, 4 malformed file,\n"
     "5 data that cannot be used for this, 6 file of a newer version, 7 cannot write, 8 device failed.\n"
     "Quantities have a unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
@@ -56,6 +55,17 @@ Entry declare(CLI::App& parent, const Verb& verb) {
   entry.app->footer(fmt::format("Example:\n  {}", verb.example));
   entry.action = verb.declare(*entry.app);
   return entry;
+}
+
+void add_output_options(Entry& entry) {
+  entry.app->add_flag("--json", entry.json, "Print results and errors as JSON");
+  entry.app->add_flag_callback("--progress", show_progress_lines,
+                               "Print progress on stderr also if it is not a terminal");
+  entry.app
+      ->add_option("--rows", entry.rows,
+                   "Rows of each table to print; default: on a terminal as many as fit, else all")
+      ->type_name("N|all")
+      ->check(is_row_count);
 }
 
 bool has_key(const Report& report, const std::string& key) {
@@ -131,8 +141,9 @@ int print_parse_error(const CLI::App& app, const CLI::ParseError& error, bool js
                      json);
 }
 
-void describe(CLI::App& app) {
-  app.footer(std::string(kFooter));
+void describe(CLI::App& app, Topics topics) {
+  app.footer(fmt::format("Help on a verb or a topic ({}): tactograph help TOPIC\n{}",
+                         fmt::join(topic_names(topics), ", "), kFooter));
   app.set_version_flag("--version", std::string(kCreator));
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
@@ -195,29 +206,25 @@ void handle_signals() {
 
 }  // namespace
 
-int run_command(Verbs verbs, int argc, const char* const* argv, Topics topics) {
+int run_command(std::span<const VerbGroup> groups, int argc, const char* const* argv, Topics topics) {
   handle_signals();
+  std::vector<const Verb*> verbs;
+  for (const VerbGroup& group : groups) verbs.insert(verbs.end(), group.verbs.begin(), group.verbs.end());
   const bool json = asks_for_json(argc, argv);
   if (argc > 1 && is_unknown_verb(verbs, argv[1])) return refuse_verb(verbs, argv[1], json);
   CLI::App app(
       "Records how a surface pulls on a finger, turns it into force against position, and plays it back.",
       "tactograph");
-  describe(app);
+  describe(app, topics);
   std::vector<std::unique_ptr<Entry>> entries;
-  for (const Verb* verb : verbs) {
-    entries.push_back(std::make_unique<Entry>(declare(app, *verb)));
-    entries.back()->app->add_flag("--json", entries.back()->json, "Print results and errors as JSON");
-    entries.back()->app->add_flag_callback("--progress", show_progress_lines,
-                                           "Print progress on stderr also if it is not a terminal");
-    entries.back()
-        ->app
-        ->add_option("--rows", entries.back()->rows,
-                     "Rows of each table to print; default: on a terminal as many as fit, else all")
-        ->type_name("N|all")
-        ->check(is_row_count);
-    put_below_headings(verb->name, *entries.back()->app);
-  }
-  CLI::App* help = app.add_subcommand("help", "Show help on a verb or a topic: sim, units, exit-codes");
+  for (const VerbGroup& group : groups)
+    for (const Verb* verb : group.verbs) {
+      entries.push_back(std::make_unique<Entry>(declare(app, *verb)));
+      entries.back()->app->group(group.heading);
+      add_output_options(*entries.back());
+      put_below_headings(verb->name, *entries.back()->app);
+    }
+  CLI::App* help = app.add_subcommand("help", "Show help on a verb or a topic");
   std::string word;
   help->add_option("TOPIC", word, "A verb or a topic");
   CLI::App* completion = app.add_subcommand("completion", "Print the bash completion script");
