@@ -39,10 +39,11 @@ bool is_nested(const Report& row) {
   });
 }
 
-// nullopt for rows with tables of their own, and for a table that is too wide.
+// nullopt for rows with tables of their own or with many columns, and for a table that is too wide.
 std::optional<Lines> table_of(const std::vector<Report>& rows, std::size_t columns) {
-  if (std::ranges::any_of(rows, is_nested)) return std::nullopt;
+  constexpr std::size_t kMostColumns = 20;
   const auto keys = keys_of(rows);
+  if (keys.size() > kMostColumns || std::ranges::any_of(rows, is_nested)) return std::nullopt;
   TextRow header;
   for (const auto& key : keys) header.push_back(label_of(key));
   std::vector<TextRow> cells;

@@ -10,9 +10,9 @@
 
 namespace tacto::cli {
 
-/// `columns` of a line; `lines` of a terminal, 0: any number; `rows` of each table.
+/// `columns` of a line, 0: any number; `lines` of a terminal, 0: any number; `rows` of each table.
 struct TextLimits {
-  std::size_t columns = 120;
+  std::size_t columns = 0;
   std::size_t lines = 0;
   std::size_t rows = SIZE_MAX;
 };
