@@ -20,8 +20,7 @@ def all_tables_share_one_time():
     """Seconds since the first tick in CSV, netCDF and strokes; also the device's clock, which began earlier."""
     write_grating()
     pathlib.Path("strokes.csv").write_text("time_s,position_m\n0,0.004\n0.8,0.034\n1,0.034\n1.8,0.004\n2,0.004\n")
-    if not tacto.play_on_host("oak", "-d", "sim:paced=1,rate=2kHz", "--finger-path", "strokes.csv", "--gain", "0.5mm/N", name="timed"):
-        return
+    tacto.run("play", "oak", "-d", "sim:", "--finger-path", "strokes.csv", "--gain", "0.5mm/N", "-o", "timed")
     strokes = tacto.run_json("session", "timed", "-o", "timed.csv", "-o", "timed.nc")["strokes"]
     table = np.genfromtxt("timed.csv", delimiter=",", names=True)
     nc = xarray.open_dataset("timed.nc")
