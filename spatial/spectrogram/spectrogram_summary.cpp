@@ -32,6 +32,10 @@ double power_of(const SpectrogramHeader& spectrogram, std::size_t bin, double ce
   return cell * cell * (alone ? 1 : 0.5) / resolution_per_m(spectrogram);
 }
 
+bool is_valid(const SpectrogramHeader& spectrogram, std::size_t row, std::size_t bin) {
+  return spectrogram.known.empty() || spectrogram.known[row].contains(spectrogram.frequency_per_m(bin));
+}
+
 std::vector<double> mean_spectrum(const Spectrogram& spectrogram) {
   const bool amplitudes = spectrogram.scaling == Scaling::amplitude;
   std::vector<double> mean(spectrogram.bins, 0.0);
@@ -49,12 +53,12 @@ std::vector<double> mean_spectrum(const Spectrogram& spectrogram) {
 
 SpectralPeak strongest_peak(const Spectrogram& spectrogram, double min_frequency_per_m) {
   const std::size_t first = first_bin(spectrogram, min_frequency_per_m);
-  std::size_t best = first;
+  SpectralPeak best{NAN, NAN, NAN};
   for (std::size_t p = 0; p < spectrogram.position_m.size(); ++p)
     for (std::size_t k = first; k < spectrogram.bins; ++k)
-      if (spectrogram.at(p, k) > spectrogram.cells[best]) best = p * spectrogram.bins + k;
-  return {spectrogram.position_m[best / spectrogram.bins],
-          spectrogram.frequency_per_m(best % spectrogram.bins), static_cast<double>(spectrogram.cells[best])};
+      if (!(spectrogram.at(p, k) <= best.cell) && is_valid(spectrogram, p, k))
+        best = {spectrogram.position_m[p], spectrogram.frequency_per_m(k), double{spectrogram.at(p, k)}};
+  return best;
 }
 
 double band_rms(const Spectrogram& spectrogram, double min_frequency_per_m) {

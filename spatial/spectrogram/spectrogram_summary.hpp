@@ -20,12 +20,16 @@ struct SpectralPeak {
   double cell = 0;  ///< in the spectrogram's scaling
 };
 
-/// The largest cell at or above a frequency. Precondition: the spectrogram has a cell.
+/// The largest cell at or above a frequency, among those in the valid band of their row. All members are NaN
+/// if there is none. Precondition: the spectrogram has a cell.
 SpectralPeak strongest_peak(const schema::Spectrogram& spectrogram, double min_frequency_per_m);
 
 /// Square root of the integral of the mean density from a frequency up to the last bin, in the texture's
 /// unit.
 double band_rms(const schema::Spectrogram& spectrogram, double min_frequency_per_m);
+
+/// Whether a bin is in the valid band of a row; true if the spectrogram states no valid band.
+bool is_valid(const schema::SpectrogramHeader& spectrogram, std::size_t row, std::size_t bin);
 
 /// The first bin at or above a frequency, or the last bin if there is none.
 std::size_t first_bin(const schema::SpectrogramHeader& spectrogram, double min_frequency_per_m);

@@ -39,14 +39,12 @@ SpectrogramTally::SpectrogramTally(const schema::SpectrogramHeader& header, doub
     : header_(header),
       first_merged_bin_(first_bin(header, settled_per_m)),
       low_powers_(first_merged_bin_, 0.0),
-      low_peaks_(first_merged_bin_) {
-  header_.known.clear();
-}
+      low_peaks_(first_merged_bin_) {}
 
 void SpectrogramTally::add_low(std::size_t row, std::span<const float> cells) {
   for (std::size_t k = 0; k < cells.size(); ++k) {
     low_powers_[k] += power_of(header_, k, static_cast<double>(cells[k]));
-    if (cells[k] > low_peaks_[k].cell) low_peaks_[k] = {cells[k], row, k};
+    if (cells[k] > low_peaks_[k].cell && is_valid(header_, row, k)) low_peaks_[k] = {cells[k], row, k};
   }
 }
 
@@ -55,8 +53,9 @@ void SpectrogramTally::add_high(std::size_t row, std::span<const float> cells) {
   const auto [sum, maximum] = squares ? sum_and_maximum<true>(cells) : sum_and_maximum<false>(cells);
   high_power_ += squares ? sum * power_of(header_, first_merged_bin_, 1) : sum;
   if (maximum <= high_peak_.cell) return;
-  const auto found = std::ranges::find(cells, maximum);
-  high_peak_ = {maximum, row, first_merged_bin_ + static_cast<std::size_t>(found - cells.begin())};
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i] > high_peak_.cell && is_valid(header_, row, first_merged_bin_ + i))
+      high_peak_ = {cells[i], row, first_merged_bin_ + i};
 }
 
 void SpectrogramTally::add(std::size_t first, std::span<const float> cells) {
@@ -74,6 +73,7 @@ SpectralPeak SpectrogramTally::strongest_peak(double min_frequency_per_m) const 
   Peak best = high_peak_;
   for (std::size_t k = first; k < first_merged_bin_; ++k)
     if (low_peaks_[k].cell > best.cell) best = low_peaks_[k];
+  if (best.cell < 0) return {NAN, NAN, NAN};
   return {header_.position_m[best.row], header_.frequency_per_m(best.bin), static_cast<double>(best.cell)};
 }
 

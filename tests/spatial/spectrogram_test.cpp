@@ -264,8 +264,13 @@ TEST(SpectrogramTally, SaysWhatTheWholeSpectrogramSays) {
   for (const auto scaling : {schema::Scaling::density, schema::Scaling::amplitude}) {
     SpectrogramOptions options;
     options.scaling = scaling;
-    const auto whole = spatial_spectrogram(texture, options);
+    auto whole = spatial_spectrogram(texture, options);
     ASSERT_TRUE(whole);
+    // Valid bands that leave out the strongest cell, and one row without any.
+    const SpectralPeak free = strongest_peak(*whole, 0);
+    whole->known.assign(whole->position_m.size(), {0, 0.999 * free.frequency_per_m});
+    whole->known[3] = {2, 1};
+    EXPECT_LT(strongest_peak(*whole, 0).frequency_per_m, free.frequency_per_m);
     SpectrogramTally tally(*whole, 1000);
     for (std::size_t p = 0; p < whole->position_m.size(); p += 7) {
       const std::size_t rows = std::min<std::size_t>(7, whole->position_m.size() - p);
@@ -279,6 +284,17 @@ TEST(SpectrogramTally, SaysWhatTheWholeSpectrogramSays) {
       EXPECT_NEAR(tally.band_rms(lowest), band_rms(*whole, lowest), 1e-12 * band_rms(*whole, lowest));
     }
   }
+}
+
+TEST(SpectrogramTally, HasNoPeakOutsideTheValidBand) {
+  auto whole = spatial_spectrogram(samples::noise(20000), {});
+  ASSERT_TRUE(whole);
+  whole->known.assign(whole->position_m.size(), {2, 1});
+  SpectrogramTally tally(*whole, 1000);
+  tally.add(0, whole->cells);
+  EXPECT_TRUE(std::isnan(strongest_peak(*whole, 0).cell));
+  EXPECT_TRUE(std::isnan(tally.strongest_peak(0).frequency_per_m));
+  EXPECT_GT(tally.band_rms(0), 0);
 }
 
 TEST(Spectrogram, PositionsStartAtTheTexturesOrigin) {
