@@ -9,7 +9,7 @@
 #include "analysis/compare/along_path.hpp"
 #include "analysis/compare/band_sums.hpp"
 #include "analysis/compare/played_texture.hpp"
-#include "analysis/fidelity/band_kept.hpp"
+#include "spatial/features/band_kept.hpp"
 #include "analysis/fidelity/emulated_pass.hpp"
 #include "analysis/fidelity/emulated_trays.hpp"
 #include "analysis/fidelity/scratch_folder.hpp"
@@ -133,7 +133,7 @@ FidelitySpeed speed_of(const EmulatedPass& pass, const Texture& texture, double 
   speed.speed_mps = speed_mps;
   speed.low_hz = pass.columns.header.low_hz;
   speed.high_hz = pass.columns.header.high_hz;
-  speed.band_kept_percent = band_kept_percent(texture, speed_mps, {speed.low_hz, speed.high_hz});
+  speed.band_kept_percent = spatial::band_kept_percent(texture, speed_mps, {speed.low_hz, speed.high_hz});
   speed.drive_peak_v = pass.outcome.status.ticks.drive_peak_v();
   speed.drive_limit_v = pass.columns.header.transducer.drive_limit_v;
   speed.ticks = pass.columns.tick.size();

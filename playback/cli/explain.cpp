@@ -6,6 +6,7 @@
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/report/choices_report.hpp"
 #include "data-schema/report/terminal.hpp"
+#include "data-schema/texture/texture.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
@@ -14,6 +15,7 @@
 #include "playback/cli/memory_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/player/program.hpp"
+#include "playback/render/at_speed.hpp"
 
 namespace tacto::playback {
 
@@ -25,6 +27,7 @@ namespace {
 
 struct ExplainOptions {
   ProgramRequest program;
+  std::optional<double> speed_mps;
   std::string transducer = "wiertlewski2011";
   std::size_t device_memory = 0;
   PrepareOptions prepare;
@@ -121,6 +124,45 @@ Result<Report> explained_without_room(const ExplainOptions& o, const AskedProgra
   return report->ends_with(refused.kind);
 }
 
+std::string reason_of(const AtSpeed& answer) {
+  if (!answer.fits_limits())
+    return fmt::format("the {} would need {:.0f} % of its limit", answer.tightest.name,
+                       100 * answer.tightest.used());
+  return fmt::format("{:.0f} % of the texture's power is in the band, less than {:g} %",
+                     answer.power_kept_percent, kLeastPowerPercent);
+}
+
+// Whether a finger of that speed can feel it.
+Result<Report> explained_at_speed(const Program& program, double speed_mps) {
+  if (!(speed_mps > 0))
+    return schema::fail(schema::ErrorKind::usage, "the speed must be above zero", "--speed");
+  if (!program.scene_path.empty())
+    return schema::fail(schema::ErrorKind::usage, "is a scene", program.scene_path,
+                        "--speed takes one texture: name one of the scene");
+  const auto texture = schema::read_texture(program.name());
+  TACTO_TRY(texture);
+  const schema::Transducer& transducer = program.session.transducer;
+  RenderOptions render;
+  render.gain_m_per_n = program.gain_m_per_n;
+  const auto answer = at_speed(*texture, transducer, render, speed_mps);
+  TACTO_TRY(answer);
+  const auto largest = largest_speed_mps(*texture, transducer, render);
+  Report report;
+  report.add("can_be_played", answer->can_be_played());
+  if (!answer->can_be_played()) report.add("because", reason_of(*answer));
+  report.add("speed_mps", speed_mps);
+  if (largest)
+    report.add("largest_speed_mps", *largest);
+  else
+    report.add("largest_speed", "none from 1 mm/s to 2 m/s");
+  report.add("texture", program.name()).add("transducer", transducer.name);
+  add_gain(report, program.gain_m_per_n);
+  report.add("tightest_limit", answer->tightest.name).add("of_limit_percent", 100 * answer->tightest.used());
+  return report.add("power_kept_percent", answer->power_kept_percent)
+      .add("low_hz", render.band.low_hz)
+      .add("high_hz", render.band.high_hz);
+}
+
 Result<Report> run_explain(ExplainOptions o) {
   const auto budget = o.budget.budget();
   TACTO_TRY(budget);
@@ -130,6 +172,7 @@ Result<Report> run_explain(ExplainOptions o) {
   const auto program = make_program(asked.request, asked.transducer, asked.options);
   if (!program) return explained_without_room(o, asked, program.error());
   for (const std::string& note : program->prepared.notes) cli::warn(note);
+  if (o.speed_mps) return explained_at_speed(*program, *o.speed_mps);
   auto report = explained(o, *program);
   if (report && o.device_memory > 0) add_room(*report, program->prepared, asked.room());
   return report;
@@ -140,6 +183,10 @@ cli::Action declare_explain(CLI::App& app) {
   ExplainOptions& o = *options;
   app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
   app.add_option("--transducer", o.transducer, "A preset or NAME.transducer.json")->capture_default_str();
+  cli::add_quantity(
+      app, "--speed", o.speed_mps, Dimension::speed,
+      "Can a finger of this speed feel the texture: yes or no, how much of the tightest limit and of "
+      "the texture's power, and the largest speed at which it can");
   cli::declare_unfit_transducer(app, o.program.unfit_transducer);
   cli::refuse_force(app);
   app.add_flag("--implausible", o.program.implausible,
@@ -165,6 +212,7 @@ const cli::Verb kExplainVerb{
     "List what is built to play a texture or scene, what it costs in memory and time, "
     "and what was left out",
     "tactograph explain bench.scene.json\n"
+    "  tactograph explain oak --speed 150mm/s --transducer mine\n"
     "  tactograph explain oak --transducer mine --rate 10kHz --quality balanced --explain\n"
     "  tactograph explain oak --interpolation sinc --inverse magnitude --reconstruction butterworth3",
     declare_explain};

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/fidelity/band_kept.hpp"
+#include "spatial/features/band_kept.hpp"
 #include "analysis/fidelity/fidelity_page.hpp"
 #include "tests/analysis/compare_textures.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
@@ -125,7 +125,7 @@ TEST(BandKept, CountsALineBesideAnEdgeAsAWhole) {
       return std::sin(2 * std::numbers::pi * line_per_m * x + 1) +
              std::sin(2 * std::numbers::pi * beside_per_m * x);
     });
-    return band_kept_percent(texture, 50e-3, {15, 500});
+    return spatial::band_kept_percent(texture, 50e-3, {15, 500});
   };
   constexpr double kWithin_per_m = 3000, kBeyond_per_m = 20e3;
   // Hann's sidelobes of the other line, 100 bins away, and of a line's own negative frequency: far less than
@@ -144,7 +144,7 @@ TEST(BandKept, IsAShareOfThePowerWhereLinesGrow) {
     const auto line = [x](double per_m) { return std::sin(2 * std::numbers::pi * per_m * x); };
     return (1 + 20 * x) * (line(1000) + 2 * line(15e3));
   });
-  EXPECT_NEAR(band_kept_percent(texture, 50e-3, {15, 500}), 20, 0.2);
+  EXPECT_NEAR(spatial::band_kept_percent(texture, 50e-3, {15, 500}), 20, 0.2);
 }
 
 TEST_F(FidelityOfATexture, PageSaysSimulatedAtEveryFigure) {

@@ -62,7 +62,8 @@ MAY_INCLUDE = {
     "spatial/dsp/fourier": "data-schema/files",
     "spatial/dsp/resample": "spatial/dsp/fourier",
     "spatial/dsp/spectrum": "data-schema/base spatial/{dsp/filter dsp/fourier dsp/resample}",
-    "spatial/features": "data-schema/{base spectrogram texture} spatial/{numbers spectrogram texture}",
+    "spatial/features":
+        "data-schema/{base spectrogram texture} spatial/{dsp/filter dsp/fourier numbers spectrogram texture}",
     "spatial/job":
         "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter spectrogram strokes "
         "texture}",
@@ -97,7 +98,7 @@ MAY_INCLUDE = {
     "playback/prepare/relief": "data-schema/scene firmware-host/core/scene",
     "playback/render":
         "data-schema/{base recording scene texture transducer} firmware-host/core/kernel playback/{choose model "
-        "prepare render/reference} spatial/dsp/filter",
+        "prepare render/reference} spatial/{dsp/filter features}",
     "playback/render/reference": "data-schema/base firmware-host/core/scene playback/{model prepare} spatial/{dsp/filter dsp/fourier}",
     "playback/session":
         "data-schema/{base control files session wav} firmware-host/{core/firmware core/kernel core/wire link} "
@@ -120,7 +121,7 @@ MAY_INCLUDE = {
         "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram}",
     "analysis/fidelity":
         "analysis/{compare page} data-schema/{base files results texture transducer} firmware-host/{sim/bench "
-        "sim/device sim/physics} playback/{model player render/reference session} spatial/{dsp/filter dsp/fourier "
+        "sim/device sim/physics} playback/{model player render/reference session} spatial/{dsp/filter "
         "features texture}",
     "analysis/identify/fit": "analysis/identify/measure data-schema/{base transducer} playback/model",
     "analysis/identify/measure":

@@ -38,6 +38,32 @@ def check_explain(folder):
     kept = made.report_of("explain", folder / "t", "--quality", "fast", "--interpolation", "linear")
     assert kept["interpolation"] == "linear", kept  # a named choice is kept, even if another one is cheaper
     check_room(folder, report["sample_bytes"] // 4)
+    check_speed(folder)
+
+
+def actuator_m_per_v(f_hz):
+    """|H_a| of the preset (Wiertlewski 2011): electrical pole and mechanics, scaled to 20 um/V at rest."""
+    s, k = 2j * np.pi * f_hz, 4050 + 76470
+    return abs(20e-6 * k / ((0.0068 * s * s + 4.49 * s + k) * (1 + 2 * 680 * 8.18e-07 * s)))
+
+
+def check_speed(folder):
+    """A sine of 1 /mm: its frequency is the speed in mm/s as Hz, and its drive that of the closed form."""
+    x = np.arange(60_000) * made.PITCH_M
+    made.write_texture(folder / "sine", 0.07 * np.sin(2 * np.pi * 1000 * x))
+    for speed_mps, limited in ((0.05, False), (0.1, False), (0.3, True)):
+        answer = made.report_of("explain", folder / "sine", "--speed", f"{1e3 * speed_mps:g}mm/s")
+        asked = 0.07 * 1e-3 / actuator_m_per_v(1000 * speed_mps) / 5  # of the limit of 5 V
+        assert answer["tightest_limit"] == "drive" and answer["power_kept_percent"] > 99, answer
+        # The ends of the path, where the force begins, ring by up to a tenth.
+        assert abs(answer["of_limit_percent"] / (100 * asked) - 1) < 0.12, (answer, asked)
+        assert answer["can_be_played"] == (not limited) == ("because" not in answer), answer
+    largest = answer["largest_speed_mps"]
+    yes, no = (made.report_of("explain", folder / "sine", "--speed", f"{1e3 * factor * largest:g}mm/s") for factor in (0.999, 1.02))
+    assert yes["can_be_played"] and not no["can_be_played"], (yes, no)
+    # Below 15 mm/s the line is below the band; above 500 mm/s beyond it.
+    assert not made.report_of("explain", folder / "sine", "--speed", "12mm/s")["can_be_played"]
+    refused(USAGE, "above zero", "explain", folder / "sine", "--speed", "0mm/s")
 
 
 def explained_without_room(what, room):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/fidelity/band_kept.hpp"
+#include "spatial/features/band_kept.hpp"
 
 #include <cmath>
 #include <complex>
@@ -10,7 +10,7 @@
 #include "spatial/dsp/fourier/fft.hpp"
 #include "spatial/features/steady_part.hpp"
 
-namespace tacto::analysis {
+namespace tacto::spatial {
 namespace {
 
 constexpr std::size_t kFewestKeptSamples = 8;
@@ -27,7 +27,7 @@ std::vector<PowerAt> reassigned_powers(const schema::SpaceSignal& signal) {
   const double turn = 2 * std::numbers::pi / static_cast<double>(count);
   const double mean =
       std::accumulate(signal.values.begin(), signal.values.end(), 0.0) / static_cast<double>(count);
-  spatial::RealFft fft(count);
+  RealFft fft(count);
   std::vector<double> windowed(count), sloped(count);
   for (std::size_t n = 0; n < count; ++n) {
     const double value = signal.values[n] - mean, angle = turn * static_cast<double>(n);
@@ -49,8 +49,8 @@ std::vector<PowerAt> reassigned_powers(const schema::SpaceSignal& signal) {
 
 }  // namespace
 
-double band_kept_percent(const schema::Texture& texture, double speed_mps, const spatial::Band& band) {
-  const schema::SpaceSignal signal = spatial::steady_part(texture).texture.signal;
+double band_kept_percent(const schema::Texture& texture, double speed_mps, const Band& band) {
+  const schema::SpaceSignal signal = steady_part(texture).texture.signal;
   if (signal.values.size() < kFewestKeptSamples) return 100;
   const double lowest_per_m = 1 / signal.length_m();
   double all = 0, kept = 0;
@@ -63,4 +63,4 @@ double band_kept_percent(const schema::Texture& texture, double speed_mps, const
   return all > 0 ? 100 * kept / all : 100;
 }
 
-}  // namespace tacto::analysis
+}  // namespace tacto::spatial
