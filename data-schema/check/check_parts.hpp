@@ -10,6 +10,10 @@ namespace tacto::schema {
 
 using Progress = std::function<void(double)>;
 
+inline Finding finding_of(const Error& error) {
+  return {error.where, error.remedy.empty() ? error.what : error.what + "; " + error.remedy};
+}
+
 /// Of documents that fit their schemas; `path` is the sidecar's.
 std::vector<Finding> check_recording(const std::string& path, const Document& document,
                                      const Progress& progress);
