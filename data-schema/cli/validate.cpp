@@ -24,7 +24,6 @@ Result<void> check(const StoredFile& file, Outcome& outcome) {
   warn_of_unknown(file.path, *checked);
   cli::Report& row = outcome.files.emplace_back(report_of(file.kind, file.path, ""));
   row.add("valid", checked->findings.empty());
-  if (!checked->note.empty()) row.add("note", checked->note);
   for (const auto& [where, what] : checked->findings)
     outcome.faults.push_back(cli::Report().add("where", where).add("what", what));
   return {};
