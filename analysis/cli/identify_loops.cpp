@@ -29,7 +29,7 @@ Result<DrivenTray> driven_loops(const IdentifyOptions& o, IdentifySource& source
   firmware_host::Device& device = *source.device.device;
   const double amplitude_v = o.amplitude_v.value_or(loop_amplitude_v(source.base));
   about.source = device.capabilities().uri;
-  about.simulated = device.capabilities().simulated;
+  about.simulated = device.capabilities().simulated_device;
   about.conditions = loops_words(amplitude_v);
   const cli::StopSignals signals;
   cli::Progress progress("identifying");

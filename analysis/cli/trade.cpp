@@ -15,11 +15,11 @@
 #include "analysis/trade/measured_trade.hpp"
 #include "analysis/trade/rows/pareto.hpp"
 #include "analysis/trade/worst_trade.hpp"
+#include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/kinds/file_kind.hpp"
 #include "data-schema/report/progress.hpp"
-#include "data-schema/scene/newer_version.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "playback/model/identified_band.hpp"
 
@@ -52,8 +52,7 @@ Result<std::vector<std::string>> textures_named(const std::string& what) {
   const auto scene = schema::read_scene(what);
   TACTO_TRY(scene);
   TACTO_TRY(schema::check_only_tray(*scene, files->front().path));
-  if (const auto note = schema::note_of_newer_version(files->front().path, *scene); !note.empty())
-    cli::warn(note);
+  if (const auto note = schema::unknown_note(files->front().path, *scene); !note.empty()) cli::warn(note);
   std::vector<std::string> names;
   for (const schema::Layer& layer : scene->layers)
     layer.visit([&](const schema::TextureLayer& texture) {

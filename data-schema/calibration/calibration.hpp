@@ -34,6 +34,7 @@ struct CalibrationFile {
   std::string simulated;                  ///< by what, where the device is emulated
   std::vector<CalibrationEntry> entries;  ///< the oldest first; entries are never removed
   std::string extra_json, newer_version;
+  std::vector<std::string> unknown_members = {};
 };
 
 /// The default place of a device's file: calibrations/SERIAL.calibration.json in $XDG_CONFIG_HOME/tactograph,

@@ -56,8 +56,7 @@ Result<CalibrationFile> read_calibration(const std::string& path) {
   const auto document = open_document(path, kCalibrationKind);
   TACTO_TRY(document);
   CalibrationFile file = calibration_from(document->body);
-  file.extra_json = unknown_members(document->body, kCalibrationKind);
-  file.newer_version = document->newer_version;
+  keep_unknown(*document, file);
   return file;
 }
 

@@ -14,10 +14,6 @@
 namespace tacto::schema {
 namespace {
 
-Checked one_finding(const std::string& where, const std::string& what) {
-  return {{{where, what}}, {}};
-}
-
 // Errors that end the check: a missing or a newer file cannot be checked.
 bool ends_the_check(const Error& error) {
   return error.kind == ErrorKind::not_found || error.kind == ErrorKind::unsupported_version ||
@@ -26,14 +22,14 @@ bool ends_the_check(const Error& error) {
 
 Result<Checked> judged(const Error& error) {
   if (ends_the_check(error)) return tl::unexpected(error);
-  return one_finding(error.where, error.what);
+  return Checked{{finding_of(error)}, {}};
 }
 
 // Checks that a schema cannot express: the reader does them.
 template <class Value>
 std::vector<Finding> check_by_reading(const Result<Value>& read) {
   if (read) return {};
-  return {{read.error().where, read.error().what}};
+  return {finding_of(read.error())};
 }
 
 // The transducer of a tray is named as in a scene: a preset, or from the folder of the file.
@@ -56,6 +52,7 @@ Result<Checked> check_document(const StoredFile& file, const Progress& progress)
   const auto document = open_document(file.path, kind_name(file.kind));
   if (!document) return judged(document.error());
   checked.newer_version = document->newer_version;
+  checked.unknown_members = document->unknown_members;
   if (file.kind == FileKind::recording) checked.findings = check_recording(file.path, *document, progress);
   if (file.kind == FileKind::scene) checked.findings = check_scene(file.path, *document);
   if (file.kind == FileKind::transducer) checked.findings = check_by_reading(read_transducer(file.path));

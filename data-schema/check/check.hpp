@@ -21,7 +21,7 @@ struct Finding {
 struct Checked {
   std::vector<Finding> findings;  ///< empty if the file is correct
   std::string newer_version;      ///< if its minor version is newer than ours
-  std::string note = {};          ///< parts that could not be checked, and why
+  std::vector<std::string> unknown_members = {};
 };
 
 /// Compares a file with its schema, its samples and its checksum. `progress`, if given, gets fractions from 0

@@ -10,6 +10,10 @@ namespace tacto::schema {
 
 using Progress = std::function<void(double)>;
 
+inline Finding finding_of(const Error& error) {
+  return {error.where, error.remedy.empty() ? error.what : error.what + "; " + error.remedy};
+}
+
 /// Of documents that fit their schemas; `path` is the sidecar's.
 std::vector<Finding> check_recording(const std::string& path, const Document& document,
                                      const Progress& progress);
@@ -23,8 +27,8 @@ std::vector<Finding> check_scene(const std::string& path, const Document& docume
 Result<Checked> check_session(const std::string& path);
 Result<Checked> check_spectrogram(const std::string& path);
 /// Of a spectrogram that is readable: checks its checksum, and that decibels and flags agree with its cells.
-/// A file without a checksum (before version 1.2) gives a note. Errors: malformed, of reading.
-Result<Checked> check_spectrogram_cells(const std::string& path);
+/// Errors: malformed, of reading.
+Result<std::vector<Finding>> check_spectrogram_cells(const std::string& path);
 
 /// The properties of a WAV according to its sidecar.
 struct ExpectedWav {

@@ -63,16 +63,12 @@ void check_patch(const std::string& path, std::size_t index, const Patch& patch,
   }
 }
 
-Finding fault_of(const Error& error) {
-  return {error.where, error.remedy.empty() ? error.what : error.what + "; " + error.remedy};
-}
-
 }  // namespace
 
 std::vector<Finding> check_scene(const std::string& path, const Document& document) {
   std::vector<Finding> findings;
   const auto scene = parse_scene(document.body.dump(), path);
-  if (!scene) return {fault_of(scene.error())};
+  if (!scene) return {finding_of(scene.error())};
   for (std::size_t i = 0; i < scene->layers.size(); ++i)
     scene->layers[i].visit([&](const TextureLayer& layer) { check_layer(path, i, layer, findings); });
   for (std::size_t i = 0; i < scene->patches.size(); ++i) check_patch(path, i, scene->patches[i], findings);

@@ -38,15 +38,6 @@ void add_cells(const std::string& path, const Spectrogram& spectrogram, std::vec
        fmt::format("{} is not a density", *found)});
 }
 
-// The checksum, and the values that were computed from the cells.
-Result<Checked> check_stored_cells(const std::string& path, Checked checked) {
-  const auto stored = check_spectrogram_cells(path);
-  TACTO_TRY(stored);
-  checked.note = stored->note;
-  checked.findings.insert(checked.findings.end(), stored->findings.begin(), stored->findings.end());
-  return checked;
-}
-
 }  // namespace
 
 Result<Checked> check_spectrogram(const std::string& path) {
@@ -61,7 +52,10 @@ Result<Checked> check_spectrogram(const std::string& path) {
     add_windowing(where, *spectrogram, checked.findings);
     add_cells(where, *spectrogram, checked.findings);
   }
-  return check_stored_cells(path, std::move(checked));
+  const auto stored = check_spectrogram_cells(path);
+  TACTO_TRY(stored);
+  checked.findings.insert(checked.findings.end(), stored->begin(), stored->end());
+  return checked;
 }
 
 }  // namespace tacto::schema

@@ -30,6 +30,15 @@ class StoredSpectrograms {
 
   std::size_t count() { return std::max(file_.length("stroke"), std::size_t{1}); }
   std::string sums() { return file_.text("sha256"); }
+  // What the checksum of each spectrogram ends with.
+  void add_attributes(const StoredCells& s, SpectrogramSum& sum) {
+    for (const char* name : kSummedTexts) sum.add(file_.text(name));
+    for (const char* name : kSummedNumbers) sum.add(file_.number(name));
+    for (const char* name : kSummedCounts) sum.add(file_.number(name));
+    for (const char* name : kSummedUnits) sum.add(file_.units(name));
+    sum.add(file_.units(s.cells_name.c_str()));
+    sum.add(file_.units((s.cells_name + "_db").c_str()));
+  }
   Result<void> status(const std::string& path) const { return file_.status(path); }
 
   StoredCells read(std::size_t stroke) {
@@ -80,13 +89,14 @@ class StoredSpectrograms {
   NetcdfReader file_;
 };
 
-std::string sum_of(const StoredCells& s) {
+std::string sum_of(StoredSpectrograms& file, const StoredCells& s) {
   SpectrogramSum sum;
   sum.add(s.cells);
   sum.add(s.known_from);
   sum.add(s.known_to);
   sum.add(s.position);
   sum.add(s.frequency);
+  file.add_attributes(s, sum);
   return sum.hexadecimal();
 }
 
@@ -134,24 +144,24 @@ std::string nth_line(const std::string& text, std::size_t n) {
 
 }  // namespace
 
-Result<Checked> check_spectrogram_cells(const std::string& path) {
-  Checked checked;
+Result<std::vector<Finding>> check_spectrogram_cells(const std::string& path) {
+  std::vector<Finding> findings;
   StoredSpectrograms file(path);
   const std::string sums = file.sums();
   if (sums.empty())
-    checked.note = "there is no checksum (files before version 1.2 have none): cells are not compared";
+    findings.push_back({path, "has no checksum: its attribute sha256 is missing; make the file again"});
   const std::size_t count = file.count();
   for (std::size_t stroke = 0; stroke < count; ++stroke) {
     const StoredCells stored = file.read(stroke);
     TACTO_TRY(file.status(path));
     const std::string where = count == 1 ? path : fmt::format("{}, stroke {}", path, stroke + 1);
-    if (!sums.empty() && sum_of(stored) != nth_line(sums, stroke))
-      checked.findings.push_back({where, "its cells, known band or axes do not match its attribute sha256"});
-    add_cell(where, stored, wrong_decibels(stored), "its decibels do not match its cell", checked.findings);
-    add_cell(where, stored, wrong_flag(stored), "`known` contradicts known_from and known_to",
-             checked.findings);
+    if (!sums.empty() && sum_of(file, stored) != nth_line(sums, stroke))
+      findings.push_back(
+          {where, "its cells, known band, axes, units or attributes do not match its attribute sha256"});
+    add_cell(where, stored, wrong_decibels(stored), "its decibels do not match its cell", findings);
+    add_cell(where, stored, wrong_flag(stored), "`known` contradicts known_from and known_to", findings);
   }
-  return checked;
+  return findings;
 }
 
 }  // namespace tacto::schema

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/cli/describe.hpp"
 
-#include <fmt/format.h>
-
-#include "data-schema/command/verb.hpp"
-
 namespace tacto::schema {
 
 cli::Report report_of(FileKind kind, const std::string& path, const std::string& simulated) {
@@ -24,12 +20,6 @@ std::string key_in(const char* key, const std::string& unit) {
   for (const auto& [symbol, ending] : kEndings)
     if (unit == symbol) return std::string(key) + ending;
   return key;
-}
-
-void warn_of_version(const std::string& path, const std::string& newer_version) {
-  if (newer_version.empty()) return;
-  cli::warn(fmt::format("{}: its version {} is newer than this program's; unknown members are not shown",
-                        path, newer_version));
 }
 
 }  // namespace tacto::schema

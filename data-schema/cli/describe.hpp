@@ -4,13 +4,16 @@
 
 #include <string>
 
+#include "data-schema/base/unknown_note.hpp"
+#include "data-schema/command/verb.hpp"
 #include "data-schema/kinds/file_kind.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/report/report.hpp"
 
 namespace tacto::schema {
 
-/// Reads the file and describes it; warns of a newer minor version. Errors: as of reading such a file.
+/// Reads the file and describes it; warns of a newer minor version and of unknown members. Errors: as of
+/// reading such a file.
 Result<cli::Report> describe_recording(const std::string& path);
 Result<cli::Report> describe_texture(const std::string& path);
 Result<cli::Report> describe_transducer(const std::string& path);
@@ -38,7 +41,10 @@ void add_text(cli::Report& report, const char* key, const std::string& text);
 /// `key` with the ending of a unit: key_in("rms", "N") is "rms_n". Without an ending for "1".
 std::string key_in(const char* key, const std::string& unit);
 
-/// Warns on stderr that a file is of a newer minor version.
-void warn_of_version(const std::string& path, const std::string& newer_version);
+/// Warns on stderr of a newer minor version and of unknown members.
+template <class File>
+void warn_of_unknown(const std::string& path, const File& file) {
+  if (const std::string note = unknown_note(path, file); !note.empty()) cli::warn(note);
+}
 
 }  // namespace tacto::schema

@@ -34,7 +34,7 @@ cli::Report row_of(const CalibrationEntry& entry) {
 Result<cli::Report> describe_calibration(const std::string& path) {
   const auto file = read_calibration(path);
   TACTO_TRY(file);
-  warn_of_version(path, file->newer_version);
+  warn_of_unknown(path, *file);
   cli::Report report = report_of(FileKind::calibration, path, file->simulated);
   report.add("serial", file->serial);
   add_text(report, "device", file->device);

@@ -28,7 +28,7 @@ std::vector<cli::Report> rate_rows(const Device& device) {
 Result<cli::Report> describe_device(const std::string& path) {
   const auto device = read_device(path);
   TACTO_TRY(device);
-  warn_of_version(path, device->newer_version);
+  warn_of_unknown(path, *device);
   cli::Report report = report_of(FileKind::device, path, "");
   report.add("name", device->name);
   std::vector<cli::Report> axes;
@@ -46,7 +46,7 @@ Result<cli::Report> describe_device(const std::string& path) {
 Result<cli::Report> describe_hand(const std::string& path) {
   const auto hand = read_hand(path);
   TACTO_TRY(hand);
-  warn_of_version(path, hand->newer_version);
+  warn_of_unknown(path, *hand);
   cli::Report report = report_of(FileKind::hand, path, "");
   report.add("name", hand->name).add("mass_kg", hand->mass_kg);
   report.add("damping_n_s_per_m", hand->damping_n_s_per_m);

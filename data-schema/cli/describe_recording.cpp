@@ -89,7 +89,7 @@ Result<Report> describe_recording(const std::string& path) {
   const auto recording = open_recording(path);
   TACTO_TRY(recording);
   const RecordingHeader& header = recording->header;
-  warn_of_version(path, header.newer_version);
+  warn_of_unknown(path, header);
   cli::Progress progress("reading");
   const auto statistics = channel_statistics(wav_path(*recording), header.channels,
                                              [&](double fraction) { progress.update(fraction); });

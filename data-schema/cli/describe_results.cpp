@@ -7,7 +7,7 @@ namespace tacto::schema {
 Result<cli::Report> describe_results(const std::string& path) {
   const auto file = read_results(path);
   TACTO_TRY(file);
-  warn_of_version(path, file->newer_version);
+  warn_of_unknown(path, *file);
   cli::Report report = report_of(FileKind::results, path, file->simulated);
   report.add("verb", file->verb).add("inputs", file->inputs);
   add_text(report, "device", file->device);

@@ -72,7 +72,7 @@ void add_patches(cli::Report& report, const Scene& scene) {
 Result<cli::Report> describe_scene(const std::string& path) {
   const auto scene = read_scene(path);
   TACTO_TRY(scene);
-  warn_of_version(path, scene->newer_version);
+  warn_of_unknown(path, *scene);
   cli::Report report = report_of(FileKind::scene, path, "");
   add_text(report, "name", scene->name);
   std::vector<cli::Report> rows;

@@ -77,7 +77,7 @@ void add_totals(cli::Report& report, const SessionTotals& totals) {
 Result<cli::Report> describe_session(const std::string& path) {
   auto reader = SessionReader::open(path);
   TACTO_TRY(reader);
-  warn_of_version(path, reader->header().newer_version);
+  warn_of_unknown(path, reader->header());
   cli::Report report = report_of(FileKind::session, path, reader->header().simulated);
   report.add("created", reader->header().created).add("creator", reader->header().creator);
   add_device(report, reader->header());

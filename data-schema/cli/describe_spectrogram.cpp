@@ -39,7 +39,7 @@ void add_peak(Report& report, const Spectrogram& s) {
 Result<Report> describe_spectrogram(const std::string& path) {
   const auto spectrogram = read_spectrogram_nc(path);
   TACTO_TRY(spectrogram);
-  warn_of_version(path, spectrogram->newer_version);
+  if (const auto note = unknown_note(path, spectrogram->newer_version, {}); !note.empty()) cli::warn(note);
   Report report = report_of(FileKind::spectrogram, path, spectrogram->simulated);
   report.add("texture", spectrogram->name)
       .add("quantity", spectrogram->quantity)

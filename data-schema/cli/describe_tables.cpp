@@ -11,7 +11,7 @@ namespace tacto::schema {
 Result<cli::Report> describe_formants(const std::string& path) {
   const auto file = read_formants(path);
   TACTO_TRY(file);
-  warn_of_version(path, file->newer_version);
+  warn_of_unknown(path, *file);
   cli::Report report = report_of(FileKind::formants, path, "");
   std::vector<cli::Report> rows;
   for (const FormantTable& table : file->tables)
@@ -31,7 +31,7 @@ Result<cli::Report> describe_formants(const std::string& path) {
 Result<cli::Report> describe_descriptions(const std::string& path) {
   const auto file = read_descriptions(path);
   TACTO_TRY(file);
-  warn_of_version(path, file->newer_version);
+  warn_of_unknown(path, *file);
   cli::Report report = report_of(FileKind::descriptions, path, "");
   std::vector<cli::Report> rows;
   for (const Description& each : file->textures)

@@ -92,7 +92,7 @@ void add_certificate(Report& report, const std::optional<Certificate>& certifica
 Result<Report> describe_texture(const std::string& path) {
   const auto texture = read_texture(path);
   TACTO_TRY(texture);
-  warn_of_version(path, texture->newer_version);
+  warn_of_unknown(path, *texture);
   Report report = report_of(FileKind::texture, path, texture->simulated);
   add_grid(report, *texture);
   add_values(report, *texture);

@@ -7,7 +7,7 @@ namespace tacto::schema {
 Result<cli::Report> describe_trade(const std::string& path) {
   const auto file = read_trade_table(path);
   TACTO_TRY(file);
-  warn_of_version(path, file->newer_version);
+  warn_of_unknown(path, *file);
   cli::Report report = report_of(FileKind::trade, path, {});
   add_text(report, "machine", file->machine);
   add_text(report, "created", file->created);

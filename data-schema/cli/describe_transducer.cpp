@@ -61,7 +61,7 @@ Result<Report> describe_transducer(const std::string& path) {
   TACTO_TRY(transducer);
   if (const auto plausible = check_plausible(*transducer, path); !plausible)
     cli::warn(message(plausible.error()));
-  warn_of_version(path, transducer->newer_version);
+  warn_of_unknown(path, *transducer);
   Report report = report_of(FileKind::transducer, path, "");
   report.add("name", transducer->name);
   add_limits(report, *transducer);

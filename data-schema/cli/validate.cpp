@@ -21,10 +21,9 @@ Result<void> check(const StoredFile& file, Outcome& outcome) {
   cli::Progress progress("checking " + file.path);
   const auto checked = check_file(file, [&](double fraction) { progress.update(fraction); });
   TACTO_TRY(checked);
-  warn_of_version(file.path, checked->newer_version);
+  warn_of_unknown(file.path, *checked);
   cli::Report& row = outcome.files.emplace_back(report_of(file.kind, file.path, ""));
   row.add("valid", checked->findings.empty());
-  if (!checked->note.empty()) row.add("note", checked->note);
   for (const auto& [where, what] : checked->findings)
     outcome.faults.push_back(cli::Report().add("where", where).add("what", what));
   return {};

@@ -34,7 +34,6 @@ struct ControlRequest {
   std::optional<double> dead_man_s;  ///< arm
   std::optional<double> gain;
   bool save = false;
-  std::vector<std::string> passed_over;  ///< unknown members at top level
   /// Filled in by the socket; not in the line.
   std::string asked_by;  ///< the user, for a saved gain
   std::uint64_t client = 0;
@@ -45,7 +44,8 @@ struct ControlRequest {
 using ControlValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
 using ControlFields = std::vector<std::pair<std::string, ControlValue>>;
 
-/// One line without its newline. Errors: malformed, naming the member; unsupported_version, in hello.
+/// One line without its newline. Errors: malformed, naming the member, also an unknown one;
+/// unsupported_version, in hello.
 /// `id_json`, if given, gets the request's id also if the rest is faulty.
 Result<ControlRequest> parse_control_request(std::string_view line, std::string* id_json = nullptr);
 /// The same as a line, newline included.

@@ -178,14 +178,9 @@ Result<ControlRequest> parse_control_request(std::string_view line, std::string*
     return fail(ErrorKind::malformed, faults.front().what,
                 fmt::format("{}#{}", kRequestWhere, faults.front().pointer),
                 remedy_for(faults.front().pointer, *kRules));
-  if (body->contains("playback")) {
-    const auto known = check_members_known((*kRules)["properties"]["playback"], (*body)["playback"],
-                                           fmt::format("{}#/playback", kRequestWhere));
-    TACTO_TRY(known);
-  }
+  TACTO_TRY(check_members_known(*kRules, *body, std::string(kRequestWhere)));
   ControlRequest request = request_of(*body);
   TACTO_TRY(check_taken(*body, request.verb));
-  request.passed_over = members_not_in(*kRules, *body);
   TACTO_TRY(check_members(request));
   return request;
 }

@@ -22,7 +22,6 @@ struct DeviceAxis {
   double travel_to_m = 0;
   double peak_force_n = 0;        ///< largest absolute force, for a short time
   double continuous_force_n = 0;  ///< largest RMS force, for any time
-  std::string extra_json;         ///< members of a newer version
 };
 
 struct Device {
@@ -38,8 +37,9 @@ struct Device {
   std::string transducer;
   std::string source;  ///< paper and equation, datasheet, identification
   std::string notes;
-  std::string extra_json;     ///< members of a newer version
+  std::string extra_json;     ///< members that the schema does not name
   std::string newer_version;  ///< with which it is written again
+  std::vector<std::string> unknown_members = {};
 };
 
 /// Checks what the schema cannot: that each number can belong to a force device (the ranges and their origins

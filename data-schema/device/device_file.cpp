@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/device/device.hpp"
 #include "data-schema/json/json_document.hpp"
-#include "data-schema/json/json_schema.hpp"
 #include "data-schema/json/known_members.hpp"
 #include "data-schema/json/named_document.hpp"
 
@@ -21,21 +20,18 @@ DeviceAxis axis_from(const Json& body) {
   axis.travel_to_m = body["travel_m"][1];
   axis.peak_force_n = body["peak_force_n"];
   axis.continuous_force_n = body["continuous_force_n"];
-  axis.extra_json = unknown_parts((*schema_of(kDeviceKind))["properties"]["axes"]["items"], body);
   return axis;
 }
 
 Json axis_body(const DeviceAxis& axis) {
-  Json body = {{"name", axis.name},
-               {"mass_kg", axis.mass_kg},
-               {"viscous_n_s_per_m", axis.viscous_n_s_per_m},
-               {"coulomb_n", axis.coulomb_n},
-               {"encoder_step_m", axis.encoder_step_m},
-               {"travel_m", {axis.travel_from_m, axis.travel_to_m}},
-               {"peak_force_n", axis.peak_force_n},
-               {"continuous_force_n", axis.continuous_force_n}};
-  add_unknown_parts(body, axis.extra_json);
-  return body;
+  return {{"name", axis.name},
+          {"mass_kg", axis.mass_kg},
+          {"viscous_n_s_per_m", axis.viscous_n_s_per_m},
+          {"coulomb_n", axis.coulomb_n},
+          {"encoder_step_m", axis.encoder_step_m},
+          {"travel_m", {axis.travel_from_m, axis.travel_to_m}},
+          {"peak_force_n", axis.peak_force_n},
+          {"continuous_force_n", axis.continuous_force_n}};
 }
 
 Device device_from(const Document& document) {
@@ -51,8 +47,7 @@ Device device_from(const Document& document) {
   device.transducer = text_or(body, "transducer");
   device.source = text_or(body, "source");
   device.notes = text_or(body, "notes");
-  device.extra_json = unknown_members(body, kDeviceKind);
-  device.newer_version = document.newer_version;
+  keep_unknown(document, device);
   return device;
 }
 

@@ -19,8 +19,9 @@ struct Hand {
   double stiffness_n_per_m = 0;
   std::string source;  ///< paper and equation, or measurement; required
   std::string notes;
-  std::string extra_json;     ///< members of a newer version
+  std::string extra_json;     ///< members that the schema does not name
   std::string newer_version;  ///< with which it is written again
+  std::vector<std::string> unknown_members = {};
 };
 
 /// Checks that each number can belong to a hand (the ranges and their origins are in the .cpp). Errors:

@@ -32,8 +32,7 @@ Hand hand_from(const Document& document) {
   for (const auto& [name, member, range] : kHandNumbers) hand.*member = body[name];
   hand.source = body["source"];
   hand.notes = text_or(body, "notes");
-  hand.extra_json = unknown_members(body, kHandKind);
-  hand.newer_version = document.newer_version;
+  keep_unknown(document, hand);
   return hand;
 }
 

@@ -10,6 +10,7 @@
 #include "data-schema/files/files.hpp"
 #include "data-schema/json/json_schema.hpp"
 #include "data-schema/json/json_text.hpp"
+#include "data-schema/json/known_members.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -74,7 +75,9 @@ Result<Document> checked(Json body, const std::string& where, std::string_view k
   if (!list.empty())
     return fail(ErrorKind::malformed, list.front().what, place(where, list.front().pointer),
                 remedy_at(list.front().pointer, *rules));
-  return Document{std::move(body), std::move(*newer)};
+  auto unknown = unknown_members(*rules, body);
+  auto extra_json = unknown_parts(*rules, body);
+  return Document{std::move(body), std::move(*newer), std::move(unknown), std::move(extra_json)};
 }
 
 Result<Json> read_json(const std::string& path) {
@@ -91,21 +94,14 @@ std::optional<std::string> first_not_finite(const Json& node) {
   return std::nullopt;
 }
 
-Json merged(std::string_view kind, const Json& body, const std::string& extra_json) {
-  Json document = {{"kind", kind}, {"version", version_of_kind(kind)}};
-  for (const auto& [name, value] : body.items()) document[name] = value;
-  if (extra_json.empty()) return document;
-  const Json extra = Json::parse(extra_json);
-  for (const auto& [name, value] : extra.items())
-    if (!document.contains(name)) document[name] = value;
-  return document;
-}
-
-Result<std::string> written(const Json& document, std::string_view kind) {
-  if (const auto pointer = first_not_finite(document))
-    return fail(ErrorKind::unsuitable, "a number that is not finite cannot be stored", *pointer);
+Result<std::string> written(std::string_view kind, const Json& body, const std::string& extra_json) {
   const auto& rules = schema_of(kind);
   if (!rules) return fail(ErrorKind::internal, fmt::format("there is no usable schema for '{}'", kind));
+  Json document = {{"kind", kind}, {"version", version_of_kind(kind)}};
+  for (const auto& [name, value] : body.items()) document[name] = value;
+  add_unknown_parts(*rules, document, extra_json);
+  if (const auto pointer = first_not_finite(document))
+    return fail(ErrorKind::unsuitable, "a number that is not finite cannot be stored", *pointer);
   const auto list = breaches(document, *rules);
   if (!list.empty()) return fail(ErrorKind::unsuitable, list.front().what, list.front().pointer);
   return document.dump(2) + "\n";
@@ -149,18 +145,10 @@ Result<std::vector<Violation>> violations_of(const std::string& path) {
 
 Result<std::string> document_text(std::string_view kind, const Json& body,
                                   const std::string& extra_json) try {
-  return written(merged(kind, body, extra_json), kind);
+  return written(kind, body, extra_json);
 } catch (const std::exception& thrown) {  // text that is not UTF-8
   return fail(ErrorKind::unsuitable,
               fmt::format("cannot be written as JSON: {}", json_reason(thrown.what())));
-}
-
-std::string unknown_members(const Json& body, std::string_view kind) {
-  const auto& rules = schema_of(kind);
-  Json unknown = Json::object();
-  for (const auto& [name, value] : body.items())
-    if (rules && !(*rules)["properties"].contains(name)) unknown[name] = value;
-  return unknown.empty() ? "" : unknown.dump();
 }
 
 void put_text(Json& body, const char* key, const std::string& text) {

@@ -31,7 +31,17 @@ struct Violation {
 struct Document {
   Json body;
   std::string newer_version;  ///< the file's version, if its minor version is newer than this program's
+  std::vector<std::string> unknown_members = {};  ///< places of members that the schema does not name
+  std::string extra_json;  ///< these members and the free ones (x_...), for document_text
 };
+
+/// What a file's value keeps of a document beyond the members that it reads.
+template <class File>
+void keep_unknown(const Document& document, File& file) {
+  file.newer_version = document.newer_version;
+  file.unknown_members = document.unknown_members;
+  file.extra_json = document.extra_json;
+}
 
 /// Reads a file and checks kind, version and schema. Errors: not_found; malformed, with line and column or
 /// with "FILE#/json/pointer"; unsupported_version, naming both versions.
@@ -47,15 +57,11 @@ Result<std::string> kind_of(const std::string& path);
 /// except the breaches themselves.
 Result<std::vector<Violation>> violations_of(const std::string& path);
 
-/// The document to write: kind and version, then `body`, then those members of `extra_json` (an object's
-/// text, or empty) that body lacks. Two spaces of indentation, a newline at the end; doubles read back to the
+/// The document to write: kind and version, then `body`, then those members of `extra_json` (a document's, or
+/// empty) that body lacks. Two spaces of indentation, a newline at the end; doubles read back to the
 /// same bits. Errors: unsuitable, by JSON pointer, where a number is not finite or the schema does not allow
 /// the document.
 Result<std::string> document_text(std::string_view kind, const Json& body, const std::string& extra_json);
-
-/// The members at top level that the schema of `kind` does not name, as an object's text for document_text;
-/// empty where there are none.
-std::string unknown_members(const Json& body, std::string_view kind);
 
 /// body[key] = text, if there is a text: empty optional members are left out.
 void put_text(Json& body, const char* key, const std::string& text);

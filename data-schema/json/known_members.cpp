@@ -2,126 +2,121 @@
 #include "data-schema/json/known_members.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <numeric>
+#include <functional>
 #include <utility>
 
+#include "data-schema/base/nearest_word.hpp"
 #include "data-schema/json/json_schema.hpp"
 #include "data-schema/json/json_text.hpp"
 
 namespace tacto::schema {
 namespace {
 
-// Levenshtein's distance: letters inserted, removed or changed.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t corner = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t changed = corner + (a[i] != b[j]);
-      corner = row[j + 1];
-      row[j + 1] = std::min({changed, corner + 1, row[j] + 1});
-    }
+constexpr std::string_view kFreePrefix = "x_";
+constexpr std::size_t kLongestName = 64;
+
+using Pointer = Json::json_pointer;
+using Visit = std::function<void(const Json& rule, const Pointer& place, const std::string& name)>;
+
+bool is_known(const Json& rule, const std::string& name) {
+  return rule["properties"].contains(name);
+}
+
+// Calls `visit` for each unknown member that is not free; `place` is that of the object.
+void for_each_unknown(const Json& rule, const Json& body, const Pointer& place, const Visit& visit) {
+  if (body.is_array() && rule.contains("items"))
+    for (std::size_t i = 0; i < body.size(); ++i) for_each_unknown(rule["items"], body[i], place / i, visit);
+  if (!body.is_object() || !rule.contains("properties")) return;
+  for (const auto& [name, value] : body.items()) {
+    if (is_known(rule, name))
+      for_each_unknown(rule["properties"][name], value, place / name, visit);
+    else if (!name.starts_with(kFreePrefix))
+      visit(rule, place, name);
   }
-  return row.back();
-}
-
-std::vector<std::string> names_in(const Json& rule) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : rule["properties"].items()) names.push_back(name);
-  return names;
-}
-
-// Up to three letters, as `energy_rms` for `energy_rms_v`, but fewer than a short name has.
-bool is_near(std::string_view said, std::string_view name) {
-  return distance(said, name) <= std::min<std::size_t>(3, name.size() / 2);
 }
 
 std::string near_member_or_all(const std::string& said, const Json& rule) {
-  const auto names = names_in(rule);
-  // Long names are not compared letter by letter: this is text from outside.
-  const std::string_view brief = std::string_view(said).substr(0, 64);
-  const auto nearest =
-      std::ranges::min(names, {}, [&](const std::string& name) { return distance(brief, name); });
-  if (is_near(brief, nearest)) return fmt::format("did you mean '{}'?", nearest);
+  std::vector<std::string> names;
+  for (const auto& [name, value] : rule["properties"].items()) names.push_back(name);
+  const std::string nearest = nearest_word(said, names);
+  if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
   return fmt::format("the known members are {}", fmt::join(names, ", "));
 }
 
-Json unknown_in(const Json& rule, const Json& body) {
-  Json unknown = Json::object();
+// FILE#/a/b; `where` may be FILE alone. Names come from outside: a long one is not repeated.
+std::string place_in(const std::string& where, const Pointer& object, const std::string& name) {
+  const std::string pointer = (name.size() <= kLongestName ? object / name : object).to_string();
+  if (pointer.empty()) return where;
+  return where + (where.find('#') == std::string::npos ? "#" : "") + pointer;
+}
+
+// Null if there is none.
+Json parts_of(const Json& rule, const Json& body) {
+  Json parts;
+  if (body.is_array() && rule.contains("items")) {
+    for (const Json& element : body) parts.push_back(parts_of(rule["items"], element));
+    if (std::ranges::all_of(parts, [](const Json& part) { return part.is_null(); })) return {};
+  }
+  if (!body.is_object() || !rule.contains("properties")) return parts;
   for (const auto& [name, value] : body.items()) {
-    if (!rule["properties"].contains(name)) {
-      unknown[name] = value;
-      continue;
+    if (!is_known(rule, name))
+      parts[name] = value;
+    else if (Json within = parts_of(rule["properties"][name], value); !within.is_null())
+      parts[name] = std::move(within);
+  }
+  return parts;
+}
+
+// Only into what is there: a known object or element that was removed does not come back.
+void add_parts(const Json& rule, Json& body, const Json& parts) {
+  if (body.is_array() && parts.is_array())
+    for (std::size_t i = 0; i < std::min(body.size(), parts.size()); ++i)
+      add_parts(rule["items"], body[i], parts[i]);
+  if (!body.is_object() || !parts.is_object()) return;
+  for (const auto& [name, value] : parts.items()) {
+    if (!body.contains(name)) {
+      if (!is_known(rule, name)) body[name] = value;
+    } else if (is_known(rule, name)) {
+      add_parts(rule["properties"][name], body[name], value);
     }
-    const Json& inner = rule["properties"][name];
-    if (!value.is_object() || !inner.contains("properties")) continue;
-    if (Json within = unknown_in(inner, value); !within.empty()) unknown[name] = std::move(within);
   }
-  return unknown;
-}
-
-void add_members(Json& body, const Json& extra) {
-  for (const auto& [name, value] : extra.items()) {
-    if (!body.contains(name))
-      body[name] = value;
-    else if (body[name].is_object() && value.is_object())
-      add_members(body[name], value);
-  }
-}
-
-// FILE#/a/b; `where` may be FILE alone.
-std::string place_in(const std::string& where, const std::string& step) {
-  return where + (where.find('#') == std::string::npos ? "#/" : "/") + step;
-}
-
-Result<void> check_elements_known(const Json& rule, const Json& body, const std::string& where) {
-  if (!rule.contains("items")) return {};
-  for (std::size_t i = 0; i < body.size(); ++i)
-    TACTO_TRY(check_all_members_known(rule["items"], body[i], place_in(where, std::to_string(i))));
-  return {};
 }
 
 }  // namespace
 
-std::vector<std::string> members_not_in(const Json& rule, const Json& body) {
-  std::vector<std::string> unknown;
-  for (const auto& [name, value] : body.items())
-    if (!rule["properties"].contains(name)) unknown.push_back(name);
-  return unknown;
+std::vector<std::string> unknown_members(const Json& rule, const Json& body) {
+  std::vector<std::string> names;
+  for_each_unknown(rule, body, Pointer(), [&](const Json& /*rule*/, const Pointer& place, const auto& name) {
+    names.push_back((place / name).to_string().substr(1));
+  });
+  return names;
 }
 
 Result<void> check_members_known(const Json& rule, const Json& body, const std::string& where) {
-  const auto unknown = members_not_in(rule, body);
-  if (unknown.empty()) return {};
-  return fail(ErrorKind::malformed,
-              fmt::format("the member {} is unknown here", quoted_name(unknown.front())), where,
-              near_member_or_all(unknown.front(), rule));
-}
-
-Result<void> check_all_members_known(const Json& rule, const Json& body, const std::string& where) {
-  if (body.is_array()) return check_elements_known(rule, body, where);
-  if (!body.is_object() || !rule.contains("properties")) return {};
-  TACTO_TRY(check_members_known(rule, body, where));
-  for (const auto& [name, value] : body.items())
-    TACTO_TRY(check_all_members_known(rule["properties"][name], value, place_in(where, name)));
-  return {};
+  Result<void> first;
+  for_each_unknown(rule, body, Pointer(), [&](const Json& of, const Pointer& place, const std::string& name) {
+    if (first)
+      first = fail(ErrorKind::malformed, fmt::format("the member {} is unknown here", quoted_name(name)),
+                   place_in(where, place, name), near_member_or_all(name, of));
+  });
+  return first;
 }
 
 Result<void> check_document_known(const Document& document, std::string_view kind, const std::string& where) {
   if (!document.newer_version.empty()) return {};
-  return check_all_members_known(*schema_of(kind), document.body, where);
+  return check_members_known(*schema_of(kind), document.body, where);
 }
 
 std::string unknown_parts(const Json& rule, const Json& body) {
-  const Json unknown = unknown_in(rule, body);
-  return unknown.empty() ? "" : unknown.dump();
+  const Json parts = parts_of(rule, body);
+  return parts.is_null() ? "" : parts.dump();
 }
 
-void add_unknown_parts(Json& body, const std::string& extra_json) {
-  if (!extra_json.empty()) add_members(body, Json::parse(extra_json));
+void add_unknown_parts(const Json& rule, Json& body, const std::string& extra_json) {
+  if (!extra_json.empty()) add_parts(rule, body, Json::parse(extra_json));
 }
 
 }  // namespace tacto::schema

@@ -102,8 +102,9 @@ struct RecordingHeader {
   std::vector<FaultNote> faults;
   std::string ended;                  ///< why it ended early: "disk full", "unplugged"
   std::vector<std::string> warnings;  ///< of its making, kept for readers
-  std::string extra_json;             ///< members of a newer minor version, kept as they were
+  std::string extra_json;             ///< members that the schema does not name, kept as they were
   std::string newer_version;          ///< set by the reader if the file's minor version is newer than ours
+  std::vector<std::string> unknown_members = {};  ///< places of those that are not free (x_...)
 };
 
 /// A recording on disk, opened. Samples are read channel by channel.

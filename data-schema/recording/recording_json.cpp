@@ -278,8 +278,7 @@ Result<std::string> recording_text(const RecordingHeader& header) {
 
 RecordingHeader recording_header_unchecked(const Document& document) {
   RecordingHeader header = header_from(document.body);
-  header.extra_json = unknown_members(document.body, "recording");
-  header.newer_version = document.newer_version;
+  keep_unknown(document, header);
   return header;
 }
 

@@ -38,6 +38,7 @@ struct Results {
   std::string created, creator;
   std::string extra_json;
   std::string newer_version;
+  std::vector<std::string> unknown_members = {};
 };
 
 /// NAME.results.json, by stem or in full, or another .json that is named in full. Errors: not_found;

@@ -91,8 +91,7 @@ Result<Results> read_results(const std::string& name) {
   if (body.contains("details")) results.details_json = body["details"].dump();
   results.created = text_or(body, "created");
   results.creator = text_or(body, "creator");
-  results.extra_json = unknown_members(body, kResultsKind);
-  results.newer_version = document->newer_version;
+  keep_unknown(*document, results);
   return results;
 }
 

@@ -56,8 +56,7 @@ Result<TradeTable> table_of(const Result<Document>& document, const std::string&
                 "measure again with 'tactograph trade --calibrate'");
   table.created = text_or(body, "created");
   table.creator = text_or(body, "creator");
-  table.extra_json = unknown_members(body, kTradeKind);
-  table.newer_version = document->newer_version;
+  keep_unknown(*document, table);
   return table;
 }
 

@@ -33,6 +33,7 @@ struct TradeTable {
   std::string created, creator;
   std::string extra_json;
   std::string newer_version;
+  std::vector<std::string> unknown_members = {};
 
   /// The choices of a stage, in the table's order.
   std::vector<MeasuredChoice> at(const std::string& stage) const;

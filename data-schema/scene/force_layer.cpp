@@ -49,8 +49,4 @@ std::string file_of(const ForceLayer& layer) {
   });
 }
 
-const std::string& extra_of(const ForceLayer& layer) {
-  return layer.visit([](const auto& of) -> const std::string& { return of.extra_json; });
-}
-
 }  // namespace tacto::schema

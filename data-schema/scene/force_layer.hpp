@@ -150,7 +150,4 @@ std::vector<NamedLayerNumber> numbers_of(const ForceLayer& layer);
 /// The file that a layer names; empty for a kind without one.
 std::string file_of(const ForceLayer& layer);
 
-/// The members of a newer version, as an object's text.
-const std::string& extra_of(const ForceLayer& layer);
-
 }  // namespace tacto::schema

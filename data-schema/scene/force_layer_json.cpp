@@ -45,7 +45,7 @@ Json layer_number_body(const LayerNumber& number, bool whole = false) {
 
 // The schema of one kind: of the definition's members those that belong to it.
 template <class L>
-Json rule_of_kind() {
+Json made_rule() {
   const Json& all = scene_definition("force_layer")["properties"];
   Json mine = {{"type", all["type"]}};
   if constexpr (NamesFile<L>) mine["file"] = all["file"];
@@ -54,6 +54,12 @@ Json rule_of_kind() {
     mine[std::string(member.name)] = all[std::string(member.name)];
   if constexpr (IsGrooves<L>) mine["filter_m"] = all["filter_m"];
   return {{"properties", mine}};
+}
+
+template <class L>
+const Json& rule_of_kind() {
+  static const Json kRule = made_rule<L>();
+  return kRule;
 }
 
 void read_shape(GroovesLayer& layer, const Json& body) {
@@ -65,15 +71,15 @@ void read_shape(GroovesLayer& layer, const Json& body) {
 
 template <class L>
 Result<ForceLayer> layer_of_kind(const Json& body, UnknownMembers unknown, const std::string& where) {
-  static const Json kRule = rule_of_kind<L>();
-  if (unknown == UnknownMembers::refused) TACTO_TRY(check_all_members_known(kRule, body, where));
+  const Json& rule = rule_of_kind<L>();
+  if (unknown == UnknownMembers::refused) TACTO_TRY(check_members_known(rule, body, where));
   L layer;
   if constexpr (NamesFile<L>) layer.file = text_or(body, "file");
   if constexpr (IsGrooves<L>) read_shape(layer, body);
   for (const auto& [name, number, whole] : LayerMembers<L>::kNumbers)
     if (const auto at = body.find(std::string(name)); at != body.end())
       layer.*number = layer_number_from(*at);
-  layer.extra_json = unknown_parts(kRule, body);
+  layer.extra_json = unknown_parts(rule, body);
   return layer;
 }
 
@@ -111,8 +117,8 @@ Json force_layer_body(const ForceLayer& layer) {
       body[std::string(name)] = layer_number_body(of.*number, whole);
     if constexpr (IsGrooves<L>)
       body["filter_m"] = of.filter_m ? layer_number_body(*of.filter_m) : Json(kAuto);
+    add_unknown_parts(rule_of_kind<L>(), body, of.extra_json);
   });
-  add_unknown_parts(body, extra_of(layer));
   return body;
 }
 

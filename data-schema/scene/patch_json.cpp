@@ -10,19 +10,15 @@
 namespace tacto::schema {
 namespace {
 
-// The patch's own members: those of its layers depend on their type.
-Result<void> check_patch_known(const Json& body, const std::string& where) {
-  const Json& rule = scene_definition("patch");
-  TACTO_TRY(check_members_known(rule, body, where));
-  for (const char* part : {"place", "size"})
-    TACTO_TRY(check_members_known(rule["properties"][part], body[part], fmt::format("{}/{}", where, part)));
-  return {};
+// Without its layers: they keep their own.
+std::string unknown_beside_layers(Json body) {
+  body.erase("layers");
+  return unknown_parts(scene_definition("patch"), body);
 }
 
 }  // namespace
 
 Result<Patch> patch_from(const Json& body, UnknownMembers unknown, const std::string& where) {
-  if (unknown == UnknownMembers::refused) TACTO_TRY(check_patch_known(body, where));
   Patch patch;
   patch.name = text_or(body, "name");
   patch.x_m = body["place"]["x_m"];
@@ -38,7 +34,7 @@ Result<Patch> patch_from(const Json& body, UnknownMembers unknown, const std::st
     TACTO_TRY(layer);
     patch.layers.push_back(std::move(*layer));
   }
-  patch.extra_json = unknown_parts(scene_definition("patch"), body);
+  patch.extra_json = unknown_beside_layers(body);
   return patch;
 }
 
@@ -51,7 +47,7 @@ Json patch_body(const Patch& patch) {
   body["combine"] = to_string(patch.combine);
   body["layers"] = Json::array();
   for (const ForceLayer& layer : patch.layers) body["layers"].push_back(force_layer_body(layer));
-  add_unknown_parts(body, patch.extra_json);
+  add_unknown_parts(scene_definition("patch"), body, patch.extra_json);
   return body;
 }
 

@@ -37,6 +37,7 @@ struct Scene {
   PlaybackChoices playback;
   std::string extra_json;
   std::string newer_version;  ///< with which it is written again; else 1.0, with patches 1.1
+  std::vector<std::string> unknown_members = {};
 };
 
 /// "stop", "mirror", "loop".

@@ -20,14 +20,13 @@ constexpr std::string_view kSceneKind = "scene";
 constexpr std::string_view kWithoutPatches = "1.0";  // the version
 constexpr std::string_view kSceneSuffix = ".scene";
 constexpr std::array<std::string_view, 3> kEndsWords = {"stop", "mirror", "loop"};
-constexpr std::array<std::string_view, 7> kTextureMembers = {
-    "type", "texture", "at_m", "gain_m_per_n", "gain_set_by", "gain_set_on", "ends"};
 
-std::string extra_members(const Json& body) {
-  Json extra = Json::object();
-  for (const auto& [name, value] : body.items())
-    if (std::ranges::find(kTextureMembers, name) == kTextureMembers.end()) extra[name] = value;
-  return extra.empty() ? "" : extra.dump();
+const Json& scene_rules() {
+  return *schema_of(kSceneKind);
+}
+
+const Json& layer_rules() {
+  return scene_rules()["properties"]["layers"]["items"];
 }
 
 TextureLayer texture_layer_from(const Json& body) {
@@ -39,7 +38,7 @@ TextureLayer texture_layer_from(const Json& body) {
   layer.gain_set_on = text_or(body, "gain_set_on");
   const auto ends = std::ranges::find(kEndsWords, text_or(body, "ends", "stop"));
   layer.ends = static_cast<TextureEnds>(ends - kEndsWords.begin());
-  layer.extra_json = extra_members(body);
+  layer.extra_json = unknown_parts(layer_rules(), body);
   return layer;
 }
 
@@ -50,7 +49,7 @@ Json texture_layer_body(const TextureLayer& layer) {
   put_text(body, "gain_set_by", layer.gain_set_by);
   put_text(body, "gain_set_on", layer.gain_set_on);
   body["ends"] = to_string(layer.ends);
-  if (!layer.extra_json.empty()) body.update(Json::parse(layer.extra_json));
+  add_unknown_parts(layer_rules(), body, layer.extra_json);
   return body;
 }
 
@@ -63,21 +62,6 @@ Result<Layer> layer_from(const Json& body, const std::string& place) {
     return fail(ErrorKind::unsuitable, fmt::format("'{}' is not a known type of layer", type),
                 place + "/type", "the types are: texture");
   return texture_layer_from(body);
-}
-
-// In a scene of this program's version every unknown member is misspelt. Members of a newer version are kept.
-Result<void> check_known(const Document& document, const std::string& where) {
-  if (!document.newer_version.empty()) return {};
-  static const auto kRules = schema_of(kSceneKind);
-  const Json& rules = (*kRules)["properties"];
-  const Json& body = document.body;
-  TACTO_TRY(check_members_known(*kRules, body, where));
-  const Json layers = body.value("layers", Json::array());
-  for (std::size_t i = 0; i < layers.size(); ++i)
-    TACTO_TRY(
-        check_members_known(rules["layers"]["items"], layers[i], fmt::format("{}#/layers/{}", where, i)));
-  if (!body.contains("playback")) return {};
-  return check_members_known(rules["playback"], body["playback"], where + "#/playback");
 }
 
 // If there are several textures along a path, the space beyond one's ends belongs to another.
@@ -116,11 +100,17 @@ Result<void> read_patches(const Document& document, const std::string& where, Sc
   return {};
 }
 
+// Layers, patches and choices keep their own.
+std::string unknown_beside_parts(Json body) {
+  for (const char* part : {"layers", "patches", "playback"}) body.erase(part);
+  return unknown_parts(scene_rules(), body);
+}
+
 Result<Scene> scene_from(const Document& document, const std::string& where) {
   Scene scene;
   TACTO_TRY(read_layers(document, where, scene));
-  TACTO_TRY(check_known(document, where));
   TACTO_TRY(read_patches(document, where, scene));
+  TACTO_TRY(check_document_known(document, kSceneKind, where));
   TACTO_TRY(check_ends(scene, where));
   TACTO_TRY(check_patches(scene, where));
   scene.name = text_or(document.body, "name");
@@ -128,8 +118,8 @@ Result<Scene> scene_from(const Document& document, const std::string& where) {
   scene.created = text_or(document.body, "created");
   scene.creator = text_or(document.body, "creator");
   scene.playback = playback_choices_in(document.body);
-  scene.extra_json = unknown_members(document.body, kSceneKind);
-  scene.newer_version = document.newer_version;
+  keep_unknown(document, scene);
+  scene.extra_json = unknown_beside_parts(document.body);
   return scene;
 }
 

@@ -98,6 +98,7 @@ struct SessionHeader : SessionProgram {
   std::int32_t initial_encoder = 0;
   std::string extra_json;
   std::string newer_version;
+  std::vector<std::string> unknown_members = {};
 };
 
 /// The program that the next `change` command brings. If several precede it, the last one is valid: an

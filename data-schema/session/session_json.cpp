@@ -211,8 +211,7 @@ Result<SessionHeader> parse_session_header(std::string_view text, const std::str
   TACTO_TRY(document);
   TACTO_TRY(check_transducer_in(document->body, where));
   SessionHeader header = session_from(document->body);
-  header.extra_json = unknown_members(document->body, kSessionKind);
-  header.newer_version = document->newer_version;
+  keep_unknown(*document, header);
   return header;
 }
 

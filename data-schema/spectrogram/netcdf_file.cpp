@@ -182,15 +182,25 @@ NetcdfReader::~NetcdfReader() {
   if (file_ >= 0) nc()->close(file_);
 }
 
-std::string NetcdfReader::text(const char* name) {
+std::string NetcdfReader::text_of(int variable, const char* name) {
   std::size_t length = 0;
   nc_type type = NC_NAT;
-  if (status_ != NC_NOERR || nc()->inq_att(file_, NC_GLOBAL, name, &type, &length) != NC_NOERR ||
+  if (status_ != NC_NOERR || nc()->inq_att(file_, variable, name, &type, &length) != NC_NOERR ||
       type != NC_CHAR)
     return {};
   std::string text(length, '\0');
-  status_ = nc()->get_att_text(file_, NC_GLOBAL, name, text.data());
+  status_ = nc()->get_att_text(file_, variable, name, text.data());
   return text;
+}
+
+std::string NetcdfReader::text(const char* name) {
+  return text_of(NC_GLOBAL, name);
+}
+
+std::string NetcdfReader::units(const char* name) {
+  int id = -1;
+  const bool there = status_ == NC_NOERR && nc()->inq_varid(file_, name, &id) == NC_NOERR;
+  return there ? text_of(id, "units") : "";
 }
 
 double NetcdfReader::number(const char* name) {

@@ -74,6 +74,8 @@ class NetcdfReader {
 
   /// An attribute of the whole file; empty or NaN where there is none (which is no failure).
   std::string text(const char* name);
+  /// A variable's attribute `units`; empty where there is none.
+  std::string units(const char* name);
   double number(const char* name);
   /// A dimension's length; 0 where there is none.
   std::size_t length(const char* name);
@@ -86,6 +88,7 @@ class NetcdfReader {
 
  private:
   int variable(const char* name);
+  std::string text_of(int variable, const char* name);
   template <class Number>
   std::vector<Number> read(const char* name, const Part& part);
   int file_ = -1;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "data-schema/base/decibels.hpp"
@@ -19,6 +20,7 @@ namespace {
 
 // 1.1: amplitudes, valid band; 1.2: decibels, the checksum
 constexpr const char* kVersion = "1.2";
+constexpr const char *kPositionUnit = "mm", *kFrequencyUnit = "1/mm", *kDecibelUnit = "dB";
 
 std::vector<double> in_millimetres(const std::vector<double>& position_m) {
   std::vector<double> values(position_m.size());
@@ -92,7 +94,10 @@ class NcWriter : public SpectrogramWriter {
     }
     file_.put(position_axis_, in_millimetres(position_m_));
     put_identity();
-    put_windowing();
+    put_summed();
+    std::string sums;  // one a line
+    for (SpectrogramSum& sum : sums_) sums += (sums.empty() ? "" : "\n") + sum.hexadecimal();
+    file_.attribute("sha256", sums);
     return file_.close(named_);
   }
 
@@ -118,7 +123,7 @@ class NcWriter : public SpectrogramWriter {
               std::span<const float>(turned_));
   }
 
-  // Writes the data of the last spectrogram.
+  // Adds the axes of the last spectrogram.
   void end_sum() {
     if (!first_) return;
     const std::vector<double> absent(header_.known.empty() ? rows_.back() : 0,
@@ -127,7 +132,7 @@ class NcWriter : public SpectrogramWriter {
       sum_.add(header_.known.empty() ? absent : limits_per_mm(header_.known, limit));
     sum_.add(in_millimetres(header_.position_m));
     sum_.add(frequencies_per_mm(header_));
-    sums_ += (sums_.empty() ? "" : "\n") + sum_.hexadecimal();
+    sums_.push_back(std::exchange(sum_, SpectrogramSum()));
   }
 
   // The number of spectrograms and the length of the longest are known only at the end.
@@ -152,16 +157,17 @@ class NcWriter : public SpectrogramWriter {
   void define_variables(const Blocks& limits, const Blocks& blocks) {
     if (options_.several) stroke_axis_ = file_.axis("stroke", blocks.dimensions[0], "", "stroke");
     position_axis_ =
-        file_.axis("position", limits.dimensions.back(), "mm", "position of the window's centre");
-    frequency_axis_ = file_.axis("spatial_frequency", blocks.dimensions.back(), "1/mm", "spatial frequency");
+        file_.axis("position", limits.dimensions.back(), kPositionUnit, "position of the window's centre");
+    frequency_axis_ =
+        file_.axis("spatial_frequency", blocks.dimensions.back(), kFrequencyUnit, "spatial frequency");
     const bool amplitude = first_->scaling == Scaling::amplitude;
     cells_ = file_.cells(amplitude ? "amplitude" : "density", blocks, options_.compress, cell_unit(*first_),
                          (amplitude ? "amplitude of " : "power spectral density of ") + first_->quantity);
     known_ = file_.flags("known", blocks, "unknown known", "whether the recording determines the cell");
-    known_from_ =
-        file_.values("known_from", limits, "1/mm", "lowest spatial frequency that the recording determines");
-    known_to_ =
-        file_.values("known_to", limits, "1/mm", "highest spatial frequency that the recording determines");
+    known_from_ = file_.values("known_from", limits, kFrequencyUnit,
+                               "lowest spatial frequency that the recording determines");
+    known_to_ = file_.values("known_to", limits, kFrequencyUnit,
+                             "highest spatial frequency that the recording determines");
   }
 
   void define_decibels(Blocks blocks) {
@@ -169,7 +175,7 @@ class NcWriter : public SpectrogramWriter {
     std::swap(blocks.dimensions.back(), *(blocks.dimensions.end() - 2));
     std::swap(blocks.lengths.back(), *(blocks.lengths.end() - 2));
     decibels_variable_ =
-        file_.cells(amplitude ? "amplitude_db" : "density_db", blocks, options_.compress, "dB",
+        file_.cells(amplitude ? "amplitude_db" : "density_db", blocks, options_.compress, kDecibelUnit,
                     fmt::format("{} {} re 1 {}", amplitude ? "amplitude of" : "power spectral density of",
                                 first_->quantity, cell_unit(*first_)));
   }
@@ -208,24 +214,34 @@ class NcWriter : public SpectrogramWriter {
     file_.attribute("version", std::string(kVersion));
     file_.attribute("title", fmt::format("Spatial spectrogram of {}", first_->name));
     file_.attribute("source", std::string(kCreator));
-    file_.attribute("texture", names_);  // one a line
-    file_.attribute("sha256", sums_);    // likewise
-    if (!simulated_.empty()) file_.attribute("simulated", simulated_);
   }
 
-  void put_windowing() {
+  void put_summed() {
     const bool amplitude = first_->scaling == Scaling::amplitude;
-    file_.attribute("quantity", first_->quantity);
-    file_.attribute("quantity_unit", first_->unit);
-    file_.attribute("scaling", std::string(amplitude ? "amplitude, one-sided" : "density, one-sided"));
-    file_.attribute("window", first_->window);
-    file_.attribute("window_coherent_gain", first_->coherent_gain);
-    file_.attribute("detrend", first_->detrend);
-    file_.attribute("window_mm", first_->window_m * kMillimetres);
-    file_.attribute("hop_mm", first_->hop_m * kMillimetres);
-    file_.attribute("pitch_mm", first_->pitch_m * kMillimetres);
-    file_.attribute("padded_samples", static_cast<long long>(first_->padded_samples));
-    file_.attribute("decimation", static_cast<long long>(first_->decimation));
+    const std::string texts[] = {names_,  // one a line
+                                 simulated_,     first_->quantity,
+                                 first_->unit,   amplitude ? "amplitude, one-sided" : "density, one-sided",
+                                 first_->window, first_->detrend};
+    const double numbers[] = {first_->window_m * kMillimetres, first_->hop_m * kMillimetres,
+                              first_->pitch_m * kMillimetres, first_->coherent_gain};
+    const std::size_t counts[] = {first_->padded_samples, first_->decimation};
+    static_assert(std::size(texts) == std::size(kSummedTexts));
+    static_assert(std::size(numbers) == std::size(kSummedNumbers));
+    static_assert(std::size(counts) == std::size(kSummedCounts));
+    for (std::size_t i = 0; i < std::size(texts); ++i)
+      if (!texts[i].empty()) file_.attribute(kSummedTexts[i], texts[i]);
+    for (std::size_t i = 0; i < std::size(numbers); ++i) file_.attribute(kSummedNumbers[i], numbers[i]);
+    for (std::size_t i = 0; i < std::size(counts); ++i)
+      file_.attribute(kSummedCounts[i], static_cast<long long>(counts[i]));
+    for (SpectrogramSum& sum : sums_) {
+      for (const std::string& text : texts) sum.add(text);
+      for (const double number : numbers) sum.add(number);
+      for (const std::size_t count : counts) sum.add(static_cast<double>(count));
+      for (const std::string& unit :
+           {std::string(kPositionUnit), std::string(kFrequencyUnit), std::string(kFrequencyUnit),
+            std::string(kFrequencyUnit), cell_unit(*first_), std::string(kDecibelUnit)})
+        sum.add(unit);
+    }
   }
 
   NetcdfWriter file_;
@@ -237,8 +253,9 @@ class NcWriter : public SpectrogramWriter {
   SpectrogramHeader header_;        // of the spectrogram being written
   std::vector<std::size_t> rows_;   // of each so far
   std::vector<double> position_m_;  // of the longest so far
-  std::string names_, simulated_, sums_;
-  SpectrogramSum sum_;  // of the spectrogram being written
+  std::string names_, simulated_;
+  SpectrogramSum sum_;                // of the spectrogram being written
+  std::vector<SpectrogramSum> sums_;  // of those before
   std::vector<float> scaled_, decibels_, turned_;
   std::vector<signed char> flags_;
 };

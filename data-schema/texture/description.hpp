@@ -41,6 +41,7 @@ struct DescriptionFile {
   std::string created, creator;
   std::string extra_json;
   std::string newer_version;
+  std::vector<std::string> unknown_members = {};
 };
 
 /// NAME.descriptions.json, by stem or in full. Errors: not_found; malformed; unsupported_version.

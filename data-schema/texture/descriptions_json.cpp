@@ -76,8 +76,7 @@ Result<DescriptionFile> read_descriptions(const std::string& name) {
   for (const Json& each : document->body["textures"]) file.textures.push_back(description_from(each));
   file.created = text_or(document->body, "created");
   file.creator = text_or(document->body, "creator");
-  file.extra_json = unknown_members(document->body, kDescriptionsKind);
-  file.newer_version = document->newer_version;
+  keep_unknown(*document, file);
   return file;
 }
 

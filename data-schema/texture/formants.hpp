@@ -48,6 +48,7 @@ struct FormantFile {
   std::string created, creator;
   std::string extra_json;
   std::string newer_version;
+  std::vector<std::string> unknown_members = {};
 };
 
 /// NAME.formants.json, by stem or in full. Errors: not_found; malformed; unsupported_version.

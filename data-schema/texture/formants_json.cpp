@@ -110,8 +110,7 @@ Result<FormantFile> read_formants(const std::string& name) {
   for (const Json& table : document->body["textures"]) file.tables.push_back(table_from(table));
   file.created = text_or(document->body, "created");
   file.creator = text_or(document->body, "creator");
-  file.extra_json = unknown_members(document->body, kFormantsKind);
-  file.newer_version = document->newer_version;
+  keep_unknown(*document, file);
   return file;
 }
 

@@ -152,8 +152,7 @@ Result<Texture> read_texture(const std::string& name) {
     texture.average->spread = std::move(*spread);
   }
   TACTO_TRY(check_sum(wav, data.sha256));
-  texture.extra_json = unknown_members(document->body, kTextureKind);
-  texture.newer_version = document->newer_version;
+  keep_unknown(*document, texture);
   return texture;
 }
 

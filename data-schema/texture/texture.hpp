@@ -93,6 +93,7 @@ struct Texture {
   std::string created, creator;
   std::string extra_json;
   std::string newer_version;
+  std::vector<std::string> unknown_members = {};
 };
 
 /// Opens by stem, NAME.texture.json or NAME.texture.wav; checks schema, length and grid, and that every

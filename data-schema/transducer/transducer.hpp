@@ -44,6 +44,7 @@ struct Transducer {
   std::optional<Identification> identification;
   std::string extra_json;
   std::string newer_version;
+  std::vector<std::string> unknown_members = {};
 };
 
 /// beta = delta / (2 v_max), m/V. Equation (2).

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/json/json_document.hpp"
+#include "data-schema/json/known_members.hpp"
 #include "data-schema/json/named_document.hpp"
 #include "data-schema/transducer/transducer_json.hpp"
 #include "data-schema/transducer/transducer_plausible.hpp"
@@ -24,9 +25,9 @@ std::vector<std::string_view> preset_names() {
 Result<Transducer> read_transducer(const std::string& name, Numbers numbers) {
   const auto found = open_named(kTransducerKind, name);
   TACTO_TRY(found);
+  TACTO_TRY(check_document_known(found->document, kTransducerKind, found->where));
   Transducer transducer = transducer_from(found->document.body);
-  transducer.extra_json = unknown_members(found->document.body, kTransducerKind);
-  transducer.newer_version = found->document.newer_version;
+  keep_unknown(found->document, transducer);
   TACTO_TRY(check_extras(transducer, found->where));
   TACTO_TRY(check_numbers(transducer, found->where, numbers));
   return transducer;

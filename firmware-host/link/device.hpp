@@ -24,8 +24,11 @@ struct Capabilities {
   std::string name;
   std::string serial;
   std::string firmware;   ///< its version
-  std::string simulated;  ///< the name of the simulation; empty for a real device
-  std::string clock;      ///< the time base: "device"
+  std::string simulated;  ///< what simulates the samples; empty for a real device
+  /// What simulates the device itself. When it is driven, the finger and the surface of its samples are not
+  /// there.
+  std::string simulated_device;
+  std::string clock;  ///< the time base: "device"
   double sample_rate_hz = 0;
   /// One per sample of each frame, in order. Physical = code x scale + offset, in `unit`. The transducer's
   /// own channel, `tangential_force`, is in volts at its output: its newtons depend on the model of the

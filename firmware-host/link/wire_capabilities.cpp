@@ -83,6 +83,7 @@ Result<Capabilities> capabilities_of(const Description& description, std::string
   capabilities.serial = description.welcome.serial;
   capabilities.firmware = description.welcome.firmware;
   capabilities.simulated = simulated_samples(description);
+  capabilities.simulated_device = simulated_device(description);
   capabilities.surface = note_of(description, wire::NoteKind::surface);
   capabilities.clock = "device";
   return capabilities;

@@ -22,7 +22,7 @@ Capabilities capabilities_of(const schema::Recording& recording, std::string uri
   capabilities.name = "replay of " + recording.stem;
   capabilities.serial = header.serial;
   capabilities.firmware = header.firmware;
-  capabilities.simulated = header.simulated;
+  capabilities.simulated = capabilities.simulated_device = header.simulated;
   capabilities.clock = header.clock;
   capabilities.sample_rate_hz = header.sample_rate_hz;
   capabilities.channels = header.channels;

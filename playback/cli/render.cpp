@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <memory>
 
+#include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/recording/statistics.hpp"
 #include "data-schema/report/progress.hpp"
-#include "data-schema/scene/newer_version.hpp"
 #include "playback/choose/choices.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/ends_option.hpp"
@@ -203,9 +203,7 @@ void warn_of(const Rendering& r) {
 }
 
 void warn_of_version(const std::string& name, const schema::Transducer& transducer) {
-  const std::string note = schema::note_of_newer_version(name, transducer.newer_version,
-                                                         schema::member_names(transducer.extra_json));
-  if (!note.empty()) cli::warn(note);
+  if (const std::string note = schema::unknown_note(name, transducer); !note.empty()) cli::warn(note);
 }
 
 // Options that the reference does not have.

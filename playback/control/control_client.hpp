@@ -12,12 +12,6 @@
 
 namespace tacto::playback {
 
-/// A request that is answered later.
-struct LateRequest {
-  std::string id;
-  std::vector<std::string> passed_over;  ///< members of the request that are unknown
-};
-
 /// Bounded buffers around a connected socket whose calls never block. The destructor closes the socket.
 class ControlClient {
  public:
@@ -59,7 +53,7 @@ class ControlClient {
   std::string last_line;
   std::uint64_t lines = 0;  ///< received
   std::uint64_t dropped_events = 0;
-  std::optional<LateRequest> waits_for;
+  std::optional<std::string> waits_for;  ///< the id of a request that is answered later
 
  private:
   // Closes its file descriptor.

@@ -51,12 +51,6 @@ bool is_unauthenticated(const ControlClient& client) {
   return client.by_tcp && !client.greeted;
 }
 
-// Newer clients may send unknown members. The answer names them, in case one was misspelt.
-schema::ControlFields with_passed_over(schema::ControlFields fields, const std::vector<std::string>& names) {
-  if (!names.empty()) fields.emplace_back("passed_over", fmt::format("{}", fmt::join(names, ", ")));
-  return fields;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<ControlServer>> ControlServer::listen(const SocketPlace& place) {
@@ -208,24 +202,23 @@ std::optional<std::string> ControlServer::answer_to(ControlClient& client, const
   if (request->save) request->asked_by = client.user ? user_name(*client.user) : "token";
   const Answer fields = handler(*request);
   if (!fields) {
-    client.waits_for = {id, request->passed_over};
+    client.waits_for = id;
     return std::nullopt;
   }
   if (!*fields) return schema::control_error_line(id, fields->error());
   client.greeted = client.greeted || request->verb == ControlVerb::hello;
   client.watching = client.watching || request->verb == ControlVerb::watch;
   if (client.for_stop && request->verb == ControlVerb::hello) leave_stop_place(client);
-  return schema::control_reply_line(id, with_passed_over(**fields, request->passed_over));
+  return schema::control_reply_line(id, **fields);
 }
 
 void ControlServer::answer_late(const Result<schema::ControlFields>& fields) {
   const auto client =
       std::ranges::find_if(clients_, [](const ControlClient& one) { return one.waits_for.has_value(); });
   if (client == clients_.end()) return;
-  const LateRequest request = *std::exchange(client->waits_for, std::nullopt);
-  const bool here = client->send(
-      fields ? schema::control_reply_line(request.id, with_passed_over(*fields, request.passed_over))
-             : schema::control_error_line(request.id, fields.error()));
+  const std::string id = *std::exchange(client->waits_for, std::nullopt);
+  const bool here = client->send(fields ? schema::control_reply_line(id, *fields)
+                                        : schema::control_error_line(id, fields.error()));
   if (!here) clients_.erase(client);
 }
 

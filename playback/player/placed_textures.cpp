@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include "data-schema/base/unknown_note.hpp"
 #include "data-schema/files/files.hpp"
-#include "data-schema/scene/newer_version.hpp"
 #include "data-schema/texture/texture_wav.hpp"
 #include "playback/player/served_folder.hpp"
 #include "playback/render/loop_seam.hpp"
@@ -53,12 +53,13 @@ Result<schema::Scene> scene_of(const ProgramRequest& request,
 
 // A limit of a newer version must not be ignored.
 Result<void> check_choices(const schema::Scene& scene) {
-  if (scene.playback.extra_json.empty()) return {};
-  return fail(
-      ErrorKind::unsuitable,
-      fmt::format("is of version {}, and its playback has members that are unknown to this program: {}",
-                  scene.newer_version, scene.playback.extra_json),
-      "scene#/playback", "play it with a newer tactograph, or remove them");
+  const auto of_playback = [](const std::string& name) { return name.starts_with("playback/"); };
+  const auto choice = std::ranges::find_if(scene.unknown_members, of_playback);
+  if (choice == scene.unknown_members.end()) return {};
+  return fail(ErrorKind::unsuitable,
+              fmt::format("is of version {}, and its choice {} is unknown to this program",
+                          scene.newer_version, *choice),
+              "scene#/playback", "play it with a newer tactograph, or remove it");
 }
 
 }  // namespace
@@ -116,7 +117,7 @@ class TextureReader {
     TACTO_TRY(schema::check_only_tray(scene, laid_.scene_path_));
     TACTO_TRY(check_choices(scene));
     laid_.choices_ = scene.playback;
-    note(schema::note_of_newer_version(laid_.scene_path_, scene));
+    note(schema::unknown_note(laid_.scene_path_, scene));
     for (const schema::Layer& layer : scene.layers) {
       const auto added = layer.visit([&](const TextureLayer& texture) { return add(texture); });
       if (!added) return added;
@@ -141,8 +142,7 @@ class TextureReader {
       TACTO_TRY(texture);
       const auto wav = schema::texture_wav(file);
       TACTO_TRY(wav);
-      note(schema::note_of_newer_version(stem + ".json", texture->newer_version,
-                                         schema::member_names(texture->extra_json)));
+      note(schema::unknown_note(stem + ".json", *texture));
       laid_.files_.emplace(stem, PlacedTextures::File{std::move(*texture), wav->sha256});
     }
     laid_.stems_.push_back(stem);

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "data-schema/base/creation_time.hpp"
+#include "data-schema/base/unknown_note.hpp"
 #include "data-schema/files/files.hpp"
-#include "data-schema/scene/newer_version.hpp"
 #include "data-schema/version.hpp"
 #include "firmware-host/core/kernel/profile.hpp"
 #include "playback/player/placed_textures.hpp"
@@ -58,10 +58,8 @@ Result<std::optional<TickDecision>> decided(const std::vector<PlacedTexture>& te
 
 // Adds notes before those of prepare().
 void add_notes(Program& program, const PlacedTextures& laid, const std::string& transducer) {
-  const schema::Transducer& read = program.session.transducer;
   std::vector<std::string> first = laid.notes();
-  first.push_back(
-      schema::note_of_newer_version(transducer, read.newer_version, schema::member_names(read.extra_json)));
+  first.push_back(schema::unknown_note(transducer, program.session.transducer));
   std::erase(first, "");
   std::vector<std::string>& notes = program.prepared.notes;
   notes.insert(notes.begin(), first.begin(), first.end());

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 
+#include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/verb.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/recording/recording.hpp"
@@ -26,9 +27,8 @@ std::string name_of(const std::string& path, std::string_view suffix) {
   return fs::path(schema::stem_of(path, suffix)).filename().string();
 }
 
-void warn_of_version(const std::string& path, const std::string& version) {
-  if (!version.empty())
-    cli::warn(fmt::format("{}: has the newer version {}; its unknown members are ignored", path, version));
+void warn_of(const std::string& note) {
+  if (!note.empty()) cli::warn(note);
 }
 
 // The number N in "STEM-N.texture.json", two digits or more.
@@ -69,7 +69,7 @@ std::vector<StoredFile> of_kind(const std::vector<StoredFile>& files, FileKind k
 Result<NamedTexture> read_texture(const std::string& path) {
   auto texture = schema::read_texture(path);
   TACTO_TRY(texture);
-  warn_of_version(path, texture->newer_version);
+  warn_of(schema::unknown_note(path, *texture));
   return NamedTexture{path, name_of(path, ".texture"), std::move(*texture), true};
 }
 
@@ -123,7 +123,7 @@ Result<void> TextureInputs::open_if_recording() {
   inputs_.pop_front();
   const auto recording = schema::open_recording(path);
   TACTO_TRY(recording);
-  warn_of_version(path, recording->header.newer_version);
+  warn_of(schema::unknown_note(path, recording->header));
   auto maker = TextureMaker::open(*recording, options_);
   TACTO_TRY(maker);
   maker_.reset();

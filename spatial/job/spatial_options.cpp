@@ -67,6 +67,9 @@ void declare_stretch(CLI::App& app, SpatialOptions& options) {
 void declare_average(CLI::App& app, SpatialOptions& options) {
   app.add_flag("--both-ways", options.both_ways, "Average strokes of both directions into one")
       ->needs("--average");
+  app.add_flag("--mix", options.mix,
+               "Average recordings of different surfaces, or measured with simulated ones")
+      ->needs("--average");
   cli::add_choice<Align>(
       app, "--align", options.align, {{"position", Align::position}, {"correlation", Align::correlation}},
       "Align strokes by their position on the bench, or by best correlation with those before")

@@ -28,6 +28,7 @@ struct SpatialOptions {
   std::optional<double> low_hz, high_hz, from_s, to_s;
   std::optional<int> stroke;
   bool list = false, finger_up = false, average = false, both_ways = false;
+  bool mix = false;  ///< averages different surfaces, or measured with simulated recordings
   schema::Existing existing = schema::Existing::keep;
   Align align = Align::position;
   double align_range_m = 0.5e-3;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "data-schema/base/unknown_note.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/texture/texture.hpp"
@@ -229,8 +230,7 @@ Result<ChosenTexture> Run::texture_choice(const TextureOptions& target, const To
 Result<TouchRecord> Run::opened(const std::string& name, const TextureOptions& target) {
   const auto recording = schema::open_recording(name);
   TACTO_TRY(recording);
-  if (const std::string& version = recording->header.newer_version; !version.empty())
-    warn(fmt::format("{}: has the newer version {}; its unknown members are ignored", name, version));
+  if (const std::string note = schema::unknown_note(name, recording->header); !note.empty()) warn(note);
   // A texture stores the checksum of the recording's samples, so it has to be correct.
   TACTO_TRY(schema::check_samples_sum(*recording));
   auto record = TouchRecord::open(*recording, target.channel);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "data-schema/files/files.hpp"
@@ -27,6 +28,38 @@ struct Mean {
   TextureAverager averager;
 };
 
+// What is compared between the recordings of one mean.
+struct Origin {
+  std::string recording, surface, simulated, sha256;
+};
+
+std::string surface_words(const Origin& origin) {
+  return origin.surface.empty() ? "no surface is named in " + origin.recording
+                                : fmt::format("'{}' in {}", origin.surface, origin.recording);
+}
+
+// Links, copies and other spellings of a name lead to the same samples.
+Result<void> check_not_twice(const Origin& one, const std::vector<Origin>& others) {
+  const auto same = std::ranges::find(others, one.sha256, &Origin::sha256);
+  if (same == others.end()) return {};
+  return schema::fail(ErrorKind::unsuitable, fmt::format("has the same samples as {}", same->recording),
+                      one.recording, "name each recording once");
+}
+
+Result<void> check_not_mixed(const Origin& one, const Origin& first) {
+  constexpr const char* kRemedy = "average them separately, or add --mix";
+  if (one.simulated.empty() != first.simulated.empty())
+    return schema::fail(ErrorKind::unsuitable,
+                        fmt::format("is {}, but {} is {}", one.simulated.empty() ? "measured" : "simulated",
+                                    first.recording, first.simulated.empty() ? "measured" : "simulated"),
+                        one.recording, kRemedy);
+  if (one.surface == first.surface) return {};
+  return schema::fail(
+      ErrorKind::unsuitable,
+      fmt::format("the recordings have different surfaces: {}, {}", surface_words(first), surface_words(one)),
+      one.recording, kRemedy);
+}
+
 class Takes {
  public:
   explicit Takes(const SpatialOptions& options, std::string stem)
@@ -37,13 +70,22 @@ class Takes {
 
  private:
   std::string stem_of(const Mean& mean) const;
+  Result<void> check_origin(const std::string& recording, const schema::RecordingHeader& header);
 
   const SpatialOptions& options_;
   std::string stem_;
   std::vector<Mean> means_;
+  std::vector<Origin> origins_;
   std::vector<Report> takes_;
   std::vector<std::string> warnings_;
 };
+
+Result<void> Takes::check_origin(const std::string& recording, const schema::RecordingHeader& header) {
+  origins_.push_back({recording, header.surface, header.simulated, header.sha256});
+  const Origin one = origins_.back();
+  TACTO_TRY(check_not_twice(one, {origins_.begin(), origins_.end() - 1}));
+  return options_.mix ? Result<void>() : check_not_mixed(one, origins_.front());
+}
 
 // All warnings of a recording contain its name.
 Result<void> Takes::add(const std::string& recording, const std::function<void(double)>& progress) {
@@ -52,6 +94,7 @@ Result<void> Takes::add(const std::string& recording, const std::function<void(d
   if (!take && take.error().kind != ErrorKind::unsuitable) return schema::forward_error(take);
   std::size_t strokes = 0;
   if (!take) warnings_.push_back("excluded: " + schema::message(take.error()));
+  if (take) TACTO_TRY(check_origin(recording, take->maker.record().header()));
   if (take)
     for (const AverageGroup& group : average_groups(take->jobs, options_.both_ways, "")) {
       const bool backward = !options_.both_ways && group.jobs.front().stroke.direction < 0;

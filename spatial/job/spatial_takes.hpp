@@ -16,7 +16,9 @@ bool averages_recordings(const SpatialOptions& options);
 
 /// Aligns as within one recording: by position on the bench, which the takes must have in common, or by
 /// correlation with the strokes before. A recording without a usable stroke is left out with a warning.
-/// Errors: usage, of names; of reading; unsuitable, if fewer than two strokes remain.
+/// Errors: usage, of names; of reading; unsuitable, if two recordings have the same samples, different
+/// surfaces or only one of them is simulated (the last two unless --mix is given), or if fewer than two
+/// strokes remain.
 schema::Result<cli::Report> spatial_takes(const SpatialOptions& options,
                                           const std::vector<std::string>& recordings);
 

@@ -41,6 +41,11 @@ schema::Result<void> TextureAverager::check(const schema::Texture& texture, std:
   return {};
 }
 
+const std::string& TextureAverager::Names::with(const std::string& name, const char* between) {
+  if (!name.empty() && seen.insert(name).second) list += (list.empty() ? "" : between) + name;
+  return list;
+}
+
 // Extends the cells to `size` cells from `first` on.
 void TextureAverager::cover(std::int64_t first, std::size_t size) {
   if (cells_.empty()) first_ = first;
@@ -64,20 +69,19 @@ void TextureAverager::narrow_band(const schema::Texture& texture) {
   }
 }
 
-// Keeps the text members that are the same in all textures; recordings may differ in subject, finger and
-// surface.
+// Keeps the text members that are the same in all textures; recordings may differ in subject and finger.
+// Surfaces and simulations are listed.
 void TextureAverager::keep_common_members(const schema::Texture& texture) {
   const auto keep = [](std::string& kept, const std::string& said) {
     if (kept != said) kept.clear();
   };
-  keep(model_.surface, texture.surface);
   keep(model_.subject, texture.subject);
   keep(model_.finger, texture.finger);
   keep(model_.notes, texture.notes);
   keep(model_.source.recording_sha256, texture.source.recording_sha256);
-  if (model_.simulated.empty()) model_.simulated = texture.simulated;
-  const std::string& name = texture.source.recording;
-  if (recordings_.insert(name).second && recordings_.size() > 1) model_.source.recording += ", " + name;
+  model_.surface = surfaces_.with(texture.surface, "; ");
+  model_.simulated = simulations_.with(texture.simulated, "; ");
+  model_.source.recording = recordings_.with(texture.source.recording, ", ");
 }
 
 schema::Result<void> TextureAverager::add(const schema::Texture& texture,

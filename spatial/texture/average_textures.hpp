@@ -40,6 +40,12 @@ class TextureAverager {
   struct Stretch {
     std::size_t begin = 0, end = 0;
   };
+  // Different names in the order of their first use.
+  struct Names {
+    const std::string& with(const std::string& name, const char* between);
+    std::set<std::string> seen;
+    std::string list;
+  };
   schema::Result<void> check(const schema::Texture& texture, std::int64_t first) const;
   void cover(std::int64_t first, std::size_t size);
   void narrow_band(const schema::Texture& texture);
@@ -55,7 +61,7 @@ class TextureAverager {
   std::vector<schema::AveragedStroke> strokes_;
   std::map<std::int64_t, schema::BandPoint> band_;  // by tenths of a millimetre on the bench
   double speeds_mps_ = 0;
-  std::set<std::string> recordings_;
+  Names recordings_, surfaces_, simulations_;
 };
 
 }  // namespace tacto::spatial

@@ -58,6 +58,8 @@ def table_one_comes_back():
         assert figures[key]["reported"] == reported and abs(figures[key]["by_table_i"] - by_table) <= within, figures[key]
     assert figures["r_squared_actuator"]["identified"] == said["r_squared"] and "identified" not in figures["r_squared_sensor"], figures
     assert "simulated" in said and "SIMULATED" in pathlib.Path("bench.svg").read_text()
+    by = json.loads(pathlib.Path("bench.transducer.json").read_text())["identification"]["simulated"]
+    assert "emulated device" in by and "surface" not in by and "finger" not in by and "grating" not in by, by
     assert json.load(open("bench.transducer.json"))["identification"]["misfit"] is False
     assert tacto.run_json("info", "bench.transducer.json")["identification_usable"] is True
     assert tacto.run_json("validate", "bench.transducer.json")["valid"] is True

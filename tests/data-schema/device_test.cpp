@@ -64,7 +64,7 @@ TEST_F(DeviceFile, ThePresetHasThePapersFrictionAndSaysWhatIsOurs) {
 TEST_F(DeviceFile, ReadsBackToTheBit) {
   Device device = preset_;
   device.axes.resize(1);
-  device.axes[0] = {"z", 0.1 / 3, 1.17, 0.01, 1e-6 / 3, -0.05, 0.07, 9.7, 2.3, ""};
+  device.axes[0] = {"z", 0.1 / 3, 1.17, 0.01, 1e-6 / 3, -0.05, 0.07, 9.7, 2.3};
   device.delay_s = 1e-4 / 3;
   device.rates_hz = {100, 1000.0 / 3};
   device.transducer = "wiertlewski2011";
@@ -164,9 +164,9 @@ TEST_F(DeviceFile, FaultsOfFormAreNamedByJsonPointer) {
 }
 
 TEST_F(DeviceFile, WhatIsMisspeltIsRefusedWithTheNearest) {
-  expect_error([](auto& body) { body["axes"][1]["encoder_stp_m"] = 1; }, ErrorKind::malformed, "#/axes/1",
-               "did you mean 'encoder_step_m'?");
-  expect_error([](auto& body) { body["slew_n_per_ms"] = 1; }, ErrorKind::malformed, "",
+  expect_error([](auto& body) { body["axes"][1]["encoder_stp_m"] = 1; }, ErrorKind::malformed,
+               "#/axes/1/encoder_stp_m", "did you mean 'encoder_step_m'?");
+  expect_error([](auto& body) { body["slew_n_per_ms"] = 1; }, ErrorKind::malformed, "#/slew_n_per_ms",
                "did you mean 'slew_n_per_s'?");
   // A required member that is misspelt is missing, too.
   expect_error(

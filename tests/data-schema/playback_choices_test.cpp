@@ -79,11 +79,8 @@ TEST(PlaybackChoices, WhatIsMisspeltIsNamed) {
   const auto wrong = parse_control_request(request + R"("playback":{"interpolaton":"sinc"}})");
   ASSERT_FALSE(wrong);
   EXPECT_NE(wrong.error().what.find("'interpolaton'"), std::string::npos) << message(wrong.error());
-  EXPECT_EQ(wrong.error().where, "request#/playback");
+  EXPECT_EQ(wrong.error().where, "request#/playback/interpolaton");
   EXPECT_EQ(wrong.error().remedy, "did you mean 'interpolation'?");
-  const auto passed = parse_control_request(request + R"("at_mm":3,"gian":1})");
-  ASSERT_TRUE(passed) << message(passed.error());
-  EXPECT_EQ(passed->passed_over, (std::vector<std::string>{"at_mm", "gian"}));
 }
 
 TEST(PlaybackChoices, WrongOnesAreNamedByJsonPointer) {

@@ -11,11 +11,11 @@
 #include <set>
 #include <tuple>
 
+#include "data-schema/base/unknown_note.hpp"
 #include "data-schema/check/check.hpp"
 #include "data-schema/files/embedded_files.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/scene/atoms.hpp"
-#include "data-schema/scene/newer_version.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
@@ -267,22 +267,23 @@ TEST(ScenePatches, AnUnknownTypeIsRefusedWithTheNearest) {
 
 TEST(ScenePatches, AnUnknownMemberIsRefusedWithTheNearest) {
   const auto bad = ErrorKind::malformed;
-  expect_refused([](Body& b) { layer(b, 1)["filter_margn"] = 1; }, bad, "s#/patches/0/layers/1",
+  expect_refused([](Body& b) { layer(b, 1)["filter_margn"] = 1; }, bad, "s#/patches/0/layers/1/filter_margn",
                  "did you mean 'filter_margin'?");
   // A member of another kind.
-  expect_refused([](Body& b) { layer(b, 5)["mass_kg"] = 1; }, bad, "s#/patches/0/layers/5",
+  expect_refused([](Body& b) { layer(b, 5)["mass_kg"] = 1; }, bad, "s#/patches/0/layers/5/mass_kg",
                  "the known members are type, damping_n_s_per_m");
   expect_refused(
       [](Body& b) {
         layer(b, 6)["mass_kg"] = {{"value", 1}, {"slider", {{"from", 0}, {"to", 2}}}, {"unit", 1}};
       },
-      bad, "s#/patches/0/layers/6/mass_kg", "'unit' is unknown here");
-  expect_refused([](Body& b) { b["patches"][0]["angel_deg"] = 1; }, bad, "s#/patches/0",
+      bad, "s#/patches/0/layers/6/mass_kg/unit", "'unit' is unknown here");
+  expect_refused([](Body& b) { b["patches"][0]["angel_deg"] = 1; }, bad, "s#/patches/0/angel_deg",
                  "did you mean 'angle_deg'?");
-  expect_refused([](Body& b) { b["patches"][0]["place"]["z_m"] = 1; }, bad, "s#/patches/0/place", "'z_m'");
-  expect_refused([](Body& b) { b["patches"][0]["size"]["depth_m"] = 1; }, bad, "s#/patches/0/size",
+  expect_refused([](Body& b) { b["patches"][0]["place"]["z_m"] = 1; }, bad, "s#/patches/0/place/z_m",
+                 "'z_m'");
+  expect_refused([](Body& b) { b["patches"][0]["size"]["depth_m"] = 1; }, bad, "s#/patches/0/size/depth_m",
                  "'depth_m'");
-  expect_refused([](Body& b) { b["pathces"] = 1; }, bad, "s", "did you mean 'patches'?");
+  expect_refused([](Body& b) { b["pathces"] = 1; }, bad, "s#/pathces", "did you mean 'patches'?");
   expect_refused(
       [](Body& b) {
         layer(b, 0)["kapa_n"] = layer(b, 0)["kappa_n"];
@@ -429,9 +430,9 @@ TEST(ScenePatches, ANewerMinorVersionIsReadAndItsMembersAreKept) {
   const auto scene = parsed(body);
   ASSERT_TRUE(scene) << message(scene.error());
   EXPECT_EQ(scene->newer_version, "1.7");
-  const std::string note = note_of_newer_version("s", *scene);
-  for (const char* member : {"light", "patches/0/wear/rate", "patches/0/place/z_m",
-                             "patches/0/layers/5/shear", "patches/0/layers/5/damping_n_s_per_m/slider/step"})
+  const std::string note = unknown_note("s", *scene);
+  for (const char* member : {"light", "patches/0/wear", "patches/0/place/z_m", "patches/0/layers/5/shear",
+                             "patches/0/layers/5/damping_n_s_per_m/slider/step"})
     EXPECT_NE(note.find(member), std::string::npos) << note;
   const Body again = written(*scene);
   EXPECT_EQ(again["version"], "1.7");

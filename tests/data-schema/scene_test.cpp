@@ -90,11 +90,11 @@ TEST(Scene, FaultsAreNamedByJsonPointer) {
 TEST(Scene, WhatIsMisspeltIsRefusedWithTheNearest) {
   const std::string body = R"("type":"texture","texture":"oak","at_m":0,"gain_m_per_n":0.001)";
   for (const auto& [text, where, remedy] :
-       {std::tuple{scene_text("{" + body + R"(,"end":"mirror"})"), "s#/layers/0", "did you mean 'ends'?"},
+       {std::tuple{scene_text("{" + body + R"(,"end":"mirror"})"), "s#/layers/0/end", "did you mean 'ends'?"},
         std::tuple{
             R"({"kind":"scene","version":"1.0","playback":{"energy_rms":1},"layers":[{)" + body + "}]}",
-            "s#/playback", "did you mean 'energy_rms_v'?"},
-        std::tuple{R"({"kind":"scene","version":"1.0","light":"dim","layers":[{)" + body + "}]}", "s",
+            "s#/playback/energy_rms", "did you mean 'energy_rms_v'?"},
+        std::tuple{R"({"kind":"scene","version":"1.0","light":"dim","layers":[{)" + body + "}]}", "s#/light",
                    "the known members are kind, version, name, notes, created, creator, playback, layers, "
                    "patches"}}) {
     const auto scene = parse_scene(text, "s");

@@ -712,9 +712,8 @@ def what_was_chosen_is_told():
         status = client.must(request="status")  # the emulated finger presses with 0.5 N
         assert status["gated_ticks"] > 100 and status["drive_peak_v"] == 0, status
         client.must(request="disarm")
-        answer = client.must(request="load", file="s", playback={"interpolation": "sinc"}, at_mm=3)
+        answer = client.must(request="load", file="s", playback={"interpolation": "sinc"}, x_trial=3)
         assert (answer["interpolation"], answer["inverse"], answer["contact_on_n"]) == ("sinc", "magnitude", 0.2), answer
-        assert answer["passed_over"] == "at_mm", answer
         for misplaced in ({"request": "arm", "playback": {"energy_rms_v": 0.1}}, {"request": "gain", "gain": 1, "playback": {}},
                           {"request": "load", "file": "s", "gain": 0.5}, {"request": "play", "gain": 0.01}, {"request": "status", "save": True}):
             refused = client.ask(**misplaced)
@@ -727,8 +726,11 @@ def what_was_chosen_is_told():
         assert not answer["ok"] and "limits" in answer["error"]["what"] and "disarm" in answer["error"]["remedy"], answer
         answer = client.ask(request="load", file="s", playback={"interpolaton": "sinc"})
         assert not answer["ok"] and "'interpolation'" in answer["error"]["remedy"], answer
-        for request in ({"request": "status"}, {"request": "stop"}):
-            assert client.must(**request, gian=1)["passed_over"] == "gian", request
+        for request, nearest in (({"request": "load", "file": "oak", "gain_m_per_N": 1e-5}, "gain_m_per_n"), ({"request": "status", "sav": True}, "save"),
+                                 ({"request": "arm", "while_conected": True}, "while_connected")):
+            error = client.ask(**request)["error"]
+            assert error["fault"] == 3 and error["where"] == f"request#/{list(request)[-1]}" and f"'{nearest}'" in error["remedy"], error
+        assert client.must(request="status")["state"] == "playing"
         answer = client.ask(request="load", file="s", playback={"contact_on_n": -1})
         assert not answer["ok"] and "from 0 to 100" in answer["error"]["remedy"], answer
         out, _ = tacto.run("ctl", "load", "s", "--interpolation", "nearest", "--json", "--socket", "control")

@@ -140,7 +140,7 @@ def a_newer_version_is_said_once():
         pathlib.Path(file).write_text(json.dumps(body))
 
     newer = {}
-    for file, names, extra in ((None, "", {}), ("s.scene.json", "light, layers/0/warmth", {"light": "dim", "layers": [{**layer, "warmth": 3}]}),
+    for file, names, extra in ((None, "", {}), ("s.scene.json", "layers/0/warmth, light", {"light": "dim", "layers": [{**layer, "warmth": 3}]}),
                                ("oak.texture.json", "humidity_map", {"humidity_map": [1]}), ("mine.transducer.json", "colour", {"colour": "red"})):
         if file:
             newer[file] = names

@@ -99,6 +99,41 @@ def many_recordings_go_on_past_one_that_fails():
     tacto.run("spatial", "ash.texture.json", "elm.csv", code=UNSUITABLE)
 
 
+def recordings_that_do_not_belong_together_are_not_averaged():
+    """Different surfaces, measured with simulated, and the same samples by another name: refused, with both names."""
+    for name, kind in (("one", "C"), ("two", "C"), ("other", "D")):
+        tacto.run("record", "-d", f"sim:surface={kind},seed={len(name)}{ord(name[0])}", "--time", "2s", "-o", name)
+    position_m, force_n = forth_and_back(1)
+    import_touch("real", position_m, force_n)
+    average = ("spatial", "one", "two", "--average", "--both-ways", "-o", "mean")
+    simulated = json.loads(pathlib.Path("one.json").read_text())["simulated"]
+    tacto.run(*average)
+    mean = json.loads(pathlib.Path("mean.texture.json").read_text())
+    assert mean["source"]["recording"] == "one.json, two.json" or mean["source"]["recording"] == "one, two", mean["source"]
+    assert mean["surface"].startswith("C") and ";" not in mean["surface"] and simulated in mean["simulated"], mean
+
+    mixed = ("spatial", "one", "other", "real", "--average", "--both-ways", "-o", "mixed")
+    for recordings in (("one", "other"), ("one", "real"), ("real", "one")):
+        said = tacto.run("spatial", *recordings, "--average", "--both-ways", "-o", "mixed", code=UNSUITABLE)[1]
+        assert all(name in said for name in recordings) and "--mix" in said, said
+    assert not list(pathlib.Path().glob("mixed*"))
+    tacto.run(*mixed, "--mix")
+    mean = json.loads(pathlib.Path("mixed.texture.json").read_text())
+    surfaces = [json.loads(pathlib.Path(f"{name}.json").read_text())["surface"] for name in ("one", "other")]
+    assert mean["surface"] == "; ".join(surfaces) and simulated in mean["simulated"], mean
+    assert {stroke["recording"].removesuffix(".json") for stroke in mean["average"]["strokes"]} == {"one", "other", "real"}, mean["average"]
+
+    for ending in ("json", "wav"):
+        pathlib.Path(f"soft.{ending}").symlink_to(f"one.{ending}")
+        pathlib.Path(f"hard.{ending}").hardlink_to(f"one.{ending}")
+        shutil.copy(f"one.{ending}", f"copy.{ending}")
+    for again, code in (("soft", UNSUITABLE), ("hard", UNSUITABLE), ("copy", UNSUITABLE), ("./one.json", USAGE), (pathlib.Path("one").absolute(), USAGE)):
+        for mix in ((), ("--mix",)):
+            said = tacto.run("spatial", "one", again, "--average", "-o", "twice", *mix, code=code)[1]
+            assert "one" in said and str(again) in said, said
+    assert not list(pathlib.Path().glob("twice*"))
+
+
 def averages_keep_the_spread():
     pairs, noise_n = 8, 0.05
     import_touch("oak", *forth_and_back(pairs, noise_n))
@@ -256,7 +291,8 @@ def long_recordings_need_little_memory():
 
 
 if __name__ == "__main__":
-    for test in (nothing_is_replaced_in_silence, many_recordings_go_on_past_one_that_fails, averages_keep_the_spread,
+    for test in (nothing_is_replaced_in_silence, many_recordings_go_on_past_one_that_fails,
+                 recordings_that_do_not_belong_together_are_not_averaged, averages_keep_the_spread,
                  strokes_that_slipped_are_aligned_by_correlation, a_counter_that_ran_over_is_put_right,
                  a_noisy_lvdt_gives_the_same_texture, bands_and_methods_are_chosen, a_way_back_is_warned_of, fingers_up_are_told_by_the_normal_force,
                  long_recordings_need_little_memory):

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A spectrogram's netCDF file: decibels for plots, and a checksum that detects changed cells."""
+"""A spectrogram's netCDF file: decibels for plots, and a checksum that detects changed cells, units and attributes."""
 import hashlib
 import shutil
+import struct
 
 import netCDF4
 import numpy as np
@@ -19,8 +20,12 @@ def checksum(data, stroke=None):
     whole = ~np.isnan(rows.density.values).all(axis=1)
     parts = [rows.density.values[whole], rows.known_from.values[whole], rows.known_to.values[whole],
              rows.position.values[whole], rows.spatial_frequency.values]
-    return hashlib.sha256(b"".join(np.ascontiguousarray(part).astype(part.dtype.newbyteorder("<")).tobytes()
-                                   for part in parts)).hexdigest()
+    texts = [data.attrs.get(name, "") for name in ("texture", "simulated", "quantity", "quantity_unit", "scaling", "window", "detrend")]
+    numbers = [data.attrs[name] for name in ("window_mm", "hop_mm", "pitch_mm", "window_coherent_gain", "padded_samples", "decimation")]
+    units = [data[name].attrs["units"] for name in ("position", "spatial_frequency", "known_from", "known_to", "density", "density_db")]
+    return hashlib.sha256(b"".join(np.ascontiguousarray(part).astype(part.dtype.newbyteorder("<")).tobytes() for part in parts)
+                          + "".join(text + "\n" for text in texts).encode() + struct.pack(f"<{len(numbers)}d", *numbers)
+                          + "".join(unit + "\n" for unit in units).encode()).hexdigest()
 
 
 def make():
@@ -67,20 +72,35 @@ def changed_cells_are_found():
             assert "changed.nc" in report, report
 
 
-def files_without_a_checksum_still_read():
-    """Files of version 1.1: no decibels, no checksum."""
+def changed_attributes_are_found():
+    make()
+    for name in ("oak.nc", "all.nc"):
+        for variable, attribute, value in ((None, "hop_mm", 2.5), (None, "window_mm", 3), (None, "window", "Hann"), (None, "quantity_unit", "mN"),
+                                           (None, "simulated", "nothing"), ("position", "units", "m"), ("density", "units", "N2 m"),
+                                           ("spatial_frequency", "units", "1/m"), ("density_db", "units", "Np"), ("known_to", "units", "1/m")):
+            shutil.copy(name, "changed.nc")
+            with netCDF4.Dataset("changed.nc", "a") as file:
+                (file[variable] if variable else file).setncattr(attribute, value)
+            assert not tacto.run_json("validate", "changed.nc", code=MALFORMED)["valid"], (variable, attribute)
+        shutil.copy(name, "changed.nc")
+        with netCDF4.Dataset("changed.nc", "a") as file:
+            file.delncattr("simulated")  # measured data have none
+        assert not tacto.run_json("validate", "changed.nc", code=MALFORMED)["valid"]
+
+
+def a_file_without_a_checksum_is_read_and_invalid():
     make()
     with xarray.open_dataset("oak.nc", mask_and_scale=False) as data:
-        old = data.drop_vars("density_db")
-        old.attrs = {**data.attrs, "version": "1.1"}
+        old = data.copy()
         del old.attrs["sha256"]
         old.to_netcdf("old.nc")
-    said, _ = tacto.run("validate", "old.nc")
-    assert "no checksum" in said, said
+    report = tacto.run_json("validate", "old.nc", code=MALFORMED)
+    assert not report["valid"] and [fault["where"] for fault in report["faults"]] == ["old.nc"] and "sha256" in report["faults"][0]["what"], report
     new, before = (tacto.run_json("info", name) for name in ("oak.nc", "old.nc"))
     assert {**new, "file": ""} == {**before, "file": ""}
 
 
 if __name__ == "__main__":
-    for test in (decibels_stand_beside_densities_frequency_first, changed_cells_are_found, files_without_a_checksum_still_read):
+    for test in (decibels_stand_beside_densities_frequency_first, changed_cells_are_found, changed_attributes_are_found,
+                 a_file_without_a_checksum_is_read_and_invalid):
         tacto.in_folder(test)

@@ -38,8 +38,8 @@ def run(*arguments, code=0, cwd=None):
     return done.stdout, unwrapped(done.stderr)
 
 
-def run_json(*arguments, cwd=None):
-    return json.loads(run(*arguments, "--json", cwd=cwd)[0])
+def run_json(*arguments, code=0, cwd=None):
+    return json.loads(run(*arguments, "--json", code=code, cwd=cwd)[0])
 
 
 def play_on_host(*arguments, name):

@@ -10,8 +10,8 @@ MAY_INCLUDE = {
         "data-schema/{base device files json kinds recording results scene session spectrogram texture transducer "
         "wav}",
     "data-schema/cli":
-        "data-schema/{calibration check command device kinds recording report results scene session spectrogram texture "
-        "transducer}",
+        "data-schema/{base calibration check command device kinds recording report results scene session spectrogram "
+        "texture transducer}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
     "data-schema/device": "data-schema/{base json}",

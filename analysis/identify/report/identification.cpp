@@ -135,7 +135,7 @@ Result<DrivenResponse> driven_response(firmware_host::Device& device, IdentifyMe
   }
   data.of_device = true;
   data.source = device.capabilities().uri;
-  data.simulated = device.capabilities().simulated;
+  data.simulated = device.capabilities().simulated_device;
   data.conditions = fmt::format("{} of {} from {} to {}", method_words(method),
                                 schema::for_people(plan.amplitude_v, schema::Dimension::voltage),
                                 schema::for_people(plan.low_hz, schema::Dimension::frequency),

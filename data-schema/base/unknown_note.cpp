@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/base/unknown_note.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace tacto::schema {
+namespace {
+
+// A damaged or foreign file may have thousands of them.
+std::string names_of(const std::vector<std::string>& members) {
+  constexpr std::size_t kMost = 10;
+  const auto shown = static_cast<std::ptrdiff_t>(std::min(members.size(), kMost));
+  const std::string names = fmt::format("{}", fmt::join(members.begin(), members.begin() + shown, ", "));
+  return members.size() <= kMost ? names : fmt::format("{} and {} more", names, members.size() - kMost);
+}
+
+}  // namespace
+
+std::string unknown_note(const std::string& path, const std::string& newer_version,
+                         const std::vector<std::string>& unknown_members) {
+  const std::string names = unknown_members.empty() ? "" : ": " + names_of(unknown_members);
+  if (!newer_version.empty())
+    return fmt::format("{}: its version {} is newer than this program's; unknown members are ignored{}", path,
+                       newer_version, names);
+  return names.empty() ? "" : fmt::format("{}: unknown members are ignored{}", path, names);
+}
+
+}  // namespace tacto::schema
