@@ -9,13 +9,13 @@
 #include "analysis/compare/along_path.hpp"
 #include "analysis/compare/band_sums.hpp"
 #include "analysis/compare/played_texture.hpp"
-#include "spatial/features/band_kept.hpp"
 #include "analysis/fidelity/emulated_pass.hpp"
 #include "analysis/fidelity/emulated_trays.hpp"
 #include "analysis/fidelity/scratch_folder.hpp"
 #include "analysis/fidelity/tray_displacement.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "playback/model/finger_path.hpp"
+#include "spatial/features/band_kept.hpp"
 #include "spatial/texture/valid_band.hpp"
 
 namespace tacto::analysis {
