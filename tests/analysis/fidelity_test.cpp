@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "spatial/features/band_kept.hpp"
 #include "analysis/fidelity/fidelity_page.hpp"
+#include "spatial/features/band_kept.hpp"
 #include "tests/analysis/compare_textures.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
