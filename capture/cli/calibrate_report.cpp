@@ -5,6 +5,7 @@
 #include "capture/import/plausible_scale.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/report/report.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -59,7 +60,7 @@ schema::Result<cli::Report> kept(cli::Report report, const CalibrateOptions& opt
       keep_calibration(take.header, take.device_name, std::move(entries), options.calibration, now);
   TACTO_TRY(path);
   report.add("date", now).add("file", *path);
-  return report.add("next", "tactograph record -d " + take.header.device + " -o oak");
+  return report.add("next", "tactograph record -d " + cli::shell_word(take.header.device) + " -o oak");
 }
 
 }  // namespace tacto::capture

@@ -13,6 +13,7 @@
 #include "capture/import/height_profile.hpp"
 #include "data-schema/report/progress.hpp"
 #include "data-schema/report/report.hpp"
+#include "data-schema/report/terminal.hpp"
 #include "data-schema/report/warnings.hpp"
 
 namespace tacto::capture {
@@ -103,27 +104,19 @@ std::vector<std::string> texture_channels(const schema::RecordingHeader& header)
   return usual == names.end() ? names : std::vector{*usual};
 }
 
-std::string in_shell(const std::string& name) {
-  const bool plain = name.find_first_of(" '\"$&;()<>|*?`\\#~!") == std::string::npos;
-  if (plain) return name;
-  std::string quoted = "'";
-  for (const char c : name) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 // A command that can be run unchanged; the other possible channels follow in a shell comment.
 std::string next_command(const schema::Recording& recording) {
   const auto& channels = recording.header.channels;
   const bool placed = std::ranges::find(channels, "position", &schema::Channel::quantity) != channels.end();
   const auto textures = texture_channels(recording.header);
-  const std::string name = in_shell(recording.stem);
+  const std::string name = cli::shell_word(recording.stem);
   if (!placed || textures.empty()) return fmt::format("tactograph info {}", name);
   if (textures.front() == "tangential_force") return fmt::format("tactograph spatial {0} -o {0}", name);
   std::string others;
   for (std::size_t i = 1; i < textures.size(); ++i)
-    others += (i == 1 ? "  # or --channel " : ", ") + in_shell(textures[i]);
-  return fmt::format("tactograph spatial {0} --channel {1} -o {0}{2}", name, in_shell(textures.front()),
-                     others);
+    others += (i == 1 ? "  # or --channel " : ", ") + cli::shell_word(textures[i]);
+  return fmt::format("tactograph spatial {0} --channel {1} -o {0}{2}", name,
+                     cli::shell_word(textures.front()), others);
 }
 
 std::string outliers_of(const Imported& imported, const ImportRequest& request) {
@@ -162,7 +155,8 @@ schema::Result<cli::Report> run_profile(const ImportRequest& request) {
   report.add("direction", profile.direction).add("unevenness_m", profile.unevenness_m);
   report.add("lowest_m", lowest).add("highest_m", highest);
   report.add("files", std::vector{stem + ".texture.wav", stem + ".texture.json"});
-  return report.add("next", fmt::format("tactograph spectrogram {0} -o {0}.png --window 1mm", stem));
+  return report.add("next", fmt::format("tactograph spectrogram {} -o {} --window 1mm", cli::shell_word(stem),
+                                        cli::shell_word(stem + ".png")));
 }
 
 schema::Result<cli::Report> run_import(const ImportRequest& request) {

@@ -124,7 +124,7 @@ cli::Report report_on(const Recorded& recorded, const firmware_host::Device& dev
   if (!header.ended.empty()) report.add("ended", header.ended);
   if (!header.warnings.empty()) report.add("warnings", header.warnings);
   report.add("files", std::vector{stem + ".wav", stem + ".json"});
-  return report.add("next", "tactograph spatial " + stem + " -o " + stem);
+  return report.add("next", fmt::format("tactograph spatial {0} -o {0}", cli::shell_word(stem)));
 }
 
 Result<std::string> chosen_name(const RecordOptions& options) {

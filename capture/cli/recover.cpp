@@ -8,6 +8,7 @@
 #include "data-schema/files/leftover_files.hpp"
 #include "data-schema/recording/live_recording.hpp"
 #include "data-schema/report/report.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -46,7 +47,8 @@ schema::Result<cli::Report> run_recover(const std::string& name) {
   if (!recovered && !nothing_else) return schema::forward_error(recovered);
   cli::Report report = recovered ? report_on(*recovered) : report_on_nothing();
   if (!removed.empty()) report.add("removed_temporary_files", lines_on(removed));
-  return recovered ? report.add("next", "tactograph validate " + recovered->recording.stem) : report;
+  return recovered ? report.add("next", "tactograph validate " + cli::shell_word(recovered->recording.stem))
+                   : report;
 }
 
 cli::Action declare_recover(CLI::App& app) {

@@ -123,12 +123,22 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-// The first unknown argument, with the option that was probably meant.
-std::string nearest_option(const CLI::App& app, const CLI::App& verb) {
+// An unknown option, with the one that was probably meant; else, for an option or argument that is required,
+// "'--device' is missing: " and its description; else CLI11's own words.
+std::string fault_of(const CLI::App& app, const CLI::App& verb, const CLI::ParseError& error) {
   for (const std::string& argument : app.remaining(true))
-    if (argument.starts_with("--"))
-      return schema::did_you_mean(argument.substr(0, argument.find('=')), option_names(verb));
-  return "";
+    if (argument.starts_with("--")) {
+      const std::string name = argument.substr(0, argument.find('='));
+      return fmt::format("there is no option '{}'{}", name, schema::did_you_mean(name, option_names(verb)));
+    }
+  const std::string what = error.what();
+  if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) return what;
+  for (const CLI::Option* option : verb.get_options()) {
+    const std::string name = option->get_name(option->get_positional());
+    if (option->get_required() && option->count() == 0 && what.starts_with(name))
+      return fmt::format("'{}' is missing: {}", name, option->get_description());
+  }
+  return what;
 }
 
 int print_parse_error(const CLI::App& app, const CLI::ParseError& error, bool json) {
@@ -136,7 +146,7 @@ int print_parse_error(const CLI::App& app, const CLI::ParseError& error, bool js
   const auto parsed = app.get_subcommands();
   const CLI::App& verb = parsed.empty() ? app : *parsed.front();
   const std::string name = parsed.empty() ? "" : verb.get_name() + " ";
-  return print_error({schema::ErrorKind::usage, error.what() + nearest_option(app, verb), "",
+  return print_error({schema::ErrorKind::usage, fault_of(app, verb, error), "",
                       fmt::format("see 'tactograph {}--help'", name)},
                      json);
 }

@@ -84,7 +84,7 @@ bool is_usual(std::string_view verb, const CLI::Option& option) {
 void put_below_headings(std::string_view verb, CLI::App& app) {
   std::vector<CLI::Option*> named;
   for (CLI::Option* option : app.get_options())
-    if (!option->get_positional()) named.push_back(option);
+    if (!option->get_positional() && !option->get_group().empty()) named.push_back(option);  // no hidden ones
   if (named.size() <= kUsual) return;
   for (CLI::Option* option : named)
     option->group(is_usual(verb, *option) ? "Usual options" : heading_of(*option));

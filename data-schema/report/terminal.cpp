@@ -29,6 +29,13 @@ std::string without_controls(const std::string& text) {
   return escaped(text, "\n\t");
 }
 
+std::string shell_word(const std::string& text) {
+  if (!text.empty() && text.find_first_of(" '\"$&;()<>|*?`\\#~!") == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 std::string on_one_line(const std::string& text) {
   return escaped(text, "");
 }

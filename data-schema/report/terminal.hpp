@@ -19,6 +19,9 @@ inline void write_message(std::string_view text) noexcept {
 /// tabs stay.
 std::string without_controls(const std::string& text);
 
+/// A word of a command line: in single quotes if a shell would read it otherwise.
+std::string shell_word(const std::string& text);
+
 /// Also line ends and tabs: for text that must stay one line.
 std::string on_one_line(const std::string& text);
 

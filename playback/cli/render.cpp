@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -51,7 +52,10 @@ void add_files(CLI::App& app, RenderVerbOptions& o) {
   app.add_option("--path", o.path,
                  "Finger path: CSV with the columns time_s,position_m; interpolated by monotone cubics")
       ->required();
-  app.add_option("--transducer", o.transducer, "Transducer: a preset or NAME.transducer.json")->required();
+  app.add_option(
+         "--transducer", o.transducer,
+         fmt::format("A preset ({}) or NAME.transducer.json", fmt::join(schema::preset_names(), ", ")))
+      ->required();
   cli::declare_unfit_transducer(app, o.what.unfit_transducer);
   app.add_flag("--implausible", o.what.implausible,
                "Accept a transducer file with impossible numbers, for example a mass of 1e-12 kg");

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command as a whole: help, JSON, exit codes, completion, and a session in files."""
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -27,6 +28,23 @@ def words_that_are_no_verbs_are_refused():
     for arguments in ([], ["carve"], ["info"], ["info", "--frob"]):
         _, err = tacto.run(*arguments, code=2)
         assert err.startswith("tactograph: "), err
+
+
+def what_is_missing_is_named():
+    """With its description, among them the presets; a misspelt option is named before what it should have been."""
+    assert "'--device'" in tacto.run("play", "oak", code=2)[1]
+    assert "wiertlewski2011-as-printed" in tacto.run("render", "oak", "--path", "p.csv", "-o", "d.wav", code=2)[1]
+    said = tacto.run("play", "oak", "--devic", "sim:", code=2)[1]
+    assert "'--devic'" in said and "'--device'" in said, said
+    assert "--force" not in tacto.run("play", "--help")[0]  # it replaces nothing there, and is hidden
+
+
+def the_next_command_can_be_run():
+    """Also for a name with a space."""
+    following = tacto.run_json("record", "-d", "sim:surface=B,speed=50mm/s,seed=2", "--time", "1s", "-o", "a b")["next"]
+    environment = {**os.environ, "PATH": f"{pathlib.Path(tacto.COMMAND).parent}:{os.environ['PATH']}"}
+    done = subprocess.run(["bash", "-c", following], capture_output=True, text=True, env=environment)
+    assert done.returncode == 0 and list(pathlib.Path(".").glob("a b*.texture.json")), (following, done)
 
 
 def json_goes_to_stdout_alone():
@@ -146,7 +164,7 @@ def help_begins_with_the_usual_options():
 
 
 if __name__ == "__main__":
-    for test in (every_verb_helps_with_an_example, words_that_are_no_verbs_are_refused, json_goes_to_stdout_alone,
+    for test in (every_verb_helps_with_an_example, words_that_are_no_verbs_are_refused, what_is_missing_is_named, the_next_command_can_be_run, json_goes_to_stdout_alone,
                  an_emulated_finger_strokes_for_the_time_asked,
                  a_full_output_is_an_error, closed_outputs_get_nothing, bash_completes,
                  completion_offers_values, the_nearest_word_is_named, errors_are_json_where_the_result_is,
