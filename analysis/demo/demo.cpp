@@ -211,14 +211,6 @@ Result<void> replayed(const Made& made, const schema::Transducer& transducer, De
   return {};
 }
 
-Result<void> make_folder(const std::string& folder) {
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (!failure) return {};
-  return schema::fail(schema::ErrorKind::cannot_write, "the folder can't be made: " + failure.message(),
-                      folder, "choose another with -o");
-}
-
 Result<void> check_folder(const std::string& folder, const std::string& page) {
   for (const Sample& sample : kSamples)
     if (auto free = check_replaceable(folder + "/" + sample.surface); !free) return free;
@@ -239,7 +231,6 @@ Result<void> write_page(const DemoSummary& summary) {
 }  // namespace
 
 Result<DemoSummary> run_demo(const std::string& folder, const std::function<void(double)>& progress) {
-  TACTO_TRY(make_folder(folder));
   const auto transducer = schema::read_transducer("wiertlewski2011");
   TACTO_TRY(transducer);
   DemoSummary summary;

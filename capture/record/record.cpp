@@ -29,14 +29,9 @@ constexpr double kBlock_s = 0.02;
 constexpr auto kViewEvery = std::chrono::milliseconds(100);
 constexpr double kSpare_bytes = 1 << 20;  // reserved on the disk for the sidecar
 
-std::string folder_of(const std::string& name) {
-  const auto folder = std::filesystem::path(schema::stem_of(name, "")).parent_path();
-  return folder.empty() ? "." : folder.string();
-}
-
 double disk_left_bytes(const std::string& name) {
   std::error_code unknown;
-  const auto space = std::filesystem::space(folder_of(name), unknown);
+  const auto space = std::filesystem::space(schema::existing_folder_of(name), unknown);
   return unknown ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
 }
 
@@ -49,13 +44,6 @@ Result<std::uint64_t> frames_wanted(const RecordRequest& request, double rate_hz
                         fmt::format("{:g} s is not a possible duration of a recording", *request.time_s),
                         "time", "give a time above 0, for example 2s");
   return static_cast<std::uint64_t>(frames);
-}
-
-Result<void> check_folder(const RecordRequest& request) {
-  std::error_code unknown;
-  const std::string folder = folder_of(request.name);
-  if (std::filesystem::is_directory(folder, unknown)) return {};
-  return schema::fail(ErrorKind::cannot_write, "there is no such folder", folder, "create it first");
 }
 
 // A sidecar is UTF-8; text in another encoding cannot be recognised from its bytes alone.
@@ -87,7 +75,7 @@ Result<void> check_room(const RecordRequest& request, const schema::RecordingHea
                      : fmt::format("a recording needs {} of disk space to start", megabytes(needed));
   return schema::fail(
       ErrorKind::cannot_write, fmt::format("{}, but only {} are free", what, megabytes(left)),
-      folder_of(request.name),
+      schema::existing_folder_of(request.name),
       request.time_s ? "record for a shorter time, or to another disk" : "record to another disk");
 }
 
@@ -230,7 +218,6 @@ Result<schema::RecordingHeader> calibrated_header(const Device& device, const Re
 
 Result<Recorded> record(Device& device, const RecordRequest& request, const RecordHooks& hooks) {
   TACTO_TRY(check_words(request));
-  TACTO_TRY(check_folder(request));
   const auto frames = frames_wanted(request, device.capabilities().sample_rate_hz);
   TACTO_TRY(frames);
   auto header = calibrated_header(device, request);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "data-schema/base/sha256.hpp"
+#include "data-schema/files/event_file.hpp"
 #include "data-schema/files/leftover_files.hpp"
 #include "data-schema/files/pending_names.hpp"
 
@@ -82,9 +83,6 @@ tl::unexpected<Error> unwritable(const std::string& path, int error_number) {
 
 Result<void> check_target(const fs::path& path) {
   std::error_code ignored;
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!fs::is_directory(folder, ignored))
-    return fail(ErrorKind::cannot_write, "there is no such folder", folder.string(), "create it first");
   if (path.filename().empty() || fs::is_directory(path, ignored))
     return fail(ErrorKind::cannot_write, "is a folder, not a file", path.string());
   return {};
@@ -226,11 +224,17 @@ PendingFiles::~PendingFiles() {
 
 Result<std::string> PendingFiles::add(const std::string& path) {
   TACTO_TRY(check_target(path));
+  TACTO_TRY(folders_.make_for(path));
   remove_leftovers_of_file(path);
   const std::string temporary = temporary_name_for(path);
   PendingName* const name = pending_names().keep(temporary);
   pending_.push_back({temporary, path, name});
-  TACTO_TRY(write_all(temporary, path, ""));
+  auto begun = write_all(temporary, path, "");
+  if (!begun && existing_folder_of(path) != folder_of(path)) {  // another output's failure removed it again
+    TACTO_TRY(folders_.make_for(path));
+    begun = write_all(temporary, path, "");
+  }
+  TACTO_TRY(begun);
   return temporary;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/files/made_folders.hpp"
 
 namespace tacto::schema {
 
@@ -58,11 +59,12 @@ Result<void> check_wav_free(const std::string& path, Existing existing);
 Result<void> check_table_free(const std::string& path, Existing existing,
                               const std::function<bool(std::string_view beginning)>& ours);
 
-/// Removes all pending files of this process. For the handler of a signal that ends it: async-signal-safe.
+/// Removes all pending files of this process, and folders that it made and that are empty. For the handler of
+/// a signal that ends it: async-signal-safe.
 void remove_pending_files() noexcept;
 
-/// A set of files that are written beside their final names and renamed together at commit(). Until then, and
-/// after a failure, the folder is unchanged; the destructor removes leftovers.
+/// A set of files that are written beside their final names and renamed together at commit(). Missing folders
+/// are made. After a failure all folders are as before; the destructor removes leftovers.
 class PendingFiles {
  public:
   PendingFiles() = default;
@@ -71,7 +73,7 @@ class PendingFiles {
   ~PendingFiles();
 
   /// The temporary path to write what will be `path`, in the same folder; an empty file until it is written.
-  /// Errors: cannot_write, where the folder is absent or read-only, or where `path` is a folder.
+  /// Errors: cannot_write, where the folder cannot be made or is read-only, or where `path` is a folder.
   Result<std::string> add(const std::string& path);
   /// add() and the content at once.
   Result<void> write(const std::string& path, std::string_view content);
@@ -86,6 +88,7 @@ class PendingFiles {
     PendingName* name;
   };
   Result<void> sync_all() const;
+  MadeFolders folders_;
   std::vector<Pending> pending_;
 };
 

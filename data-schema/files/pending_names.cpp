@@ -30,6 +30,12 @@ void PendingNames::forget(PendingName* name) {
 void PendingNames::remove_all() const noexcept {
   for (const PendingName* name = first_.load(); name != nullptr; name = name->next)
     if (name->there.load()) unlink(name->path.c_str());
+  // An outer folder is empty only when the inner ones are removed.
+  for (bool removed = true; removed;) {
+    removed = false;
+    for (const PendingName* name = first_.load(); name != nullptr; name = name->next)
+      removed |= name->there.load() && rmdir(name->path.c_str()) == 0;
+  }
 }
 
 // Never destroyed: objects that outlive it may have pending files.

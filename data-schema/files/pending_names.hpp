@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of temporary files, readable for a signal handler.
+// Names of temporary files, and of folders made for outputs, readable for a signal handler.
 #pragma once
 
 #include <atomic>
@@ -22,7 +22,7 @@ class PendingNames {
  public:
   PendingName* keep(const std::string& path);
   void forget(PendingName* name);
-  /// Unlinks all files in the list. Async-signal-safe.
+  /// Removes all files in the list, and the folders that are empty then. Async-signal-safe.
   void remove_all() const noexcept;
 
  private:

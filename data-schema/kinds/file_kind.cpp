@@ -102,6 +102,12 @@ std::string_view kind_name(FileKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
+bool has_ending_of_kind(const std::string& path) {
+  return std::ranges::any_of(kEndings, [&](const auto& each) {
+    return each.kind != FileKind::recording && path.ends_with(each.text);
+  });
+}
+
 Result<std::vector<StoredFile>> stored_files(const std::string& name) {
   if (is_file(name))
     return named_in_full(name).map([](StoredFile file) { return std::vector{std::move(file)}; });

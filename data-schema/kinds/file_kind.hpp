@@ -30,6 +30,10 @@ enum class FileKind {
 /// "recording", "texture", ... as in the files' own member `kind`.
 std::string_view kind_name(FileKind kind);
 
+/// Whether a file's name has the ending of a kind, as "oak.texture.json"; not that of a recording,
+/// "oak.json".
+bool has_ending_of_kind(const std::string& path);
+
 /// A stored file. `path` is the file that contains the kind: a sidecar, a .nc, a .session; or the name of a
 /// preset.
 struct StoredFile {

@@ -18,6 +18,7 @@
 namespace tacto::schema {
 
 struct LiveRecording::State {
+  MadeFolders folders;
   std::string stem;
   RecordingHeader header;
   EventFile events;
@@ -43,6 +44,8 @@ Result<LiveRecording> LiveRecording::create(const std::string& name, RecordingHe
   TACTO_TRY(check_storable(header));
   const auto first = begin_line(header);
   TACTO_TRY(first);
+  MadeFolders folders;
+  TACTO_TRY(folders.make_for(wav));
   auto events = EventFile::create(events_path(stem));
   TACTO_TRY(events);
   auto writer = WavWriter::create_new(wav, header.sample_rate_hz, header.channels.size(), header.format);
@@ -54,8 +57,8 @@ Result<LiveRecording> LiveRecording::create(const std::string& name, RecordingHe
   TACTO_TRY(sync_path(folder_of(wav)));
   auto sync = BackgroundSync::start({wav, events_path(stem)}, kSyncEvery_s);
   TACTO_TRY(sync);
-  auto state = std::make_unique<State>(
-      State{stem, std::move(header), std::move(*events), std::move(*writer), std::move(*sync)});
+  auto state = std::make_unique<State>(State{std::move(folders), stem, std::move(header), std::move(*events),
+                                             std::move(*writer), std::move(*sync)});
   return LiveRecording(std::move(state));
 }
 

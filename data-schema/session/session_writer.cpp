@@ -29,12 +29,14 @@ tl::unexpected<Error> unwritable_session(const std::string& path, int error_numb
 
 SessionWriter::SessionWriter(SessionWriter&& other) noexcept
     : path_(std::move(other.path_)),
+      folders_(std::move(other.folders_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       size_(other.size_),
       held_(other.held_) {}
 
 SessionWriter& SessionWriter::operator=(SessionWriter&& other) noexcept {
   std::swap(path_, other.path_);
+  std::swap(folders_, other.folders_);
   std::swap(descriptor_, other.descriptor_);
   std::swap(size_, other.size_);
   std::swap(held_, other.held_);
@@ -48,9 +50,12 @@ SessionWriter::~SessionWriter() {
 Result<SessionWriter> SessionWriter::create(const std::string& path, const SessionHeader& header) {
   const auto text = session_header_text(header);
   TACTO_TRY(text);
+  MadeFolders folders;
+  TACTO_TRY(folders.make_for(path));
   const int opened = open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
   if (opened < 0) return unwritable_session(path, errno);
   SessionWriter writer(path, opened);
+  writer.folders_ = std::move(folders);
   flock(opened, LOCK_EX | LOCK_NB);  // nobody else has the lock: the file is new
   if (const auto begun = writer.append(sealed_block(BlockType::header, *text), kFreeOfTicks); !begun) {
     unlink(path.c_str());

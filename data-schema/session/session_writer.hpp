@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "data-schema/files/made_folders.hpp"
 #include "data-schema/session/session.hpp"
 
 namespace tacto::schema {
@@ -41,6 +42,7 @@ class SessionWriter {
   SessionWriter(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
   Result<void> append(const std::string& block, std::int64_t to_keep_free);
   std::string path_;
+  MadeFolders folders_;
   int descriptor_ = -1;
   std::int64_t size_ = 0, held_ = 0;  // held_: end of the reserved room
 };

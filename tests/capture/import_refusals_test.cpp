@@ -131,8 +131,9 @@ TEST_F(ImportRefusals, ClocksThatAreNone) {
 }
 
 TEST_F(ImportRefusals, Outputs) {
-  refused([&](auto& r) { r.name = folder_ / "absent/out"; }, ErrorKind::cannot_write,
-          "there is no such folder");
+  write("file", "");
+  refused([&](auto& r) { r.name = folder_ / "file/out"; }, ErrorKind::cannot_write,
+          "is a file, not a folder");
   refused([](auto& r) { r.name = "/proc/out"; }, ErrorKind::cannot_write, "/proc/out");
   ASSERT_TRUE(import(good()));
   refused([](auto&) {}, ErrorKind::usage, "exists already; choose another name, or replace it with --force");
@@ -143,9 +144,16 @@ TEST_F(ImportRefusals, TheOutputIsCheckedBeforeTheDataAreRead) {
   refused(
       [&](auto& r) {
         r.file = folder_ / "broken.csv";
+        r.name = "/proc/out";
+      },
+      ErrorKind::cannot_write, "/proc/out");
+  refused(
+      [&](auto& r) {
+        r.file = folder_ / "broken.csv";
         r.name = folder_ / "absent/out";
       },
-      ErrorKind::cannot_write, "there is no such folder");
+      ErrorKind::malformed, "broken.csv");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "absent"));
 }
 
 TEST_F(ImportRefusals, TheSourceIsNeverTheTarget) {

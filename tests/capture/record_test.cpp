@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 
+#include "data-schema/files/files.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::capture {
@@ -287,10 +289,21 @@ TEST(Record, VoltsWithoutATransducerAreRefused) {
   EXPECT_EQ(record(device, request(folder / "oak", 1)).error().kind, ErrorKind::device);
 }
 
-TEST(Record, AFolderThatIsNotThereIsSaidBeforeTheDeviceStarts) {
+TEST(Record, MakesTheFolderAndRemovesItIfTheDeviceDoesNotStart) {
   const TemporaryFolder folder;
   CountingDevice device(500);
-  const auto refused = record(device, request(folder / "none/oak", 1));
+  ASSERT_TRUE(record(device, request(folder / "new/er/oak", 1)));
+  EXPECT_TRUE(schema::is_file(folder / "new/er/oak.wav"));
+  CountingDevice broken(500);
+  broken.can().transducer.reset();
+  ASSERT_FALSE(record(broken, request(folder / "none/oak", 1)));
+  EXPECT_FALSE(std::filesystem::exists(folder / "none"));
+}
+
+TEST(Record, AFolderThatCannotBeMadeIsSaidBeforeTheDeviceStarts) {
+  const TemporaryFolder folder;
+  CountingDevice device(500);
+  const auto refused = record(device, request("/proc/none/oak", 1));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::cannot_write);
   EXPECT_EQ(device.counts().frames, 0U);

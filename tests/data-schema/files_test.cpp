@@ -132,16 +132,53 @@ TEST(Files, OneFileHasManySpellings) {
   EXPECT_TRUE(same_file(folder / "b.nc", folder / "link/a.nc"));
 }
 
-TEST(PendingFiles, RefuseFoldersThatAreAbsentOrInTheWay) {
+TEST(PendingFiles, RefuseFoldersThatCannotBeMadeOrAreInTheWay) {
   const TemporaryFolder folder;
   PendingFiles pending;
-  for (const std::string& path : {folder / "absent/a", folder / "", std::string("/proc/a")}) {
+  std::ofstream(folder / "file") << "";
+  for (const std::string& path :
+       {folder / "file/a", folder / "file/b/a", folder / "", std::string("/proc/a")}) {
     const auto added = pending.add(path);
     ASSERT_FALSE(added) << path;
     EXPECT_EQ(added.error().kind, ErrorKind::cannot_write);
   }
-  EXPECT_NE(pending.add(folder / "absent/a").error().what.find("no such folder"), std::string::npos);
+  EXPECT_EQ(pending.add(folder / "file/b/a").error().where, folder / "file");
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+TEST(PendingFiles, MakeMissingFoldersAndLeaveNoneThatIsEmpty) {
+  const TemporaryFolder folder;
+  {
+    PendingFiles pending;
+    ASSERT_TRUE(pending.write(folder / "new/er/a", "1"));
+    ASSERT_TRUE(pending.write(folder / "new/b", "1"));
+  }
   EXPECT_EQ(folder.files(), 0U);
+  {
+    PendingFiles kept, failed;
+    ASSERT_TRUE(failed.write(folder / "new/er/a", "1"));
+    ASSERT_TRUE(kept.write(folder / "new/b", "2"));
+    ASSERT_TRUE(kept.commit());
+  }
+  EXPECT_EQ(read_file(folder / "new/b").value(), "2");
+  EXPECT_FALSE(std::filesystem::exists(folder / "new/er"));
+  PendingFiles again;
+  ASSERT_TRUE(again.write(folder / "new/x/y/../z", "3"));
+  ASSERT_TRUE(again.commit());
+  EXPECT_EQ(read_file(folder / "new/x/z").value(), "3");
+}
+
+TEST(PendingFiles, ASignalRemovesMadeFoldersThatAreEmpty) {
+  const TemporaryFolder folder;
+  PendingFiles pending, other;
+  ASSERT_TRUE(pending.write(folder / "new/er/est/a", "1"));
+  ASSERT_TRUE(other.write(folder / "kept/er/a", "1"));
+  ASSERT_TRUE(other.write(folder / "kept/b", "1"));
+  std::ofstream(folder / "kept/stays") << "";
+  remove_pending_files();
+  EXPECT_FALSE(std::filesystem::exists(folder / "new"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "kept/er"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "kept/stays"));
 }
 
 TEST(Files, SayWhyTheyCantBeRead) {

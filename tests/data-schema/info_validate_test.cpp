@@ -12,6 +12,7 @@
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/spectrogram/spectrogram.hpp"
 #include "data-schema/texture/texture.hpp"
+#include "data-schema/transducer/transducer.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {
@@ -178,6 +179,41 @@ TEST_F(InfoValidate, ListsFaultsAndEndsAsMalformed) {
   for (const Json& fault : report["faults"]) places += fault["where"].get<std::string>() + "\n";
   EXPECT_NE(places.find("oak.json#/sample_rate_hz"), std::string::npos) << places;
   EXPECT_NE(places.find("oak.texture.wav"), std::string::npos) << places;
+}
+
+TEST_F(InfoValidate, ChecksEachFileOfAFolder) {
+  PendingFiles pending;
+  for (const char* other :
+       {"notes.txt", "list.json", "sub/sound.wav", ".hidden/torn.texture.json", "ground.height.nc"})
+    ASSERT_TRUE(pending.write(folder_ / other, "[1, 2]"));
+  Transducer transducer = read_transducer("wiertlewski2011").value();
+  ASSERT_TRUE(write_transducer(folder_ / "sub/bench", transducer));
+  ASSERT_TRUE(pending.commit());
+  const Json report = json({"validate", folder_ / ""});
+  EXPECT_EQ(report["valid"], true) << report;
+  EXPECT_EQ(report["checked"], 3);
+  EXPECT_EQ(report["invalid"], 0);
+  EXPECT_EQ(report["of_other_programs"], 4);
+
+  ASSERT_TRUE(pending.write(folder_ / "sub/torn.texture.json", "{"));
+  ASSERT_TRUE(pending.write(folder_ / "open.events.jsonl", "{}"));
+  ASSERT_TRUE(pending.commit());
+  std::filesystem::resize_file(oak_ + ".wav", 10);
+  const Outcome outcome = run({"validate", "--json", folder_ / ""});
+  EXPECT_NE(outcome.exit_code, 0);
+  const Json faulty = Json::parse(outcome.out);
+  EXPECT_EQ(faulty["checked"], 5);
+  EXPECT_EQ(faulty["invalid"], 3) << faulty;
+  std::string invalid;
+  for (const Json& file : faulty["files"])
+    if (!file["valid"]) invalid += file["file"].get<std::string>() + "\n";
+  EXPECT_EQ(invalid, (folder_ / "oak.json") + "\n" + (folder_ / "open") + "\n" +
+                         (folder_ / "sub/torn.texture.json") + "\n");
+}
+
+TEST_F(InfoValidate, AFolderWithoutAFileIsAFault) {
+  std::filesystem::create_directory(folder_ / "empty");
+  EXPECT_EQ(run({"validate", folder_ / "empty"}).exit_code, exit_code(ErrorKind::not_found));
 }
 
 TEST_F(InfoValidate, FilesOfOthersAreFaults) {

@@ -6,7 +6,7 @@ import pathlib
 
 import tacto
 
-USAGE = 2
+USAGE, UNSUITABLE, CANNOT_WRITE = 2, 5, 7
 SIM = "sim:surface=C,speed=50mm/s,seed=1"
 
 
@@ -73,6 +73,32 @@ def recordings_are_never_replaced():
     assert "not overwritten" in said and pathlib.Path("notes.json").read_text() == "{torn", said
 
 
+def missing_folders_are_made_and_none_is_left_empty():
+    make_inputs()
+    sim = ("-d", SIM)
+    for outputs, command in (
+            (["{}.wav", "{}.json"], ("record", *sim, "--time", "0.2s")), (["{}.texture.json"], ("spatial", "rec", "--stroke", "1")),
+            (["{}.nc", "{}.png", "{}.csv"], ("spectrogram", "oak")), (["{}.png"], ("sheet", "oak")), (["{}.csv"], ("formants", "oak")),
+            (["{}.csv"], ("describe", "oak")), (["{}.results.json"], ("compare", "oak", "oak")), (["{}.html"], ("report", ".")),
+            (["{}.wav"], ("render", "oak", "--path", "path.csv", "--transducer", "wiertlewski2011")),
+            (["{}.session"], ("play", "oak", "-d", "sim:", "--finger-path", "path.csv")),
+            (["{}.wav", "{}.json"], ("import", "path.csv", "--channel", "tangential_force=position_m*1N", "--rate", "10Hz"))):
+        stem = f"new/{command[0]}/name"
+        several = [option for name in outputs for option in ("-o", name.format(stem))] if command[0] == "spectrogram" else ["-o", stem]
+        if command[0] in ("sheet", "formants", "describe", "compare", "report", "render"):
+            several = ["-o", outputs[0].format(stem)]
+        tacto.run(*command, *several)
+        assert all(pathlib.Path(name.format(stem)).is_file() for name in outputs), command
+    pathlib.Path("broken.csv").write_text("f\n1\nbroken\n")
+    for command, code in ((("import", "broken.csv", "--rate", "10Hz", "--channel", "tangential_force=f*1N"), 4),
+                          (("play", "oak", "-d", "sim:", "--finger-path", "broken.csv"), 4), (("spatial", "rec", "--stroke", "99"), UNSUITABLE),
+                          (("record", "-d", "sim:", "--time", "1ks", "--channel", "none"), USAGE)):
+        tacto.run(*command, "-o", "none/such/name", code=code)
+        assert not os.path.exists("none"), command
+    said = tacto.run("record", *sim, "--time", "0.2s", "-o", "path.csv/name", code=CANNOT_WRITE)[1]
+    assert "path.csv" in said, said
+
+
 def a_demo_replaces_only_demos():
     os.mkdir("demo")
     for ending in ("wav", "json"):
@@ -100,6 +126,7 @@ def one_file_by_two_spellings_is_named_twice():
 
 
 if __name__ == "__main__":
-    for test in (every_verb_keeps_what_is_there, recordings_are_never_replaced, a_demo_replaces_only_demos,
+    for test in (every_verb_keeps_what_is_there, recordings_are_never_replaced,
+                 missing_folders_are_made_and_none_is_left_empty, a_demo_replaces_only_demos,
                  one_file_by_two_spellings_is_named_twice):
         tacto.in_folder(test)

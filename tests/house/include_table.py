@@ -10,7 +10,7 @@ MAY_INCLUDE = {
         "data-schema/{base device files json kinds recording results scene session spectrogram texture transducer "
         "wav}",
     "data-schema/cli":
-        "data-schema/{base calibration check command device kinds recording report results scene session spectrogram "
+        "data-schema/{base calibration check command device files kinds recording report results scene session spectrogram "
         "texture transducer}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
