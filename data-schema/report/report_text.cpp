@@ -120,10 +120,10 @@ Lines all_lines(const Report& report, std::size_t columns) {
 
 // Entries that a short report keeps before all other figures: where the results are, whether they are valid,
 // what to do next.
-constexpr std::array<std::string_view, 20> kKept = {
-    "file",       "files",    "page",      "written",   "results", "picture",    "session",
-    "transducer", "verdict",  "simulated", "fault",     "failed",  "ended",      "next",
-    "exit",       "error_db", "texture",   "recording", "pace",    "lost_frames"};
+constexpr std::array<std::string_view, 21> kKept = {
+    "file",       "files",    "page",      "written",   "results", "picture",     "session",
+    "transducer", "verdict",  "simulated", "fault",     "failed",  "ended",       "next",
+    "exit",       "error_db", "texture",   "recording", "pace",    "lost_frames", "beyond_measurement_noise"};
 
 bool is_kept(const std::string& key) {
   return std::ranges::find(kKept, key) != kKept.end();
