@@ -57,7 +57,7 @@ class Pools {
   }
 
   // `keys` are further keys of the device; {} in them is the number of the recording.
-  const Pool& operator()(char surface, const std::string& keys = "", int recordings = 40,
+  const Pool& operator()(char surface, const std::string& keys = "", int recordings = 100,
                          std::size_t strokes = 12) {
     const std::string name = fmt::format("{}{}", surface, keys);
     if (const auto found = pools_.find(name); found != pools_.end()) return found->second;
@@ -129,14 +129,26 @@ struct SurfaceRates {
 
 using Change = std::function<void(SurfaceSide&)>;
 
-// Pairs of different recordings; `change` alters B.
+std::vector<std::size_t> shuffled(std::size_t size, std::mt19937_64& random) {
+  std::vector<std::size_t> order(size);
+  for (std::size_t i = 0; i < size; ++i) order[i] = i;
+  for (std::size_t i = size; i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+  return order;
+}
+
+// Pairs of different recordings; `change` alters B. Within one pool no recording is used again before all are
+// used, so that a rate is not that of a few recordings.
 SurfaceRates surface_rates(const Pool& a, const Pool& b, std::size_t strokes, int pairs, unsigned seed,
                            const Change& change = {}) {
   std::mt19937_64 random(seed);
   SurfaceRates found;
+  std::vector<std::size_t> left_over;
   while (found.pairs < pairs) {
-    const std::size_t i = random() % a.size(), j = random() % b.size();
-    if (&a == &b && i == j) continue;
+    if (left_over.size() < 2) left_over = shuffled(a.size(), random);
+    const std::size_t i = left_over.back();
+    left_over.pop_back();
+    const std::size_t j = &a == &b ? left_over.back() : random() % b.size();
+    if (&a == &b) left_over.pop_back();
     const SurfaceSide left = some_strokes(a[i], strokes, random);
     SurfaceSide right = some_strokes(b[j], strokes, random);
     if (change) change(right);
@@ -244,9 +256,7 @@ TEST(SurfacesRates, OtherPersonsAreRarelyDifferent) {
   for (const char surface : kSurfaces) {
     const Pool& pool = pools()(surface, ",person={}", 24, 6);
     for (int pair = 0; pair < 60; ++pair) {
-      std::vector<std::size_t> order(pool.size());
-      for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-      for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+      const std::vector<std::size_t> order = shuffled(pool.size(), random);
       SurfaceSide sides[2];
       for (std::size_t i = 0; i < 8; ++i)
         for (const schema::Texture& texture : pool[order[i]]) {
