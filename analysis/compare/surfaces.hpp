@@ -41,7 +41,7 @@ struct SurfaceComparison {
   std::vector<double> edges_per_m;  ///< of the bands, one more than bands
   double separable = 0;             ///< separable_part by speed and load
   std::optional<LabelTest> test;    ///< none if `undecided` before the test
-  /// A difference that is found in at least 8 of 10 comparisons: over a third of an octave at a usual place,
+  /// A difference that is found in at least 8 of 10 comparisons, wherever it is: over a third of an octave,
   /// and over two octaves or all bands.
   double finest_third_octave_db = 0, finest_level_db = 0;
   std::vector<std::string> notes;

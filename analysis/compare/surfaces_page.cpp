@@ -73,7 +73,7 @@ std::vector<schema::ResultFigure> surfaces_figures(const SurfaceComparison& c) {
     add("spread", fmt::format("{:.1f} dB standard deviation of {}s within a side, in one band",
                               c.test->spread_db, c.by_recording ? "recording" : "stroke"));
     add("detectable",
-        fmt::format("{:.1f} dB over a third of an octave, {:.1f} dB over {:.2g} octaves (each is found "
+        fmt::format("{:.1f} dB over any third of an octave, {:.1f} dB over any {:.2g} octaves (each is found "
                     "in at least 8 of 10 comparisons)",
                     c.finest_third_octave_db, c.finest_level_db,
                     0.5 / 3 * static_cast<double>(c.test->windows.back().bands)));
