@@ -30,11 +30,12 @@ std::string verdict_line(const SurfaceComparison& c) {
       c.a.recordings == c.b.recordings
           ? counted(c.a.recordings, "recording") + " a side"
           : fmt::format("{} + {}", c.a.recordings, counted(c.b.recordings, "recording"));
-  std::string words(to_string(c.verdict));
+  std::string figures;
   if (c.verdict == SurfaceVerdict::no_difference_found)
-    words += fmt::format(" (none above {:.1f} dB)", c.finest_third_octave_db);
-  return fmt::format("{} ({}{} + {}, {})", words, c.test ? fmt::format("p {:.3f}; ", c.test->p) : "",
-                     c.a.strokes, counted(c.b.strokes, "stroke"), recordings);
+    figures = fmt::format("none above {:.1f} dB; ", c.finest_third_octave_db);
+  if (c.test) figures += fmt::format("p {:.3f}; ", c.test->p);
+  return fmt::format("{} ({}{} + {}, {})", to_string(c.verdict), figures, c.a.strokes,
+                     counted(c.b.strokes, "stroke"), recordings);
 }
 
 std::string condition_words(const SurfaceComparison& c, std::optional<double> SideFacts::*member,
