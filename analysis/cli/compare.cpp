@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <functional>
 #include <memory>
 
 #include "analysis/cli/compare_report.hpp"
 #include "analysis/cli/compared_input.hpp"
 #include "analysis/cli/results_output.hpp"
+#include "analysis/cli/surfaces_report.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/compare/compare_page.hpp"
+#include "analysis/compare/surfaces_page.hpp"
 #include "data-schema/command/output_options.hpp"
+#include "data-schema/files/files.hpp"
 #include "data-schema/report/progress.hpp"
 #include "playback/session/session_rows.hpp"
 #include "spatial/cli/spectrogram_options.hpp"
@@ -21,6 +26,7 @@ using schema::Result;
 
 struct CompareVerbOptions {
   std::string a, b;
+  std::vector<std::string> many_a, many_b;
   std::size_t stroke_a = 0, stroke_b = 0;
   CompareOptions compare;
   std::vector<std::string> outputs;
@@ -28,7 +34,26 @@ struct CompareVerbOptions {
 };
 
 constexpr const char* kRule =
-    "The verdict, by this rule, in this order (T is --tolerance; louder and quieter describe B):\n  "
+    "Surfaces: A and B with several strokes (recordings, or lists by --a and --b). The verdict answers "
+    "whether "
+    "the strokes of A and B differ more than strokes of one side differ from each other:\n  different        "
+    "    "
+    "p is at most 0.05 (999 exchanges of A and B), and the band that differs most differs by --tolerance or "
+    "more\n  no difference found  otherwise; 'detectable' states what would have been found\n  undecided     "
+    "     "
+    "  fewer than 5 strokes a side in the same directions (12 a side are better), or different speed or load "
+    "explains more than three quarters of the difference between the sides\nWith 4 recordings a side or "
+    "more, the "
+    "recording is the unit. With fewer, the verdict holds for these recordings only.\nRecord both sides with "
+    "the "
+    "same finger at the same speed and load, alternately: A, B, A, B. A drift within a session is not "
+    "detected: "
+    "levels that drift by 1 dB from A to B cause 19 to 48 % false alarms.\n\n"
+    "Single textures: A and B with one texture each (also by --stroke-a, --stroke-b). The verdict answers "
+    "whether they differ beyond measurement noise. It does not answer whether the surfaces differ: strokes "
+    "over "
+    "one surface differ, too, by 1.4 to 4 dB in a sixth of an octave. By this rule, in this order (T is "
+    "--tolerance; louder and quieter describe B):\n  "
     "undecided        fewer than 8 segments of the window, or less than an octave in common\n  different     "
     "   by shape: the one-third-octave bands differ about their mean by more than the scatter of the "
     "segments causes once in 20 times (1,000 bootstrap draws), and by more than T beyond it (shape_db over "
@@ -38,15 +63,16 @@ constexpr const char* kRule =
     "not have, with a score above chance, and more than T above the density in the window; its frequency is "
     "named\n  undecided        the segments scatter so much that a difference of T could not be detected "
     "(finest_shape_db over T)\n  louder, quieter  the mean level differs by more than T, and 0 dB is outside "
-    "its 90 % interval\n  same             the whole interval is within T\n  undecided        in all other "
+    "its 90 % interval\n  none             the whole interval is within T\n  undecided        in all other "
     "cases\nBands and lines are searched at all frequencies at once: together they call 5 % of the pairs of "
     "steady textures of one kind different. 'detectable' states which differences they find in at least 8 of "
-    "10 pairs: read it together with 'same'. Textures whose level or spectrum changes along them (unsteady "
+    "10 pairs: read it together with 'none'. Textures whose level or spectrum changes along them (unsteady "
     "ones) are called different more often: 7 % of the pairs of noise whose level wanders by 3 dB over 10 "
-    "mm, but more than half of the pairs of single strokes of 35 mm with bursts. Compare longer textures, or "
-    "stretches in which the surface is even.\n'point by point' says whether the coherence is above the value "
-    "that independent signals reach once in 20 times: two stretches of one rough surface can be the same "
-    "without it.";
+    "mm, but more than half of the pairs of single strokes of 35 mm with bursts.\n'point by point' says "
+    "whether "
+    "the coherence is above the value that independent signals reach once in 20 times: two stretches of one "
+    "rough surface can be alike without it.\n\n"
+    "A session and its texture: the error in dB, the power of the difference over that of the target.";
 
 schema::Results compare_results(const CompareVerbOptions& o, const ComparedNames& names,
                                 const Comparison& c) {
@@ -54,22 +80,23 @@ schema::Results compare_results(const CompareVerbOptions& o, const ComparedNames
   results.verb = "compare";
   results.inputs = {o.a, o.b};
   results.simulated = c.a_simulated.empty() ? c.b_simulated : c.a_simulated;
-  results.figures = comparison_figures(c);
+  results.figures = comparison_figures(c, names);
   results.pictures = comparison_pictures(c, names);
   return results;
 }
 
-Result<Report> run_compare(const CompareVerbOptions& o, bool json) {
-  TACTO_TRY(check_outputs(o.outputs, o.existing));
-  cli::Progress progress("comparing");
-  const std::function<void(double)> tell = [&](double part) { progress.update(part); };
-  auto a = compared_input(o.a, o.stroke_a, playback::part_of(tell, 0, 0.4));
-  TACTO_TRY(a);
-  auto b = compared_input(o.b, o.stroke_b, playback::part_of(tell, 0.4, 0.8));
-  TACTO_TRY(b);
-  TACTO_TRY(match_session(*a, *b));
-  const ComparedNames names{a->name, b->name};
-  const auto comparison = compare(a->texture, b->texture, o.compare, playback::part_of(tell, 0.8, 1));
+using Tell = std::function<void(double)>;
+
+Result<Report> compare_pair(const CompareVerbOptions& o, bool json, ComparedInput& a, ComparedInput& b,
+                            const Tell& tell) {
+  const bool with_target = a.played.has_value() != b.played.has_value();
+  if (with_target && o.compare.pair.align == PairAlign::none)
+    return schema::fail(schema::ErrorKind::usage,
+                        "the error of a session is that of each place, so that 'none' can't be used",
+                        "--align", "use position or correlation");
+  TACTO_TRY(match_session(a, b));
+  const ComparedNames names{a.name, b.name, with_target};
+  const auto comparison = compare(a.texture, b.texture, o.compare, tell);
   TACTO_TRY(comparison);
   for (const std::string& note : comparison->notes) cli::warn(note);
   Report report = compare_report(names, *comparison);
@@ -79,6 +106,85 @@ Result<Report> run_compare(const CompareVerbOptions& o, bool json) {
   if (o.outputs.empty()) return report;
   if (!json) return brief_compare_report(names, *comparison, o.outputs);
   return report.add("written", o.outputs);
+}
+
+Result<Report> compare_named_pair(const CompareVerbOptions& o, bool json, const Tell& tell) {
+  auto a = compared_input(o.a, o.stroke_a, playback::part_of(tell, 0, 0.4));
+  TACTO_TRY(a);
+  auto b = compared_input(o.b, o.stroke_b, playback::part_of(tell, 0.4, 0.8));
+  TACTO_TRY(b);
+  return compare_pair(o, json, *a, *b, playback::part_of(tell, 0.8, 1));
+}
+
+SurfaceSide surface_side(const std::vector<std::string>& names, std::vector<spatial::NamedTexture> textures) {
+  SurfaceSide side;
+  side.name =
+      names.size() == 1 ? names.front() : fmt::format("{} and {} more", names.front(), names.size() - 1);
+  for (spatial::NamedTexture& texture : textures) {
+    side.stroke_names.push_back(texture.name);
+    side.strokes.push_back(std::move(texture.texture));
+  }
+  return side;
+}
+
+Result<void> check_sides(const std::vector<spatial::NamedTexture>& a,
+                         const std::vector<spatial::NamedTexture>& b) {
+  for (const auto& left : a)
+    for (const auto& right : b)
+      if (left.stored && right.stored && schema::same_file(left.path, right.path))
+        return schema::fail(schema::ErrorKind::usage, "is on both sides", left.path,
+                            "name each texture on one side");
+  return {};
+}
+
+Result<Report> compare_strokes(const CompareVerbOptions& o, bool json, const SurfaceSide& a,
+                               const SurfaceSide& b, schema::Results results) {
+  const auto comparison = compare_surfaces(a, b, o.compare.tolerance_db);
+  TACTO_TRY(comparison);
+  for (const std::string& note : comparison->notes) cli::warn(note);
+  results.verb = "compare";
+  results.simulated = comparison->a.simulated.empty() ? comparison->b.simulated : comparison->a.simulated;
+  results.figures = surfaces_figures(*comparison);
+  results.pictures = surfaces_pictures(*comparison);
+  Report report = json ? surfaces_report(*comparison) : brief_surfaces_report(*comparison);
+  TACTO_TRY(write_outputs(o.outputs, o.existing, std::move(results), surfaces_report(*comparison),
+                          [&] { return surfaces_page(*comparison); }));
+  if (!o.outputs.empty()) report.add("written", o.outputs);
+  return report;
+}
+
+// A and B by --a and --b, or by position if they have several textures.
+Result<Report> compare_sides(const CompareVerbOptions& o, bool json, const Tell& tell) {
+  const bool lists = !o.many_a.empty();
+  const std::vector<std::string> names_a = lists ? o.many_a : std::vector{o.a};
+  const std::vector<std::string> names_b = lists ? o.many_b : std::vector{o.b};
+  auto a = spatial::open_textures(names_a);
+  TACTO_TRY(a);
+  tell(0.4);
+  auto b = spatial::open_textures(names_b);
+  TACTO_TRY(b);
+  tell(0.8);
+  if (!lists && a->size() == 1 && b->size() == 1) {
+    ComparedInput one = compared_input(std::move(a->front())), other = compared_input(std::move(b->front()));
+    return compare_pair(o, json, one, other, playback::part_of(tell, 0.8, 1));
+  }
+  TACTO_TRY(check_sides(*a, *b));
+  schema::Results results;
+  results.inputs = names_a;
+  results.inputs.insert(results.inputs.end(), names_b.begin(), names_b.end());
+  return compare_strokes(o, json, surface_side(names_a, std::move(*a)), surface_side(names_b, std::move(*b)),
+                         std::move(results));
+}
+
+Result<Report> run_compare(const CompareVerbOptions& o, bool json) {
+  if (o.a.empty() != o.b.empty() || o.a.empty() == o.many_a.empty())
+    return schema::fail(schema::ErrorKind::usage, "two sides are needed", "compare",
+                        "name A and B, or both --a and --b");
+  TACTO_TRY(check_outputs(o.outputs, o.existing));
+  cli::Progress progress("comparing");
+  const Tell tell = [&](double part) { progress.update(part); };
+  const bool pair = o.stroke_a > 0 || o.stroke_b > 0 || names_a_session(o.a) || names_a_session(o.b);
+  return pair ? compare_named_pair(o, json, tell) : compare_sides(o, json, tell);
 }
 
 void declare_pairing(CLI::App& app, CompareVerbOptions& o) {
@@ -95,12 +201,17 @@ void declare_pairing(CLI::App& app, CompareVerbOptions& o) {
 
 cli::Action declare_compare(CLI::App& app) {
   auto options = std::make_shared<CompareVerbOptions>();
-  app.add_option("A", options->a,
-                 "Texture, recording (its stroke), or session (the displacement predicted from its drive)")
-      ->required();
-  app.add_option("B", options->b,
-                 "A second one, of the same quantity; for a session also its own texture as the target")
-      ->required();
+  CLI::Option* a = app.add_option(
+      "A", options->a,
+      "Recording (each stroke is used), texture, or session (the displacement predicted from its drive)");
+  CLI::Option* b =
+      app.add_option("B", options->b, "A second one, of the same quantity; for a session its own texture");
+  CLI::Option* many_a =
+      app.add_option("--a", options->many_a, "Instead of A: several recordings or textures");
+  CLI::Option* many_b =
+      app.add_option("--b", options->many_b, "Instead of B: several recordings or textures");
+  many_a->needs(many_b)->excludes(a)->excludes(b);
+  many_b->needs(many_a);
   app.add_option("-o,--output,--page", options->outputs,
                  "Output: a page (.html) or results for 'report' (.results.json); may be repeated");
   cli::declare_force(app, options->existing);
@@ -117,11 +228,13 @@ cli::Action declare_compare(CLI::App& app) {
 
 }  // namespace
 
-const cli::Verb kCompareVerb{"compare",
-                             "Compare two textures, recordings, or a session and its texture: by band, "
-                             "coherence and formants, with a verdict",
-                             "tactograph compare oak pine -o oak-pine.html\n  tactograph compare "
-                             "first.session oak --align correlation",
-                             declare_compare};
+const cli::Verb kCompareVerb{
+    "compare",
+    "Compare two surfaces by several strokes, two single textures, or a session and "
+    "its texture",
+    "tactograph compare oak pine -o oak-pine.html\n  tactograph compare --a oak-1 oak-2 "
+    "--b pine-1 pine-2\n  tactograph compare oak pine --stroke-a 1 --stroke-b 1\n  "
+    "tactograph compare first.session oak --align correlation",
+    declare_compare};
 
 }  // namespace tacto::analysis

@@ -59,6 +59,9 @@ void add_evidence(Report& report, const Comparison& c) {
   report.add("shape_db", e.shape_db).add("shape_chance_db", e.shape_chance_db);
   report.add("shape_excess_db", e.shape_excess_db).add("finest_shape_db", e.finest_shape_db);
   report.add("power_level_db", c.power_level_db).add("spectral_distance_db", c.spectral_distance_db);
+}
+
+void add_places(Report& report, const Comparison& c) {
   if (!c.pair.paired) return;
   report.add("gain", *c.gain).add("error_db", *c.error_db).add("residual_db", *c.residual_db);
   report.add("coherence", *c.coherence).add("chance_coherence", c.chance_coherence);
@@ -159,16 +162,20 @@ Report compare_report(const ComparedNames& names, const Comparison& c) {
   report.add("a", names.a).add("b", names.b);
   if (!c.a_simulated.empty()) report.add("a_simulated", c.a_simulated);
   if (!c.b_simulated.empty()) report.add("b_simulated", c.b_simulated);
-  report.add("verdict", to_string(c.verdict.likeness)).add("because", c.verdict.because);
-  report.add("tolerance_db", c.tolerance_db);
-  add_detectable(report, c);
+  if (!names.with_target) {
+    report.add("beyond_measurement_noise", to_string(c.verdict.likeness)).add("because", c.verdict.because);
+    report.add("tolerance_db", c.tolerance_db);
+    add_detectable(report, c);
+  }
   add_pair(report, c);
   add_rms(report, c);
-  add_evidence(report, c);
-  add_narrow(report, c);
+  if (!names.with_target) add_evidence(report, c);
+  add_places(report, c);
+  if (!names.with_target) add_narrow(report, c);
   std::vector<Report> bands;
   for (const BandComparison& band : c.bands) bands.push_back(band_row(band));
   report.add("bands", std::move(bands));
+  if (names.with_target) return report;
   report.add("matched", c.formants.matched.size()).add("missed", c.formants.missed.size());
   return report.add("extra", c.formants.extra.size()).add("formants", formant_rows(c));
 }
@@ -176,9 +183,13 @@ Report compare_report(const ComparedNames& names, const Comparison& c) {
 Report brief_compare_report(const ComparedNames& names, const Comparison& c,
                             const std::vector<std::string>& written) {
   Report report;
-  report.add("verdict", to_string(c.verdict.likeness));
-  add_wrapped(report, "because", c.verdict.because);
-  add_wrapped(report, "detectable", detectable_words(c.evidence, c.tolerance_db));
+  if (names.with_target) {
+    report.add("error_db", *c.error_db);
+  } else {
+    report.add("verdict", verdict_words(c.verdict.likeness));
+    add_wrapped(report, "because", c.verdict.because);
+    add_wrapped(report, "detectable", detectable_words(c.evidence, c.tolerance_db));
+  }
   add_wrapped(report, "written", fmt::format("{}", fmt::join(written, " ")));
   report.add("A", names.a).add("B", names.b);
   add_origin(report, c);
@@ -190,6 +201,7 @@ Report brief_compare_report(const ComparedNames& names, const Comparison& c,
               fmt::format("A {}, B {}, both from {}", rms_words(c, c.a_rms), rms_words(c, c.b_rms),
                           compared_band(c)));
   if (c.pair.paired) add_wrapped(report, "places", place_by_place(c));
+  if (names.with_target) return report;
   add_wrapped(report, "formants",
               fmt::format("{} matched, {} missed, {} extra", c.formants.matched.size(),
                           c.formants.missed.size(), c.formants.extra.size()));

@@ -5,19 +5,12 @@
 
 #include "data-schema/files/files.hpp"
 #include "data-schema/kinds/file_kind.hpp"
-#include "spatial/cli/texture_inputs.hpp"
 
 namespace tacto::analysis {
 namespace {
 
 using schema::ErrorKind;
 using schema::Result;
-
-bool names_a_session(const std::string& name) {
-  if (name.ends_with(".session")) return true;
-  const auto files = schema::stored_files(name);
-  return files && files->front().kind == schema::FileKind::session;
-}
 
 Result<ComparedInput> session_input(const std::string& name, std::size_t stroke,
                                     const std::function<void(double)>& progress) {
@@ -47,6 +40,16 @@ Result<spatial::NamedTexture> chosen_texture(spatial::TextureInputs& inputs, con
 
 }  // namespace
 
+bool names_a_session(const std::string& name) {
+  if (name.ends_with(".session")) return true;
+  const auto files = schema::stored_files(name);
+  return files && files->front().kind == schema::FileKind::session;
+}
+
+ComparedInput compared_input(spatial::NamedTexture texture) {
+  return {texture.name, texture.stored ? texture.path : "", std::move(texture.texture), {}};
+}
+
 Result<ComparedInput> compared_input(const std::string& name, std::size_t stroke,
                                      const std::function<void(double)>& progress) {
   if (names_a_session(name)) return session_input(name, stroke, progress);
@@ -54,7 +57,7 @@ Result<ComparedInput> compared_input(const std::string& name, std::size_t stroke
   TACTO_TRY(inputs);
   auto texture = chosen_texture(*inputs, name, stroke);
   TACTO_TRY(texture);
-  return ComparedInput{texture->name, texture->stored ? texture->path : "", std::move(texture->texture), {}};
+  return compared_input(std::move(*texture));
 }
 
 Result<void> match_session(ComparedInput& a, ComparedInput& b) {

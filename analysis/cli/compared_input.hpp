@@ -10,8 +10,12 @@
 #include "analysis/compare/played_texture.hpp"
 #include "data-schema/base/error.hpp"
 #include "data-schema/texture/texture.hpp"
+#include "spatial/cli/texture_inputs.hpp"
 
 namespace tacto::analysis {
+
+/// Whether this is the name of a session.
+bool names_a_session(const std::string& name);
 
 struct ComparedInput {
   std::string name;  ///< for titles and messages
@@ -26,6 +30,8 @@ struct ComparedInput {
 /// textures without a choice, or a stroke that does not exist.
 schema::Result<ComparedInput> compared_input(const std::string& name, std::size_t stroke,
                                              const std::function<void(double)>& progress = {});
+/// A texture that is already read.
+ComparedInput compared_input(spatial::NamedTexture texture);
 
 /// If exactly one input is a session, replaces the other by that session's target. Errors: those of
 /// target_of; unsuitable: the other input is not a stored texture.

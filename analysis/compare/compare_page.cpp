@@ -198,10 +198,11 @@ std::string rms_figure(const Comparison& c) {
   return fmt::format("A {}, B {}", words(c.a_rms), words(c.b_rms));
 }
 
-// The verdict and the first of its reasons.
-std::string answer_words(const Comparison& c) {
+// The error, or the verdict and the first of its reasons.
+std::string answer_words(const Comparison& c, const ComparedNames& names) {
+  if (names.with_target) return fmt::format("error {:.1f} dB of the target's power", *c.error_db);
   const std::string& because = c.verdict.because;
-  return fmt::format("{}: {}.", to_string(c.verdict.likeness), because.substr(0, because.find("; ")));
+  return fmt::format("{}: {}.", verdict_words(c.verdict.likeness), because.substr(0, because.find("; ")));
 }
 
 std::string simulated_of(const Comparison& c) {
@@ -222,30 +223,35 @@ std::vector<ResultPicture> comparison_pictures(const Comparison& c, const Compar
   return pictures;
 }
 
-std::vector<schema::ResultFigure> comparison_figures(const Comparison& c) {
-  std::vector<schema::ResultFigure> figures = {
-      {"verdict", fmt::format("{}: {}", to_string(c.verdict.likeness), c.verdict.because)},
-      {"compared",
-       fmt::format("{} from {} on in A, {} to {}", for_people(c.pair.length_m(), Dimension::length),
-                   for_people(c.pair.a_from_m, Dimension::length),
-                   for_people(c.low_per_m, Dimension::spatial_frequency),
-                   for_people(c.high_per_m, Dimension::spatial_frequency))},
-      {"detectable", detectable_words(c.evidence, c.tolerance_db)},
-      {"level, B over A", fmt::format("{:+.2f} dB", c.evidence.level_db)},
-      {"RMS in that band", rms_figure(c)},
-      {"strongest narrow band, relative to the mean level", strongest_words(c)},
-      {"strongest line of one texture", line_figure(c)},
-      {"spectral distance",
-       fmt::format("{:.2f} dB RMS over {} bands", c.spectral_distance_db, c.bands.size())},
-      {"formants", fmt::format("{} matched, {} missed, {} extra", c.formants.matched.size(),
-                               c.formants.missed.size(), c.formants.extra.size())}};
+std::vector<schema::ResultFigure> comparison_figures(const Comparison& c, const ComparedNames& names) {
+  std::vector<schema::ResultFigure> figures;
+  const auto add = [&](const char* name, std::string value) { figures.push_back({name, std::move(value)}); };
+  if (names.with_target)
+    add("error, re the target", optional_db(c.error_db));
+  else
+    add("verdict", fmt::format("{}: {}", verdict_words(c.verdict.likeness), c.verdict.because));
+  add("compared",
+      fmt::format("{} from {} on in A, {} to {}", for_people(c.pair.length_m(), Dimension::length),
+                  for_people(c.pair.a_from_m, Dimension::length),
+                  for_people(c.low_per_m, Dimension::spatial_frequency),
+                  for_people(c.high_per_m, Dimension::spatial_frequency)));
+  add("RMS in that band", rms_figure(c));
+  if (!names.with_target) {
+    add("detectable", detectable_words(c.evidence, c.tolerance_db));
+    add("level, B over A", fmt::format("{:+.2f} dB", c.evidence.level_db));
+    add("strongest narrow band, relative to the mean level", strongest_words(c));
+    add("strongest line of one texture", line_figure(c));
+    add("spectral distance",
+        fmt::format("{:.2f} dB RMS over {} bands", c.spectral_distance_db, c.bands.size()));
+    add("formants", fmt::format("{} matched, {} missed, {} extra", c.formants.matched.size(),
+                                c.formants.missed.size(), c.formants.extra.size()));
+  }
   if (!c.pair.paired) return figures;
-  figures.push_back(
-      {"coherence", fmt::format("{:.2f}; chance {:.2f}: {}", *c.coherence, c.chance_coherence,
-                                c.point_by_point ? "one place, point by point" : "not point by point")});
-  figures.push_back({"gain, least squares", fmt::format("{:.3g}", *c.gain)});
-  figures.push_back({"error of B re A", optional_db(c.error_db)});
-  figures.push_back({"residual after the best gain, re B", optional_db(c.residual_db)});
+  add("coherence", fmt::format("{:.2f}; chance {:.2f}: {}", *c.coherence, c.chance_coherence,
+                               c.point_by_point ? "one place, point by point" : "not point by point"));
+  add("gain, least squares", fmt::format("{:.3g}", *c.gain));
+  if (!names.with_target) add("error of B re A", optional_db(c.error_db));
+  add("residual after the best gain, re B", optional_db(c.residual_db));
   return figures;
 }
 
@@ -254,15 +260,17 @@ schema::Result<std::string> comparison_page(const Comparison& c, const ComparedN
   const auto pictures = pictures_html(comparison_pictures(c, names), simulated);
   TACTO_TRY(pictures);
   std::string body = fmt::format("<h1>{} against {}</h1>\n", escaped(names.b), escaped(names.a)) +
-                     answer(answer_words(c)) +
+                     answer(answer_words(c, names)) +
                      fmt::format("<p>A is {}, B is {}.</p>\n", escaped(names.a), escaped(names.b)) +
                      simulated_box(simulated);
-  body += figures_html(comparison_figures(c));
+  body += figures_html(comparison_figures(c, names));
   for (const std::string& note : c.notes) body += fmt::format("<p class=\"note\">{}</p>\n", escaped(note));
   body +=
       *pictures + folded("By one-third-octave band", bands_table(c)) + folded("Formants", formants_table(c));
-  return html_document(fmt::format("{} against {}: {}", names.b, names.a, to_string(c.verdict.likeness)),
-                       body);
+  return html_document(
+      fmt::format("{} against {}: {}", names.b, names.a,
+                  names.with_target ? optional_db(c.error_db) : verdict_words(c.verdict.likeness)),
+      body);
 }
 
 }  // namespace tacto::analysis

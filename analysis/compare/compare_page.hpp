@@ -13,6 +13,7 @@ namespace tacto::analysis {
 /// The names of the two inputs.
 struct ComparedNames {
   std::string a, b;
+  bool with_target = false;  ///< a session and its target: the error is reported, no verdict
 };
 
 /// Both spectra by band, their difference with its scatter and, if they are paired, the coherence and a
@@ -21,8 +22,9 @@ struct ComparedNames {
 std::vector<schema::ResultPicture> comparison_pictures(const Comparison& comparison,
                                                        const ComparedNames& names);
 
-/// The main figures for the reader: the verdict first.
-std::vector<schema::ResultFigure> comparison_figures(const Comparison& comparison);
+/// The main figures for the reader: the verdict, or the error, first.
+std::vector<schema::ResultFigure> comparison_figures(const Comparison& comparison,
+                                                     const ComparedNames& names);
 
 /// Errors: those of drawing.
 schema::Result<std::string> comparison_page(const Comparison& comparison, const ComparedNames& names);

@@ -173,7 +173,7 @@ Verdict by_level(const Evidence& e, double tolerance_db) {
   if (certain && std::abs(e.level_db) > tolerance_db)
     return {e.level_db > 0 ? Likeness::louder : Likeness::quieter, words};
   if (e.level_low_db >= -tolerance_db && e.level_high_db <= tolerance_db)
-    return {Likeness::same, fmt::format("{}, within {:g} dB", words, tolerance_db)};
+    return {Likeness::none, fmt::format("{}, within {:g} dB", words, tolerance_db)};
   return {Likeness::undecided,
           fmt::format("{}: this interval includes values beyond {:g} dB and values that are not", words,
                       tolerance_db)};
@@ -182,8 +182,14 @@ Verdict by_level(const Evidence& e, double tolerance_db) {
 }  // namespace
 
 std::string_view to_string(Likeness likeness) {
-  constexpr std::array<std::string_view, 5> kWords = {"same", "louder", "quieter", "different", "undecided"};
+  constexpr std::array<std::string_view, 5> kWords = {"none", "louder", "quieter", "different", "undecided"};
   return kWords[static_cast<std::size_t>(likeness)];
+}
+
+std::string verdict_words(Likeness likeness) {
+  if (likeness == Likeness::undecided) return "undecided";
+  if (likeness == Likeness::none) return "no difference beyond measurement noise";
+  return fmt::format("{} beyond measurement noise", to_string(likeness));
 }
 
 Evidence evidence_of(const BandPowers& powers, double tolerance_db) {

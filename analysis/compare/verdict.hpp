@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decides whether two textures are the same, from the differences of their bands and the scatter of their
-// segments.
+// Decides whether two textures differ beyond measurement noise, from the differences of their bands and the
+// scatter of their segments. It cannot decide whether two surfaces differ: strokes over one surface differ,
+// too (surfaces.hpp).
 #pragma once
 
 #include <cstddef>
@@ -13,8 +14,11 @@
 
 namespace tacto::analysis {
 
-enum class Likeness { same, louder, quieter, different, undecided };
+/// How two textures differ beyond measurement noise.
+enum class Likeness { none, louder, quieter, different, undecided };
 std::string_view to_string(Likeness likeness);
+/// For people: "different beyond measurement noise".
+std::string verdict_words(Likeness likeness);
 
 /// Powers, one row per segment, `bands` values per row. Rows of A and B correspond if `paired`.
 struct BandPowers {
@@ -55,7 +59,7 @@ Evidence evidence_of(const BandPowers& powers, double tolerance_db);
 ///   narrow band or line has a score above its chance_score and a level beyond the tolerance.
 /// - undecided: finest_shape_db above the tolerance: a relevant difference would not be detected.
 /// - louder, quieter: the level is beyond the tolerance, and its interval excludes 0.
-/// - same: the level's interval lies within the tolerance: two one-sided tests (Schuirmann 1987, J.
+/// - none: the level's interval lies within the tolerance: two one-sided tests (Schuirmann 1987, J.
 ///   Pharmacokinetics and Biopharmaceutics 15).
 /// - undecided: otherwise.
 struct Verdict {

@@ -30,7 +30,7 @@ const UsualOptions kUsualOptions[] = {
       "force"}},
     {"play", {"device", "output", "transducer", "time", "gain", "at", "ends", "finger-path"}},
     {"ctl", {"socket", "at", "gain", "ends", "fade", "save", "time"}},
-    {"compare", {"output", "align", "max-shift", "tolerance", "stroke-a", "stroke-b", "max-frequency"}},
+    {"compare", {"a", "b", "output", "tolerance", "align", "max-shift", "stroke-a", "stroke-b"}},
     {"identify",
      {"device", "output", "start-from", "method", "picture", "results", "second-mode", "replace"}},
 };

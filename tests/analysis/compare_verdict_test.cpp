@@ -35,8 +35,8 @@ TEST(CompareVerdict, TwoPiecesOfOneKindAreSeldomCalledDifferent) {
     const auto likeness = judged(white_texture(1000 + 2 * i, kLength), white_texture(1001 + 2 * i, kLength),
                                  i % 2 == 0 ? PairAlign::position : PairAlign::none)
                               .likeness;
-    same += likeness == Likeness::same;
-    wrong += likeness != Likeness::same && likeness != Likeness::undecided;
+    same += likeness == Likeness::none;
+    wrong += likeness != Likeness::none && likeness != Likeness::undecided;
   }
   tacto::measured("compare_verdict.one_kind_wrong", wrong);
   tacto::measured("compare_verdict.one_kind_same", same);
@@ -117,7 +117,7 @@ TEST(CompareVerdict, RuleByNumbers) {
   e.segments = 15;
   e.shape_db = 1, e.shape_chance_db = 1.5, e.finest_shape_db = 1;
   e.level_db = 1, e.level_low_db = 0.5, e.level_high_db = 1.5;
-  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::same);
+  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::none);
   e.level_high_db = 2.5;
   EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::undecided);
   e.level_db = 3, e.level_low_db = 0.5, e.level_high_db = 5.5;
@@ -136,14 +136,14 @@ TEST(CompareVerdict, RuleByNumbers) {
   e.narrow = NarrowBand{2000, 2600, -5, 4, 3.5, {{200, 6}}};
   EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::different);
   EXPECT_NE(verdict_of(e, 2).because.find("from 2/mm to 2.6/mm B is 5.0 dB below A"), std::string::npos);
-  EXPECT_EQ(verdict_of(e, 6).likeness, Likeness::same) << "within the tolerance";
+  EXPECT_EQ(verdict_of(e, 6).likeness, Likeness::none) << "within the tolerance";
   e.narrow->score = 3;
-  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::same) << "by chance";
+  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::none) << "by chance";
   e.line = SpectralLine{3000, true, 8, 20, 12, 4};
   EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::different);
   EXPECT_NE(verdict_of(e, 2).because.find("B has a line at 3/mm"), std::string::npos);
   e.line->score = 11;
-  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::same);
+  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::none);
   EXPECT_EQ(detectable_words(e, 2).find("6.0 dB over 0.2/mm"), 0U) << detectable_words(e, 2);
 }
 

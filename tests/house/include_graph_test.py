@@ -31,7 +31,7 @@ WALLS = {
     r"nettle/": ["data-schema/base"],
     r"opencv2/|cairo|pango|png": ["spatial/picture/engine"],
     r"pugixml": ["capture/import"],
-    r"Eigen/|unsupported/Eigen": ["analysis/identify"],
+    r"Eigen/|unsupported/Eigen": ["analysis/compare", "analysis/identify"],
     r"CLI/": ["data-schema/command"],
 }
 

@@ -112,7 +112,7 @@ MAY_INCLUDE = {
         "session} spatial/{cli picture}",
     "analysis/compare":
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
-        "dsp/fourier dsp/resample features spectrogram strokes texture}",
+        "dsp/fourier dsp/resample features numbers spectrogram strokes texture}",
     "analysis/demo":
         "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
         "sim/bench} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kStep = 1e-5;
+constexpr double kDerivativeStep = 1e-5;
 constexpr double kTolerance = 1e-12;
 constexpr int kMostEvaluations = 200;
 constexpr double kNearBound = 1e-3;
@@ -35,9 +35,9 @@ struct Problem {
     MatrixXd j(count, c.size());
     for (Index i = 0; i < c.size(); ++i) {
       VectorXd ahead = c, behind = c;
-      ahead[i] += kStep;
-      behind[i] -= kStep;
-      j.col(i) = (at(ahead) - at(behind)) / (2 * kStep);
+      ahead[i] += kDerivativeStep;
+      behind[i] -= kDerivativeStep;
+      j.col(i) = (at(ahead) - at(behind)) / (2 * kDerivativeStep);
     }
     return j;
   }
