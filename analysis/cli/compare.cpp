@@ -87,7 +87,7 @@ schema::Results compare_results(const CompareVerbOptions& o, const ComparedNames
 
 using Tell = std::function<void(double)>;
 
-Result<Report> compare_pair(const CompareVerbOptions& o, bool json, ComparedInput& a, ComparedInput& b,
+Result<Report> compare_pair(const CompareVerbOptions& o, ComparedInput& a, ComparedInput& b,
                             const Tell& tell) {
   const bool with_target = a.played.has_value() != b.played.has_value();
   if (with_target && o.compare.pair.align == PairAlign::none)
@@ -103,17 +103,15 @@ Result<Report> compare_pair(const CompareVerbOptions& o, bool json, ComparedInpu
   const auto written = write_outputs(o.outputs, o.existing, compare_results(o, names, *comparison), report,
                                      [&] { return comparison_page(*comparison, names); });
   TACTO_TRY(written);
-  if (o.outputs.empty()) return report;
-  if (!json) return brief_compare_report(names, *comparison, o.outputs);
-  return report.add("written", o.outputs);
+  return o.outputs.empty() ? report : report.add("written", o.outputs);
 }
 
-Result<Report> compare_named_pair(const CompareVerbOptions& o, bool json, const Tell& tell) {
+Result<Report> compare_named_pair(const CompareVerbOptions& o, const Tell& tell) {
   auto a = compared_input(o.a, o.stroke_a, playback::part_of(tell, 0, 0.4));
   TACTO_TRY(a);
   auto b = compared_input(o.b, o.stroke_b, playback::part_of(tell, 0.4, 0.8));
   TACTO_TRY(b);
-  return compare_pair(o, json, *a, *b, playback::part_of(tell, 0.8, 1));
+  return compare_pair(o, *a, *b, playback::part_of(tell, 0.8, 1));
 }
 
 SurfaceSide surface_side(const std::vector<std::string>& names, std::vector<spatial::NamedTexture> textures) {
@@ -166,7 +164,7 @@ Result<Report> compare_sides(const CompareVerbOptions& o, bool json, const Tell&
   tell(0.8);
   if (!lists && a->size() == 1 && b->size() == 1) {
     ComparedInput one = compared_input(std::move(a->front())), other = compared_input(std::move(b->front()));
-    return compare_pair(o, json, one, other, playback::part_of(tell, 0.8, 1));
+    return compare_pair(o, one, other, playback::part_of(tell, 0.8, 1));
   }
   TACTO_TRY(check_sides(*a, *b));
   schema::Results results;
@@ -184,7 +182,7 @@ Result<Report> run_compare(const CompareVerbOptions& o, bool json) {
   cli::Progress progress("comparing");
   const Tell tell = [&](double part) { progress.update(part); };
   const bool pair = o.stroke_a > 0 || o.stroke_b > 0 || names_a_session(o.a) || names_a_session(o.b);
-  return pair ? compare_named_pair(o, json, tell) : compare_sides(o, json, tell);
+  return pair ? compare_named_pair(o, tell) : compare_sides(o, json, tell);
 }
 
 void declare_pairing(CLI::App& app, CompareVerbOptions& o) {

@@ -100,12 +100,6 @@ std::string rms_key(const char* whose, const std::string& unit) {
   return std::string(whose) + (unit == "N" ? "_rms_n" : unit == "m" ? "_rms_m" : "_rms");
 }
 
-std::string rms_words(const Comparison& c, double rms) {
-  if (c.pair.unit == "N") return for_people(rms, Dimension::force);
-  if (c.pair.unit == "m") return for_people(rms, Dimension::length);
-  return fmt::format("{:.4g} {}", rms, c.pair.unit);
-}
-
 std::string compared_band(const Comparison& c) {
   return fmt::format("{} to {}", for_people(c.low_per_m, Dimension::spatial_frequency),
                      for_people(c.high_per_m, Dimension::spatial_frequency));
@@ -114,45 +108,6 @@ std::string compared_band(const Comparison& c) {
 void add_rms(Report& report, const Comparison& c) {
   report.add("rms_band", compared_band(c) + ": of both RMS values, the band that is compared");
   report.add(rms_key("a", c.pair.unit), c.a_rms).add(rms_key("b", c.pair.unit), c.b_rms);
-}
-
-// A line has at most 120 columns; the widest label and the gap use 12 of them.
-void add_wrapped(Report& report, std::string key, const std::string& text) {
-  constexpr std::size_t kColumns = 108;
-  std::string line;
-  const auto flush = [&] {
-    report.add(key, line);
-    key.clear();
-    line.clear();
-  };
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t to = std::min(text.find(' ', from), text.size());
-    if (!line.empty() && line.size() + 1 + to - from > kColumns) flush();
-    line += (line.empty() ? "" : " ") + text.substr(from, to - from);
-    from = to + 1;
-  }
-  flush();
-}
-
-// The origin without its conditions, which the files and the page contain.
-std::string short_origin(const std::string& simulated) {
-  return simulated.substr(0, simulated.find(':'));
-}
-
-void add_origin(Report& report, const Comparison& c) {
-  const std::string a = short_origin(c.a_simulated), b = short_origin(c.b_simulated);
-  if (a.empty() && b.empty()) return;
-  add_wrapped(report, "simulated",
-              a == b      ? "A and B " + a
-              : a.empty() ? "B " + b
-              : b.empty() ? "A " + a
-                          : "A " + a + ", B " + b);
-}
-
-std::string place_by_place(const Comparison& c) {
-  return fmt::format("coherence {:.2f} (chance {:.2f}), error of B {:.1f} dB, gain {:.3g}: {}", *c.coherence,
-                     c.chance_coherence, *c.error_db, *c.gain,
-                     c.point_by_point ? "one place, point by point" : "not point by point");
 }
 
 }  // namespace
@@ -178,34 +133,6 @@ Report compare_report(const ComparedNames& names, const Comparison& c) {
   if (names.with_target) return report;
   report.add("matched", c.formants.matched.size()).add("missed", c.formants.missed.size());
   return report.add("extra", c.formants.extra.size()).add("formants", formant_rows(c));
-}
-
-Report brief_compare_report(const ComparedNames& names, const Comparison& c,
-                            const std::vector<std::string>& written) {
-  Report report;
-  if (names.with_target) {
-    report.add("error_db", *c.error_db);
-  } else {
-    report.add("verdict", verdict_words(c.verdict.likeness));
-    add_wrapped(report, "because", c.verdict.because);
-    add_wrapped(report, "detectable", detectable_words(c.evidence, c.tolerance_db));
-  }
-  add_wrapped(report, "written", fmt::format("{}", fmt::join(written, " ")));
-  report.add("A", names.a).add("B", names.b);
-  add_origin(report, c);
-  add_wrapped(report, "compared",
-              fmt::format("{}, {}, aligned by {}, in {} windows of {}",
-                          for_people(c.pair.length_m(), Dimension::length), compared_band(c), c.pair.aligned,
-                          c.evidence.segments, for_people(c.window_m, Dimension::length)));
-  add_wrapped(report, "rms",
-              fmt::format("A {}, B {}, both from {}", rms_words(c, c.a_rms), rms_words(c, c.b_rms),
-                          compared_band(c)));
-  if (c.pair.paired) add_wrapped(report, "places", place_by_place(c));
-  if (names.with_target) return report;
-  add_wrapped(report, "formants",
-              fmt::format("{} matched, {} missed, {} extra", c.formants.matched.size(),
-                          c.formants.missed.size(), c.formants.extra.size()));
-  return report;
 }
 
 }  // namespace tacto::analysis

@@ -11,11 +11,7 @@
 
 namespace tacto::analysis {
 
-/// The complete report: for --json, for results, and for the terminal if no files are written.
+/// The whole report, the verdict first.
 cli::Report compare_report(const ComparedNames& names, const Comparison& comparison);
-
-/// At most 15 lines of at most 120 columns: for the terminal if the files `written` contain the rest.
-cli::Report brief_compare_report(const ComparedNames& names, const Comparison& comparison,
-                                 const std::vector<std::string>& written);
 
 }  // namespace tacto::analysis
