@@ -13,25 +13,29 @@
 
 namespace {
 
-// In the order of use: get data, inspect them, make textures, show them, play them.
-constexpr std::array<const tacto::cli::Verb*, 28> kVerbs = {
-    &tacto::firmware_host::kScanVerb, &tacto::capture::kDoctorVerb,      &tacto::capture::kCalibrateVerb,
-    &tacto::capture::kImportVerb,     &tacto::capture::kRecordVerb,      &tacto::capture::kRecoverVerb,
-    &tacto::capture::kListVerb,       &tacto::schema::kInfoVerb,         &tacto::schema::kValidateVerb,
-    &tacto::spatial::kSpatialVerb,    &tacto::spatial::kSpectrogramVerb, &tacto::spatial::kSheetVerb,
-    &tacto::spatial::kFormantsVerb,   &tacto::spatial::kDescribeVerb,    &tacto::spatial::kCertifyVerb,
-    &tacto::playback::kRenderVerb,    &tacto::playback::kExplainVerb,    &tacto::playback::kPlayVerb,
-    &tacto::playback::kCtlVerb,       &tacto::playback::kSessionVerb,    &tacto::playback::kReplayVerb,
-    &tacto::analysis::kCompareVerb,   &tacto::analysis::kFidelityVerb,   &tacto::analysis::kReportVerb,
-    &tacto::analysis::kExtremesVerb,  &tacto::analysis::kIdentifyVerb,   &tacto::analysis::kTradeVerb,
-    &tacto::analysis::kDemoVerb,
+using namespace tacto;
+
+// The groups of README.
+const cli::VerbGroup kGroups[] = {
+    {"Record",
+     {&firmware_host::kScanVerb, &capture::kDoctorVerb, &capture::kCalibrateVerb, &capture::kRecordVerb,
+      &capture::kRecoverVerb, &capture::kListVerb, &capture::kImportVerb}},
+    {"See",
+     {&spatial::kSpatialVerb, &spatial::kSpectrogramVerb, &spatial::kSheetVerb, &spatial::kFormantsVerb,
+      &spatial::kDescribeVerb, &spatial::kCertifyVerb, &schema::kInfoVerb, &schema::kValidateVerb}},
+    {"Play",
+     {&playback::kRenderVerb, &playback::kPlayVerb, &playback::kCtlVerb, &playback::kSessionVerb,
+      &playback::kReplayVerb, &playback::kExplainVerb}},
+    {"Ask",
+     {&analysis::kIdentifyVerb, &analysis::kFidelityVerb, &analysis::kCompareVerb, &analysis::kReportVerb,
+      &analysis::kTradeVerb, &analysis::kExtremesVerb, &analysis::kDemoVerb}},
 };
 
-constexpr std::array<const tacto::cli::HelpTopic*, 1> kTopics = {&tacto::firmware_host::kSimTopic};
+constexpr std::array<const cli::HelpTopic*, 1> kTopics = {&firmware_host::kSimTopic};
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tacto::schema::open_closed_descriptors();
-  return tacto::cli::run_command(kVerbs, argc, argv, kTopics);
+  schema::open_closed_descriptors();
+  return cli::run_command(kGroups, argc, argv, kTopics);
 }

@@ -23,10 +23,19 @@ struct FidelityVerbOptions {
   schema::Existing existing = schema::Existing::keep;
 };
 
+// The limits that explain the row's error: they removed as much, or at most 6 dB less.
+std::string limits_behind(const FidelitySpeed& speed, const FidelityRow& row) {
+  constexpr double kLessDb = 6;
+  if (!speed.removed_db || *speed.removed_db < row.error_db - kLessDb) return "no limit";
+  if (speed.slew_limited == 0) return "drive limit";
+  return speed.amplitude_limited == 0 ? "slew limit" : "drive and slew limit";
+}
+
 Report tray_row(const FidelitySpeed& speed, const FidelityRow& row, bool simulated) {
   Report report;
   if (speed.speed_mps > 0) report.add("speed_mps", speed.speed_mps);
   report.add("tray", row.tray).add("error_db", row.error_db).add("error_in_place_db", row.error_in_place_db);
+  report.add("limited_by", limits_behind(speed, row));
   if (row.rerecorded_db) report.add("rerecorded_db", *row.rerecorded_db);
   report.add("shift_m", row.shift_m).add("level_db", row.level_db);
   report.add("target_rms_m", row.target_rms_m).add("displacement_rms_m", row.finger_rms_m);
@@ -57,7 +66,7 @@ Report fidelity_report(const Fidelity& fidelity) {
     for (const FidelityRow& row : speed.rows)
       rows.push_back(tray_row(speed, row, !fidelity.simulated.empty()));
   }
-  return report.add("fidelity", std::move(rows)).add("taken_away", std::move(taken));
+  return report.add("fidelity", std::move(rows)).add("lost", std::move(taken));
 }
 
 schema::Results fidelity_results(const Fidelity& fidelity) {

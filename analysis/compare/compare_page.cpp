@@ -36,7 +36,7 @@ double shown_scale(const std::string& unit) {
 // The mean density of the bins within each of the equal steps of a logarithmic axis.
 ResultCurve density_curve(const Comparison& c, const std::string& name, const std::vector<double>& density) {
   ResultCurve curve{name, {}, {}, false};
-  const double scale = std::pow(shown_scale(c.pair.unit), 2) * kPerMm;
+  const double scale = std::pow(shown_scale(c.pair.unit), 2) / kPerMm;  // per 1/mm, from per 1/m
   constexpr double kStepsADecade = 200;
   double sum = 0, frequencies = 0, count = 0;
   long step = 0;

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -19,7 +18,6 @@ using playback::Prepared;
 
 constexpr const char* kExactTicks = "the kernel again in double precision; re the drive's RMS";
 constexpr double kStatedKernelError = 5.6e-6;  // -105 dB: TickKernel
-constexpr double kMostTimeInSilence = 3;       // of a tick; a processor that traps denormals needs 10 to 100
 constexpr double kKernelPi = std::numbers::pi;
 
 // At 100 kHz the filter has too few taps to invert the transducer (refused), so only its gain is inverted. If
@@ -149,27 +147,6 @@ SettledChain settled(core::SectionChain chain, float input, double target) {
   return end;
 }
 
-// Duration of a block of ticks with a constant input.
-double block_time_s(core::SectionChain& chain, float input, float& sum) {
-  constexpr int kTicks = 2000;
-  const auto begin = std::chrono::steady_clock::now();
-  for (int i = 0; i < kTicks; ++i) sum += chain.filter(input);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-// Ratio of the tick's duration in silence to that at full scale. Each is the shortest of many blocks, to
-// exclude other load of the machine.
-double time_in_silence(core::SectionChain silent, core::SectionChain busy) {
-  constexpr int kBlocks = 500;
-  double quiet_s = INFINITY, loud_s = INFINITY;
-  float sum = 0;
-  for (int k = 0; k < kBlocks; ++k) {
-    quiet_s = std::min(quiet_s, block_time_s(silent, 0, sum));
-    loud_s = std::min(loud_s, block_time_s(busy, 5, sum));
-  }
-  return std::isfinite(sum) ? quiet_s / loud_s : INFINITY;
-}
-
 std::vector<wire::Section> single_precision(const std::vector<spatial::Section>& sections) {
   std::vector<wire::Section> rounded;
   for (const spatial::Section& h : sections)
@@ -186,8 +163,6 @@ void add_silence(std::vector<Extreme>& rows) {
   for (int i = 0; i < 200000; ++i) (void)chain.filter(static_cast<float>(5 * std::sin(0.03 * i)));
   const SettledChain silent = settled(chain, 0, 0);
   const SettledChain loud = settled(chain, 5, 0);
-  core::SectionChain denormal = chain;
-  for (std::uint64_t i = 0; i < silent.ticks; ++i) (void)denormal.filter(0);
   const auto words = [](const SettledChain& end) {
     return end.cycle > 0 ? fmt::format("after {} ticks its state repeats every {}: so it does after 1e9",
                                        end.ticks, end.cycle)
@@ -196,9 +171,6 @@ void add_silence(std::vector<Extreme>& rows) {
   rows.push_back({"firmware-host",
                   "band-pass 15-500 Hz at 20 kHz, order 4: silence for ever after full scale", "zero; re 5 V",
                   silent.cycle > 0 ? silent.largest / 5 : 1, 0, words(silent)});
-  rows.push_back({"firmware-host", "the same: a tick's time in that silence",
-                  "the same chain under full scale, by turns; re its time", time_in_silence(denormal, chain),
-                  kMostTimeInSilence, "no denormals; shortest of 500 blocks of 2000 ticks"});
   rows.push_back({"firmware-host", "the same: full scale for ever",
                   "zero, the band-pass's gain at rest; re 5 V", loud.cycle > 0 ? loud.largest / 5 : 1, 1e-3,
                   words(loud)});

@@ -53,9 +53,13 @@ schema::Result<void> DiskWriter::write(const FrameBlock& block) {
     const schema::FaultNote note{fault.frame, firmware_host::words_of(fault.code, fault.detail).what};
     if (const auto added = live_.add(note); !added) return added;
   }
+  if (const auto written = live_.write(std::span<const std::int32_t>(block.codes).first(block.used));
+      !written)
+    return written;
+  // After the frames: `recover` removes a mark that is beyond the last frame.
   for (const schema::Mark& mark : block.marks)
     if (const auto added = live_.add(mark); !added) return added;
-  return live_.write(std::span<const std::int32_t>(block.codes).first(block.used));
+  return {};
 }
 
 }  // namespace tacto::capture

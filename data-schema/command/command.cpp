@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -15,6 +17,7 @@
 #include "data-schema/command/man_page.hpp"
 #include "data-schema/command/option_headings.hpp"
 #include "data-schema/files/files.hpp"
+#include "data-schema/report/progress.hpp"
 #include "data-schema/report/report_entries.hpp"
 #include "data-schema/report/report_text.hpp"
 #include "data-schema/report/warnings.hpp"
@@ -24,13 +27,9 @@ namespace tacto::cli {
 namespace {
 
 constexpr std::string_view kFooter =
-    "Help on a verb or a topic (sim, units, exit-codes): tactograph help TOPIC\n"
     "Exit codes: 0 done, 1 internal error, 2 command line, 3 file or device not found, 4 malformed file,\n"
     "5 data that cannot be used for this, 6 file of a newer version, 7 cannot write, 8 device failed.\n"
     "Quantities have a unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
-
-// A verb that writes its results to files prints at most half a screen. Warnings are among these lines.
-constexpr std::size_t kLinesBesideFiles = 15, kFewestLines = 6;
 
 using Verbs = std::span<const Verb* const>;
 using Topics = std::span<const HelpTopic* const>;
@@ -39,7 +38,16 @@ struct Entry {
   CLI::App* app = nullptr;
   Action action;
   bool json = false;
+  std::string rows;
 };
+
+// "all", or a number of rows.
+std::string is_row_count(const std::string& text) {
+  const bool number = !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == text.npos;
+  return text == "all" || (number && std::stoul(text) > 0)
+             ? ""
+             : "'" + text + "' is neither a number of rows nor all";
+}
 
 Entry declare(CLI::App& parent, const Verb& verb) {
   Entry entry;
@@ -49,9 +57,15 @@ Entry declare(CLI::App& parent, const Verb& verb) {
   return entry;
 }
 
-bool writes_files(const Entry& entry) {
-  const CLI::Option* output = entry.app->get_option_no_throw("--output");
-  return output != nullptr && (output->count() > 0 || !output->get_default_str().empty());
+void add_output_options(Entry& entry) {
+  entry.app->add_flag("--json", entry.json, "Print results and errors as JSON");
+  entry.app->add_flag_callback("--progress", show_progress_lines,
+                               "Print progress on stderr also if it is not a terminal");
+  entry.app
+      ->add_option("--rows", entry.rows,
+                   "Rows of each table to print; default: on a terminal as many as fit, else all")
+      ->type_name("N|all")
+      ->check(is_row_count);
 }
 
 bool has_key(const Report& report, const std::string& key) {
@@ -59,10 +73,23 @@ bool has_key(const Report& report, const std::string& key) {
                              [&](const auto& entry) { return entry.first == key; });
 }
 
+// On a terminal, tables stop at its height, less the line of the next prompt. In a file or pipe all is
+// printed.
+TextLimits limits_of(const Entry& entry) {
+  TextLimits limits;
+  winsize size{};
+  if (isatty(STDOUT_FILENO) == 1 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 1) {
+    limits.columns = size.ws_col;
+    limits.lines = size.ws_row - 1U;
+  }
+  if (entry.rows.empty()) return limits;
+  limits.lines = 0;
+  if (entry.rows != "all") limits.rows = std::stoul(entry.rows);
+  return limits;
+}
+
 std::string printed(Report report, const Entry& entry) {
-  const std::size_t lines =
-      kLinesBesideFiles - std::min(printed_warnings(), kLinesBesideFiles - kFewestLines);
-  if (!entry.json) return text_of(report, {.lines = writes_files(entry) ? lines : 0});
+  if (!entry.json) return text_of(report, limits_of(entry));
   if (const auto warnings = all_warnings(); !warnings.empty() && !has_key(report, "warnings"))
     report.add("warnings", warnings);
   return report.json();
@@ -114,8 +141,9 @@ int print_parse_error(const CLI::App& app, const CLI::ParseError& error, bool js
                      json);
 }
 
-void describe(CLI::App& app) {
-  app.footer(std::string(kFooter));
+void describe(CLI::App& app, Topics topics) {
+  app.footer(fmt::format("Help on a verb or a topic ({}): tactograph help TOPIC\n{}",
+                         fmt::join(topic_names(topics), ", "), kFooter));
   app.set_version_flag("--version", std::string(kCreator));
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
@@ -178,21 +206,25 @@ void handle_signals() {
 
 }  // namespace
 
-int run_command(Verbs verbs, int argc, const char* const* argv, Topics topics) {
+int run_command(std::span<const VerbGroup> groups, int argc, const char* const* argv, Topics topics) {
   handle_signals();
+  std::vector<const Verb*> verbs;
+  for (const VerbGroup& group : groups) verbs.insert(verbs.end(), group.verbs.begin(), group.verbs.end());
   const bool json = asks_for_json(argc, argv);
   if (argc > 1 && is_unknown_verb(verbs, argv[1])) return refuse_verb(verbs, argv[1], json);
   CLI::App app(
       "Records how a surface pulls on a finger, turns it into force against position, and plays it back.",
       "tactograph");
-  describe(app);
+  describe(app, topics);
   std::vector<std::unique_ptr<Entry>> entries;
-  for (const Verb* verb : verbs) {
-    entries.push_back(std::make_unique<Entry>(declare(app, *verb)));
-    entries.back()->app->add_flag("--json", entries.back()->json, "Print results and errors as JSON");
-    put_below_headings(verb->name, *entries.back()->app);
-  }
-  CLI::App* help = app.add_subcommand("help", "Show help on a verb or a topic: sim, units, exit-codes");
+  for (const VerbGroup& group : groups)
+    for (const Verb* verb : group.verbs) {
+      entries.push_back(std::make_unique<Entry>(declare(app, *verb)));
+      entries.back()->app->group(group.heading);
+      add_output_options(*entries.back());
+      put_below_headings(verb->name, *entries.back()->app);
+    }
+  CLI::App* help = app.add_subcommand("help", "Show help on a verb or a topic");
   std::string word;
   help->add_option("TOPIC", word, "A verb or a topic");
   CLI::App* completion = app.add_subcommand("completion", "Print the bash completion script");

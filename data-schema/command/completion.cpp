@@ -14,7 +14,7 @@ namespace {
 
 // The completions of a verb, by the option before the word, or "positional".
 struct Taken {
-  std::set<std::string> options = {"--json"};
+  std::set<std::string> options = {"--json", "--progress", "--rows"};
   std::map<std::string, std::string> values, units;
 };
 

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "data-schema/base/quantity.hpp"
+#include "data-schema/files/embedded_files.hpp"
 
 namespace tacto::cli {
 namespace {
@@ -33,8 +36,24 @@ std::string exit_codes_text() {
          "With --json an error is an object on one line of stderr: what, where, remedy, exit_code.\n";
 }
 
-constexpr HelpTopic kTopics[] = {{"units", "how quantities are written, and the known units", units_text},
-                                 {"exit-codes", "meaning of the exit codes", exit_codes_text}};
+// The items of WORDS.md, without its marks.
+std::string glossary_text() {
+  const auto files = schema::embedded_files();
+  const std::string_view page = std::ranges::find(files, "WORDS.md", &schema::EmbeddedFile::name)->text;
+  std::string text;
+  for (std::size_t at = page.find("\n- "); at < page.size(); at = page.find("\n- ", at + 1)) {
+    const std::size_t end = std::min(page.find("\n- ", at + 1), page.size());
+    for (const char c : page.substr(at + 3, end - at - 3))
+      if (c != '*') text += c;
+    if (text.back() != '\n') text += '\n';
+  }
+  return text;
+}
+
+constexpr HelpTopic kTopics[] = {
+    {"words", "the terms: tray, drive, tick, stroke, scene, formant and others", glossary_text},
+    {"units", "how quantities are written, and the known units", units_text},
+    {"exit-codes", "meaning of the exit codes", exit_codes_text}};
 
 template <class Use>
 void for_each_topic(std::span<const HelpTopic* const> topics, Use use) {

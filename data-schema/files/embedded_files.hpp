@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The schemas and presets of this room, embedded in the program.
+// The schemas, the presets and the glossary of this room, embedded in the program.
 #pragma once
 
 #include <span>

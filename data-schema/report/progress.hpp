@@ -7,8 +7,8 @@
 
 namespace tacto::cli {
 
-/// Shows "recording  42 %" once a second has passed: redrawn in place on a terminal, a line every 5 s
-/// elsewhere.
+/// Shows "recording  42 %" on a terminal once a second has passed, redrawn in place. Elsewhere it prints
+/// nothing, or with show_progress_lines() a line every 5 s.
 class Progress {
  public:
   explicit Progress(std::string task);
@@ -22,9 +22,13 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
   std::string task_;
-  bool terminal_;
+  bool terminal_, silent_;
   bool shown_ = false;
   Clock::time_point next_;
 };
+
+/// For the option --progress: progress is also printed where stderr is no terminal. Call it before the work
+/// begins.
+void show_progress_lines();
 
 }  // namespace tacto::cli

@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
-#include <string_view>
 
 #include "data-schema/report/report_entries.hpp"
 #include "data-schema/report/text_table.hpp"
@@ -41,14 +39,11 @@ bool is_nested(const Report& row) {
   });
 }
 
-// Rows with tables of their own, or with more columns than fit on a line, are printed one below the other.
-bool is_table(const std::vector<Report>& rows) {
+// nullopt for rows with tables of their own or with many columns, and for a table that is too wide.
+std::optional<Lines> table_of(const std::vector<Report>& rows, std::size_t columns) {
   constexpr std::size_t kMostColumns = 20;
-  return keys_of(rows).size() <= kMostColumns && std::ranges::none_of(rows, is_nested);
-}
-
-TextTable table_of(const std::vector<Report>& rows, std::size_t columns) {
   const auto keys = keys_of(rows);
+  if (keys.size() > kMostColumns || std::ranges::any_of(rows, is_nested)) return std::nullopt;
   TextRow header;
   for (const auto& key : keys) header.push_back(label_of(key));
   std::vector<TextRow> cells;
@@ -56,7 +51,7 @@ TextTable table_of(const std::vector<Report>& rows, std::size_t columns) {
     cells.emplace_back();
     for (const auto& key : keys) cells.back().push_back(find_cell(row, key));
   }
-  return {std::move(header), std::move(cells), columns};
+  return table_lines(std::move(header), std::move(cells), columns);
 }
 
 Lines split(const std::string& text) {
@@ -84,16 +79,23 @@ Lines figure_lines(const std::string& label, const std::string& text, std::size_
   return all;
 }
 
-Lines all_lines(const Report& report, std::size_t columns);
+Lines all_lines(const Report& report, std::size_t columns, std::size_t most_rows);
 
-Lines list_lines(const std::vector<Report>& rows, std::size_t columns) {
+Lines list_lines(const std::vector<Report>& rows, std::size_t columns, std::size_t most_rows) {
   if (rows.empty()) return {"  none"};
-  if (is_table(rows)) return table_of(rows, columns).lines();
+  const std::vector<Report> shown(
+      rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(std::min(rows.size(), most_rows)));
   Lines lines;
-  for (const Report& row : rows) {
-    lines.emplace_back();
-    append(lines, all_lines(row, columns));
+  if (auto table = table_of(shown, columns)) {
+    lines = std::move(*table);
+  } else {
+    for (const Report& row : shown) {
+      lines.emplace_back();
+      append(lines, all_lines(row, columns, most_rows));
+    }
   }
+  if (const std::size_t more = rows.size() - shown.size(); more > 0)
+    lines.push_back(fmt::format("  and {} more row{} (--rows all)", more, more == 1 ? "" : "s"));
   return lines;
 }
 
@@ -104,13 +106,13 @@ std::size_t label_width_of(const Report& report) {
   return width + 2;
 }
 
-Lines all_lines(const Report& report, std::size_t columns) {
+Lines all_lines(const Report& report, std::size_t columns, std::size_t most_rows) {
   const std::size_t width = label_width_of(report);
   Lines lines;
   for (const auto& [key, value] : ReportPrinter::entries(report)) {
     if (const auto* rows = std::get_if<std::vector<Report>>(&value)) {
       lines.push_back(label_of(key));
-      append(lines, list_lines(*rows, columns));
+      append(lines, list_lines(*rows, columns, most_rows));
     } else {
       append(lines, figure_lines(label_of(key), cell_text(key, value), width, columns));
     }
@@ -118,163 +120,13 @@ Lines all_lines(const Report& report, std::size_t columns) {
   return lines;
 }
 
-// Entries that a short report keeps before all other figures: where the results are, whether they are valid,
-// what to do next.
-constexpr std::array<std::string_view, 21> kKept = {
-    "file",       "files",    "page",      "written",   "results", "picture",     "session",
-    "transducer", "verdict",  "simulated", "fault",     "failed",  "ended",       "next",
-    "exit",       "error_db", "texture",   "recording", "pace",    "lost_frames", "beyond_measurement_noise"};
-
-bool is_kept(const std::string& key) {
-  return std::ranges::find(kKept, key) != kKept.end();
-}
-
-// A report in few lines: at first one line for each entry, then as many more for each as there are.
-class ShortText {
- public:
-  ShortText(const Report& report, const TextLimits& limits)
-      : limits_(limits), width_(label_width_of(report)) {
-    for (const auto& [key, value] : ReportPrinter::entries(report)) add(key, value);
-  }
-
-  Lines lines() {
-    pack_figures();
-    drop_figures();
-    share_out();
-    Lines lines;
-    for (const Block& block : blocks_)
-      if (block.shown > 0 || !block.table)
-        lines.insert(lines.end(), block.lines.begin(),
-                     block.lines.begin() + static_cast<std::ptrdiff_t>(block.shown));
-    if (const std::string words = missing_words(); !words.empty())
-      lines.push_back(fmt::format("not shown: {}; --json prints all", words));
-    return lines;
-  }
-
- private:
-  struct Block {
-    std::string key;
-    Lines lines;
-    std::size_t shown = 1;
-    std::size_t missing_rows = 0, missing_columns = 0;
-    bool joinable = false;    // a short figure with room beside it
-    std::size_t figures = 1;  // two if another is beside it
-    std::optional<TextTable> table;
-  };
-
-  void add(const std::string& key, const ReportPrinter::Value& value) {
-    Block block;
-    block.key = key;
-    if (const auto* rows = std::get_if<std::vector<Report>>(&value)) {
-      if (!rows->empty() && is_table(*rows)) block.table = table_of(*rows, limits_.columns);
-      block.missing_rows = rows->size();
-      block.lines = {
-          padded(label_of(key), width_) +
-          (rows->empty() ? "none" : fmt::format("{} row{}", rows->size(), rows->size() == 1 ? "" : "s"))};
-    } else {
-      block.lines = figure_lines(label_of(key), cell_text(key, value), width_, limits_.columns);
-    }
-    blocks_.push_back(std::move(block));
-  }
-
-  // The last line states what is missing.
-  std::size_t room() const {
-    std::size_t used = 1;
-    for (const Block& block : blocks_) used += block.shown;
-    return used < limits_.lines ? limits_.lines - used : 0;
-  }
-
-  // Consecutive short figures are printed two on a line.
-  void pack_figures() {
-    const std::size_t half = limits_.columns / 2;
-    const auto is_short = [&](const Block& block) {
-      return !block.table && block.missing_rows == 0 && block.lines.size() == 1 && !is_kept(block.key) &&
-             width_of(block.lines.front()) + 2 <= half;
-    };
-    std::vector<Block> packed;
-    for (Block& block : blocks_) {
-      const bool joins = !packed.empty() && packed.back().joinable && is_short(block);
-      if (joins) {
-        packed.back().lines.front() = padded(packed.back().lines.front(), half) + block.lines.front();
-        packed.back().joinable = false;
-        packed.back().figures = 2;
-        continue;
-      }
-      block.joinable = is_short(block);
-      packed.push_back(std::move(block));
-    }
-    blocks_ = std::move(packed);
-  }
-
-  void drop_figures() {
-    for (const bool kept : {false, true})
-      while (blocks_.size() + 1 > limits_.lines && drop_last(kept)) {
-      }
-    // The first table is the main result: some of its rows come before less important figures.
-    const auto table =
-        std::ranges::find_if(blocks_, [](const Block& block) { return block.table.has_value(); });
-    if (table == blocks_.end()) return;
-    constexpr std::size_t kFewRows = 4, kHeader = 2;
-    const std::size_t target = std::min(kFewRows, table->table->rows()) + kHeader;
-    while (room() < target && drop_last(false)) {
-    }
-  }
-
-  // The last figure, kept or not; never a table.
-  bool drop_last(bool kept) {
-    const auto last = std::ranges::find_if(blocks_.rbegin(), blocks_.rend(), [&](const Block& block) {
-      return !block.table && is_kept(block.key) == kept;
-    });
-    if (last == blocks_.rend()) return false;
-    if (last->missing_rows > 0)
-      missing_rows_ += last->missing_rows;
-    else
-      missing_figures_ += last->figures;
-    blocks_.erase(std::next(last).base());
-    return true;
-  }
-
-  void share_out() {
-    for (Block& block : blocks_)
-      if (block.table) show_rows(block);
-    for (Block& block : blocks_)
-      if (!block.table) block.shown += std::min(room(), block.lines.size() - block.shown);
-  }
-
-  void show_rows(Block& block) {
-    const TextTable::Part part = block.table->part(room());
-    if (part.rows == 0) return;
-    block.missing_rows = block.table->rows() - part.rows;
-    block.missing_columns = block.table->columns() - part.columns;
-    append(block.lines, part.lines);
-    block.shown = block.lines.size();
-  }
-
-  std::string missing_words() const {
-    std::size_t rows = missing_rows_, columns = 0, lines = 0;
-    for (const Block& block : blocks_) {
-      rows += block.missing_rows;
-      columns += block.missing_columns;
-      lines += block.lines.size() - block.shown;
-    }
-    std::string words;
-    for (const auto& [count, what] :
-         {std::pair{rows, "row"}, {columns, "column"}, {missing_figures_, "figure"}, {lines, "line"}})
-      if (count > 0)
-        words += fmt::format("{}{} {}{}", words.empty() ? "" : ", ", count, what, count == 1 ? "" : "s");
-    return words;
-  }
-
-  TextLimits limits_;
-  std::size_t width_, missing_figures_ = 0, missing_rows_ = 0;
-  std::vector<Block> blocks_;
-};
-
 }  // namespace
 
 std::string text_of(const Report& report, const TextLimits& limits) {
-  Lines lines = all_lines(report, limits.columns);
-  if (limits.lines > 0 && lines.size() > limits.lines) lines = ShortText(report, limits).lines();
+  constexpr std::size_t kFewestRows = 5;
+  Lines lines = all_lines(report, limits.columns, limits.rows);
+  for (std::size_t rows = limits.lines; rows >= kFewestRows && lines.size() > limits.lines; --rows)
+    lines = all_lines(report, limits.columns, rows);
   std::string text;
   for (const std::string& line : lines) text += line + "\n";
   return text;

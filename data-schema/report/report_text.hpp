@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A report as lines on a terminal, within a width and a number of lines.
+// A report as lines of text: on a terminal within its width, and with tables of so many rows that it fits its
+// height.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +10,16 @@
 
 namespace tacto::cli {
 
-/// Columns that a terminal line may have, and lines in all; 0: any number.
+/// `columns` of a line, 0: any number; `lines` of a terminal, 0: any number; `rows` of each table.
 struct TextLimits {
-  std::size_t columns = 120;
+  std::size_t columns = 0;
   std::size_t lines = 0;
+  std::size_t rows = SIZE_MAX;
 };
 
-/// Texts wrap at spaces (a path without spaces is never broken); rows of a table that is too wide continue in
-/// further lines, indented. If there are not enough lines, tables keep their first rows and columns, figures
-/// their first lines, and the last line says how much is missing and that --json prints all of it.
+/// Texts wrap at spaces; a word without spaces, like a path, is never broken. A table that is too wide is
+/// printed one row below the other. If the report has more than `limits.lines`, each table stops after its
+/// first rows, five at least, and says how many more there are. Everything else is whole.
 std::string text_of(const Report& report, const TextLimits& limits);
 
 /// As JSON on one line.

@@ -6,17 +6,6 @@
 #include "data-schema/report/value_text.hpp"
 
 namespace tacto::cli {
-namespace {
-
-constexpr std::size_t kIndent = 4;  // of a row's further lines
-
-std::size_t widest_of(const std::vector<std::string>& lines) {
-  std::size_t widest = 0;
-  for (const std::string& line : lines) widest = std::max(widest, width_of(line));
-  return widest;
-}
-
-}  // namespace
 
 std::vector<std::string> wrapped_text(const std::string& text, std::size_t width) {
   std::vector<std::string> lines;
@@ -33,114 +22,68 @@ std::vector<std::string> wrapped_text(const std::string& text, std::size_t width
   return lines;
 }
 
-TextTable::TextTable(TextRow header, std::vector<TextRow> rows, std::size_t width)
-    : header_(std::move(header)), rows_(std::move(rows)), width_(width) {
-  for (const std::string& each : header_) header_words_.push_back({each});
-  measure();
-  if (width_ == 0 || run_width({0, columns()}) <= width_) return;
-  drop_empty_columns();
-  // A header narrower than its values costs no width; a wider one breaks at its spaces.
-  header_words_.clear();
-  for (std::size_t c = 0; c < columns(); ++c) {
-    std::size_t values = 1;
-    for (const TextRow& row : rows_) values = std::max(values, width_of(row[c]));
-    header_words_.push_back(wrapped_text(header_[c], values));
-  }
-  measure();
-}
+namespace {
 
-void TextTable::drop_empty_columns() {
-  for (std::size_t c = columns(); c-- > 0;) {
-    if (std::ranges::any_of(rows_, [&](const TextRow& row) { return !row[c].empty(); })) continue;
+using Lines = std::vector<std::string>;
+
+void drop_empty_columns(TextRow& header, std::vector<TextRow>& rows) {
+  for (std::size_t c = header.size(); c-- > 0;) {
+    if (std::ranges::any_of(rows, [&](const TextRow& row) { return !row[c].empty(); })) continue;
     const auto at = static_cast<std::ptrdiff_t>(c);
-    header_.erase(header_.begin() + at);
-    for (TextRow& row : rows_) row.erase(row.begin() + at);
+    header.erase(header.begin() + at);
+    for (TextRow& row : rows) row.erase(row.begin() + at);
   }
 }
 
-void TextTable::measure() {
-  widths_.assign(columns(), 0);
-  for (std::size_t c = 0; c < columns(); ++c) {
-    widths_[c] = widest_of(header_words_[c]);
-    for (const TextRow& row : rows_) widths_[c] = std::max(widths_[c], width_of(row[c]));
-  }
-}
-
-// A space before each cell, and one after it if another follows.
-std::size_t TextTable::run_width(const Run& run) const {
+std::size_t width_of_values(const std::vector<TextRow>& rows, std::size_t column) {
   std::size_t width = 0;
-  for (std::size_t c = run.from; c < run.to; ++c) width += 2 + widths_[c];
+  for (const TextRow& row : rows) width = std::max(width, width_of(row[column]));
   return width;
 }
 
-std::vector<TextTable::Run> TextTable::runs() const {
-  std::vector<Run> runs = {{0, 0}};
-  for (std::size_t c = 0; c < columns(); ++c) {
-    const std::size_t indent = runs.size() > 1 ? kIndent : 0;
-    const bool fits = width_ == 0 || indent + run_width({runs.back().from, c + 1}) <= width_;
-    if (!fits && runs.back().to > runs.back().from) runs.push_back({c, c});
-    runs.back().to = c + 1;
-  }
-  return runs;
-}
-
-std::string TextTable::line_of(const TextRow& cells, const Run& run, std::size_t indent) const {
-  std::string line(indent + 1, ' ');
-  for (std::size_t c = run.from; c < run.to; ++c) line += " " + padded(cells[c - run.from], widths_[c]) + " ";
+std::string line_of(const TextRow& cells, const std::vector<std::size_t>& widths) {
+  std::string line = " ";
+  for (std::size_t c = 0; c < cells.size(); ++c) line += " " + padded(cells[c], widths[c]) + " ";
   const std::size_t last = line.find_last_not_of(' ');
   return last == line.npos ? "" : line.substr(0, last + 1);
 }
 
-// The headers' last lines are directly above the values.
-std::vector<std::string> TextTable::header_lines(const Run& run, std::size_t indent) const {
-  std::size_t most = 0;
-  for (std::size_t c = run.from; c < run.to; ++c) most = std::max(most, header_words_[c].size());
-  std::vector<std::string> lines;
-  for (std::size_t i = 0; i < most; ++i) {
+// The header of each column in lines; the last ones are directly above the values.
+std::optional<Lines> lines_of(const std::vector<Lines>& headers, const std::vector<TextRow>& rows,
+                              std::size_t most) {
+  std::vector<std::size_t> widths;
+  std::size_t height = 0, total = 0;
+  for (std::size_t c = 0; c < headers.size(); ++c) {
+    widths.push_back(width_of_values(rows, c));
+    for (const std::string& line : headers[c]) widths.back() = std::max(widths.back(), width_of(line));
+    height = std::max(height, headers[c].size());
+    total += 2 + widths.back();
+  }
+  if (most > 0 && total > most) return std::nullopt;
+  Lines lines;
+  for (std::size_t i = 0; i < height; ++i) {
     TextRow cells;
-    for (std::size_t c = run.from; c < run.to; ++c) {
-      const std::size_t missing = most - header_words_[c].size();
-      cells.push_back(i < missing ? "" : header_words_[c][i - missing]);
+    for (const Lines& header : headers) {
+      const std::size_t missing = height - header.size();
+      cells.push_back(i < missing ? "" : header[i - missing]);
     }
-    lines.push_back(line_of(cells, run, indent));
+    lines.push_back(line_of(cells, widths));
   }
+  for (const TextRow& row : rows) lines.push_back(line_of(row, widths));
   return lines;
 }
 
-std::vector<std::string> TextTable::row_lines(const TextRow& row, const Run& run, std::size_t indent) const {
-  const TextRow cells(row.begin() + static_cast<std::ptrdiff_t>(run.from),
-                      row.begin() + static_cast<std::ptrdiff_t>(run.to));
-  if (width_ == 0 || cells.size() > 1 || indent + run_width(run) <= width_)
-    return {line_of(cells, run, indent)};
-  std::vector<std::string> lines;
-  for (const std::string& piece : wrapped_text(cells.front(), width_ - indent - 2))
-    lines.push_back(std::string(indent + 2, ' ') + piece);
-  return lines;
-}
+}  // namespace
 
-std::vector<std::string> TextTable::lines() const {
-  std::vector<std::string> all;
-  const auto add = [&](const std::vector<std::string>& lines) {
-    all.insert(all.end(), lines.begin(), lines.end());
-  };
-  const auto each_run = runs();
-  for (const Run& run : each_run) add(header_lines(run, run.from == 0 ? 0 : kIndent));
-  for (const TextRow& row : rows_)
-    for (const Run& run : each_run) add(row_lines(row, run, run.from == 0 ? 0 : kIndent));
-  return all;
-}
-
-TextTable::Part TextTable::part(std::size_t most_lines) const {
-  const Run run = runs().front();
-  Part part{header_lines(run, 0), 0, run.to};
-  for (const TextRow& row : rows_) {
-    const auto lines = row_lines(row, run, 0);
-    if (part.lines.size() + lines.size() > most_lines) break;
-    part.lines.insert(part.lines.end(), lines.begin(), lines.end());
-    ++part.rows;
-  }
-  if (part.rows == 0) part.lines.clear();
-  return part;
+std::optional<Lines> table_lines(TextRow header, std::vector<TextRow> rows, std::size_t width) {
+  std::vector<Lines> headers;
+  for (const std::string& each : header) headers.push_back({each});
+  if (auto lines = lines_of(headers, rows, width)) return lines;
+  drop_empty_columns(header, rows);
+  headers.clear();
+  for (std::size_t c = 0; c < header.size(); ++c)
+    headers.push_back(wrapped_text(header[c], std::max<std::size_t>(1, width_of_values(rows, c))));
+  return lines_of(headers, rows, width);
 }
 
 }  // namespace tacto::cli

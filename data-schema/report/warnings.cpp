@@ -2,9 +2,13 @@
 #include "data-schema/report/warnings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 #include <map>
 #include <mutex>
 
@@ -18,7 +22,6 @@ namespace {
 struct Kept {
   std::mutex mutex;
   std::vector<std::string> warnings;
-  std::size_t printed = 0;
 };
 
 Kept& kept() {
@@ -31,16 +34,15 @@ void keep(const std::string& text) {
   kept().warnings.push_back(text);
 }
 
-constexpr std::size_t kWarningColumns = 120, kWarningIndent = 4;
-
+// On a terminal it wraps, with further lines indented. A file or pipe gets one line for each warning.
 void print_wrapped(const std::string& text) {
-  const auto lines =
-      wrapped_text("tactograph: warning: " + on_one_line(text), kWarningColumns - kWarningIndent);
-  {
-    const std::lock_guard lock(kept().mutex);
-    kept().printed += lines.size();
-  }
-  write_message(fmt::format("{}\n", fmt::join(lines, "\n" + std::string(kWarningIndent, ' '))));
+  constexpr std::size_t kIndent = 4;
+  winsize size{};
+  const bool wraps =
+      isatty(STDERR_FILENO) == 1 && ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 2 * kIndent;
+  const auto lines = wrapped_text("tactograph: warning: " + on_one_line(text),
+                                  wraps ? size.ws_col - kIndent : std::numeric_limits<std::size_t>::max());
+  write_message(fmt::format("{}\n", fmt::join(lines, "\n" + std::string(kIndent, ' '))));
 }
 
 struct Group {
@@ -108,11 +110,6 @@ void warn_grouped(std::span<const std::string> sentences) {
 std::vector<std::string> all_warnings() {
   const std::lock_guard lock(kept().mutex);
   return kept().warnings;
-}
-
-std::size_t printed_warnings() {
-  const std::lock_guard lock(kept().mutex);
-  return kept().printed;
 }
 
 void print_warning(const std::string& text) {

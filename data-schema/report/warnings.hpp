@@ -34,10 +34,6 @@ void warn_grouped(std::span<const std::string> sentences);
 /// All warnings of this run, each of them, in order: what --json lists.
 std::vector<std::string> all_warnings();
 
-/// The number of lines that warnings have taken: at most 120 columns, further lines of a warning indented
-/// by 4.
-std::size_t printed_warnings();
-
 /// Prints it, and adds it to all_warnings().
 void print_warning(const std::string& text);
 

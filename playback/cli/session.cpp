@@ -31,21 +31,23 @@ struct SessionVerbOptions {
 
 constexpr std::string_view kStrokeColumns =
     "stroke,from_s,to_s,from_m,to_m,predicted_rms_m,target_rms_m,predicted_error_db,predicted_over_target_db,"
-    "removed_by_limits_db,limited_ticks,energy_limited_ticks,gated_ticks,measured_rms_m,measured_error_db,"
+    "predicted_shift_s,removed_by_limits_db,limited_ticks,energy_limited_ticks,gated_ticks,measured_rms_m,"
+    "measured_error_db,"
     "measured_over_target_db,measured_shift_s";
 
 // Unknown values are left empty.
 std::string stroke_line(std::uint64_t number, const PlayedStroke& s) {
   const auto cell = [](bool known, double value) { return known ? fmt::format("{:.9g}", value) : ""; };
   const bool judged = s.target_rms_m > 0, sensed = s.measured.has_value();
-  const MeasuredDisplacement measured = s.measured.value_or(MeasuredDisplacement{});
-  return fmt::format("{},{:.9f},{:.9f},{:.12g},{:.12g},{:.9g},{},{},{},{},{},{},{},{},{},{},{}\n", number,
+  const StrokeDisplacement measured = s.measured.value_or(StrokeDisplacement{});
+  return fmt::format("{},{:.9f},{:.9f},{:.12g},{:.12g},{:.9g},{},{},{},{},{},{},{},{},{},{},{},{}\n", number,
                      s.from_s, s.to_s, s.from_m, s.to_m, s.predicted.rms_m, cell(judged, s.target_rms_m),
                      cell(judged, s.predicted.error_db), cell(judged, s.predicted.level_db),
+                     cell(s.predicted.shift_s.has_value(), s.predicted.shift_s.value_or(0)),
                      cell(s.limits && s.limits->removed_any(), s.limits ? s.limits->removed_db() : 0),
                      s.limited_ticks, s.energy_limited_ticks, s.gated_ticks, cell(sensed, measured.rms_m),
                      cell(sensed && judged, measured.error_db), cell(sensed && judged, measured.level_db),
-                     cell(sensed && judged, measured.shift_s));
+                     cell(measured.shift_s.has_value(), measured.shift_s.value_or(0)));
 }
 
 bool is_stroke_table(std::string_view line) {
@@ -81,22 +83,31 @@ class StrokeTable {
   std::uint64_t strokes_ = 0;
 };
 
+void add_shift(Report& row, const std::string& key, const std::optional<double>& shift_s) {
+  if (shift_s)
+    row.add(key, *shift_s);
+  else
+    row.add(key, "not found");
+}
+
 Report stroke_row(const PlayedStroke& stroke) {
   Report row;
   const bool judged = stroke.target_rms_m > 0;
   row.add("from_s", stroke.from_s).add("to_s", stroke.to_s);
   row.add("from_m", stroke.from_m).add("to_m", stroke.to_m);
   row.add("predicted_rms_m", stroke.predicted.rms_m);
-  if (judged)
+  if (judged) {
     row.add("target_rms_m", stroke.target_rms_m)
         .add("predicted_error_db", stroke.predicted.error_db)
         .add("predicted_over_target_db", stroke.predicted.level_db);
+    add_shift(row, "predicted_shift_s", stroke.predicted.shift_s);
+  }
   if (const auto& measured = stroke.measured) {
     row.add("measured_rms_m", measured->rms_m);
-    if (judged)
-      row.add("measured_error_db", measured->error_db)
-          .add("measured_over_target_db", measured->level_db)
-          .add("measured_shift_s", measured->shift_s);
+    if (judged) {
+      row.add("measured_error_db", measured->error_db).add("measured_over_target_db", measured->level_db);
+      add_shift(row, "measured_shift_s", measured->shift_s);
+    }
   }
   if (stroke.limits && stroke.limits->removed_any())
     row.add("removed_by_limits_db", stroke.limits->removed_db());

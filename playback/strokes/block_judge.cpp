@@ -42,10 +42,15 @@ void BlockJudge::finish(LastStroke last) {
 
 void BlockJudge::judge(std::size_t rows) {
   const SessionTarget target = target_.target_in(rows_);
-  const auto predicted_m = predicted_displacement_m(overview_.header, rows_);
+  const schema::SessionHeader& header = overview_.header;
+  const auto between =
+      static_cast<std::size_t>(std::ceil(kReadingsAPeriod * header.high_hz / header.rate_hz));
+  const auto predicted_m = predicted_displacement_m(header, rows_, between);
   const auto measured = measured_ ? std::optional(measured_->in(rows_)) : std::nullopt;
   for (std::size_t i = judged_; i < judged_ + rows; ++i)
-    strokes_.add({first_row_ + i, rows_[i].row, target.displacement_m[i], predicted_m[i], !target.unknown[i],
+    strokes_.add({first_row_ + i, rows_[i].row, target.displacement_m[i], !target.unknown[i],
+                  shifted_row(predicted_m, header.rate_hz * static_cast<double>(between),
+                              static_cast<double>(i * between)),
                   measured ? measured->at(i) : std::nullopt, unlimited_v_[i]});
   judged_ += rows;
   const std::size_t done = judged_ - std::min(judged_, around_rows_);

@@ -54,7 +54,7 @@ double drive_delay_s(const schema::SessionHeader& header) {
 }
 
 std::vector<double> predicted_displacement_m(const schema::SessionHeader& header,
-                                             std::span<const JudgedRow> rows) {
+                                             std::span<const JudgedRow> rows, std::size_t between) {
   const spatial::Band band{header.low_hz, header.high_hz};
   const double duration_s = static_cast<double>(rows.size() - 1) / header.rate_hz;
   const ReadingGrid grid = reading_grid(duration_s, header.rate_hz, band, 0);
@@ -64,9 +64,10 @@ std::vector<double> predicted_displacement_m(const schema::SessionHeader& header
   auto drive = spectrum_of(drive_v, header.rate_hz, grid.period);
   keep_band(drive, band);
   // The drive reaches the device later than its tick by the delay of the loop.
-  return signal_of(through(drive, [&](double f) {
+  const auto displacement = through(drive, [&](double f) {
     return chain_response(chain, f) * std::polar(1.0, -2 * std::numbers::pi * f * header.loop_delay_s);
-  }));
+  });
+  return signal_of(displacement, between);
 }
 
 }  // namespace tacto::playback

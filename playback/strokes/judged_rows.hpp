@@ -45,9 +45,9 @@ class RowFollower {
 /// the band's lower edge, and the way to the device if the loop is closed on the host.
 double drive_delay_s(const schema::SessionHeader& header);
 
-/// The model's displacement for the recorded drive, in the session's band: m, one per row. Before and after
-/// the rows the drive is zero.
+/// The model's displacement for the recorded drive, in the session's band: m, `between` samples per row, the
+/// first at the first row. Before and after the rows the drive is zero.
 std::vector<double> predicted_displacement_m(const schema::SessionHeader& header,
-                                             std::span<const JudgedRow> rows);
+                                             std::span<const JudgedRow> rows, std::size_t between = 1);
 
 }  // namespace tacto::playback

@@ -9,7 +9,6 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kReadingsAPeriod = 32;                        // of the band's upper edge
 constexpr double kRingsS = 0.3;                                // a period of the lower edge's skirt, 3 Hz
 constexpr double kRestS = 0.05;                                // around the playback, with the tray at rest
 constexpr double kShiftAroundS = 2e-3;                         // twice the greatest shift
@@ -44,22 +43,9 @@ std::vector<double> frames_at(std::span<const JudgedRow> rows, const std::vector
 
 }  // namespace
 
-// Catmull-Rom spline. Its weights differ for each shift, because a shift is not a whole number of readings.
-std::optional<MeasuredRow> MeasuredStretch::at(std::size_t row) const {
+std::optional<ShiftedRow> MeasuredStretch::at(std::size_t row) const {
   if (!known_[row]) return std::nullopt;
-  const double last = static_cast<double>(fine_m_.size()) - 1;
-  const auto reading = [&](double index) {
-    return fine_m_[static_cast<std::size_t>(std::clamp(index, 0.0, last))];
-  };
-  MeasuredRow values;
-  for (std::size_t i = 0; i < kMeasuredShifts; ++i) {
-    const double index = at_fine_[row] + measured_shift_s(static_cast<double>(i)) * fine_rate_hz_;
-    const double whole = std::floor(index), u = index - whole;
-    const double a = reading(whole - 1), b = reading(whole), c = reading(whole + 1), d = reading(whole + 2);
-    const double value = b + 0.5 * u * (c - a + u * (2 * a - 5 * b + 4 * c - d + u * (3 * (b - c) + d - a)));
-    values[i] = static_cast<float>(value);
-  }
-  return values;
+  return shifted_row(fine_m_, fine_rate_hz_, at_fine_[row]);
 }
 
 std::optional<MeasuredReader> MeasuredReader::open(const SessionOverview& overview) {

@@ -9,7 +9,7 @@
 
 #include "playback/session/sensor_samples.hpp"
 #include "playback/strokes/judged_rows.hpp"
-#include "playback/strokes/measured_row.hpp"
+#include "playback/strokes/shifted_row.hpp"
 
 namespace tacto::playback {
 
@@ -17,7 +17,7 @@ namespace tacto::playback {
 class MeasuredStretch {
  public:
   /// None if samples are missing within 0.3 s, because the filter of the band's lower edge rings that long.
-  std::optional<MeasuredRow> at(std::size_t row) const;
+  std::optional<ShiftedRow> at(std::size_t row) const;
 
  private:
   friend class MeasuredReader;
@@ -29,9 +29,8 @@ class MeasuredStretch {
 
 /// Reads the samples in parallel to the rows, each once; memory is that of a section. The sensor's frames are
 /// filtered to the session's band as the target is (keep_band); missing ones are interpolated linearly. They
-/// are evaluated at the rows' times, both on the ticks' clock: by Fourier interpolation to 32 readings per
-/// period of the band's upper edge, and between these by a Catmull-Rom spline, whose error is (2 pi / 32)^4 /
-/// 48: -90 dB.
+/// are evaluated at the rows' times, both on the ticks' clock: by Fourier interpolation to
+/// kReadingsAPeriod, and between these by shifted_row().
 class MeasuredReader {
  public:
   /// None if the session's header names no sensor. The overview must outlive this.

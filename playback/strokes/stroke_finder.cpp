@@ -22,43 +22,44 @@ double way_m(const StrokeRow& from, const StrokeRow& to) {
 
 }  // namespace
 
+void ShiftedSums::add(const ShiftedRow& row, double target_m) {
+  displacement_m2 += square(double{row[kUnshifted]});
+  for (std::size_t i = 0; i < kShifts; ++i) difference_m2[i] += square(double{row[i]} - target_m);
+}
+
+void ShiftedSums::add(const ShiftedSums& later) {
+  displacement_m2 += later.displacement_m2;
+  for (std::size_t i = 0; i < kShifts; ++i) difference_m2[i] += later.difference_m2[i];
+}
+
 void StrokeSums::add(const StrokeRow& r) {
   if (rows++ == 0) first = r;
   last = r;
   target_m2 += square(r.target_m);
-  predicted_m2 += square(r.predicted_m);
-  difference_m2 += square(r.predicted_m - r.target_m);
+  predicted.add(r.predicted, r.target_m);
+  if (r.measured) measured.add(*r.measured, r.target_m);
+  measured_known = measured_known && r.measured;
   const std::uint32_t flags = r.row.flags;
   limited_ticks += (flags & (wire::kTickAmplitudeLimited | wire::kTickSlewLimited)) != 0;
   energy_limited_ticks += (flags & wire::kTickEnergyLimited) != 0;
   gated_ticks += (flags & wire::kTickGated) != 0;
   known = known && r.known;
   unlimited_known = unlimited_known && r.unlimited_v;
-  add_measured(r);
   if (r.unlimited_v && !r.row.put_in)
     limits.add(limited_tick(static_cast<float>(r.row.drive_v), *r.unlimited_v, flags));
-}
-
-void StrokeSums::add_measured(const StrokeRow& r) {
-  measured_known = measured_known && r.measured;
-  if (!r.measured) return;
-  measured_m2 += square(double{(*r.measured)[kUnshifted]});
-  for (std::size_t i = 0; i < kMeasuredShifts; ++i)
-    measured_difference_m2[i] += square(double{(*r.measured)[i]} - r.target_m);
 }
 
 void StrokeSums::add(const StrokeSums& later) {
   if (later.rows == 0) return;
   rows += later.rows;
   last = later.last;
-  target_m2 += later.target_m2, predicted_m2 += later.predicted_m2, difference_m2 += later.difference_m2;
+  target_m2 += later.target_m2;
+  predicted.add(later.predicted);
+  measured.add(later.measured);
   limited_ticks += later.limited_ticks, energy_limited_ticks += later.energy_limited_ticks;
   gated_ticks += later.gated_ticks;
   known = known && later.known, unlimited_known = unlimited_known && later.unlimited_known;
   measured_known = measured_known && later.measured_known;
-  measured_m2 += later.measured_m2;
-  for (std::size_t i = 0; i < kMeasuredShifts; ++i)
-    measured_difference_m2[i] += later.measured_difference_m2[i];
   limits.add(later.limits);
 }
 

@@ -11,7 +11,7 @@
 
 #include "playback/model/limit_tally.hpp"
 #include "playback/session/session_rows.hpp"
-#include "playback/strokes/measured_row.hpp"
+#include "playback/strokes/shifted_row.hpp"
 
 namespace tacto::playback {
 
@@ -19,28 +19,34 @@ namespace tacto::playback {
 struct StrokeRow {
   std::uint64_t index = 0;  ///< in the session
   SessionRow row;
-  double target_m = 0, predicted_m = 0;
+  double target_m = 0;
   bool known = true;  ///< the target
-  std::optional<MeasuredRow> measured;
+  ShiftedRow predicted{};
+  std::optional<ShiftedRow> measured;
   std::optional<float> unlimited_v;  ///< before the limits; none: unknown
+};
+
+/// Sums of a displacement and of its difference from the target at each shift, m^2.
+struct ShiftedSums {
+  double displacement_m2 = 0;
+  std::array<double, kShifts> difference_m2{};
+
+  void add(const ShiftedRow& row, double target_m);
+  void add(const ShiftedSums& later);
 };
 
 /// Sums over consecutive rows.
 struct StrokeSums {
   StrokeRow first, last;
   std::uint64_t rows = 0;
-  double target_m2 = 0, predicted_m2 = 0, difference_m2 = 0;
+  double target_m2 = 0;
+  ShiftedSums predicted, measured;
   std::uint64_t limited_ticks = 0, energy_limited_ticks = 0, gated_ticks = 0;
   bool known = true, unlimited_known = true, measured_known = true;  ///< true for every row
-  double measured_m2 = 0;
-  std::array<double, kMeasuredShifts> measured_difference_m2{};  ///< at each shift
-  LimitTally limits;                                             ///< of the ticks among them
+  LimitTally limits;                                                 ///< of the ticks among them
 
   void add(const StrokeRow& row);
   void add(const StrokeSums& later);
-
- private:
-  void add_measured(const StrokeRow& row);
 };
 
 inline constexpr double kShortestStrokeM = 5e-3;

@@ -47,10 +47,10 @@ struct LeastError {
 };
 
 // To a hundredth of a step: the remaining 1 us gives at most -52 dB at 500 Hz.
-LeastError least_error(const std::array<double, kMeasuredShifts>& difference_m2) {
+LeastError least_error(const std::array<double, kShifts>& difference_m2) {
   constexpr int kParts = 100;
   const auto least = std::ranges::min_element(difference_m2) - difference_m2.begin();
-  const auto middle = std::clamp<std::ptrdiff_t>(least, 2, kMeasuredShifts - 3);
+  const auto middle = std::clamp<std::ptrdiff_t>(least, 2, kShifts - 3);
   const std::span<const double, 5> around(&difference_m2[static_cast<std::size_t>(middle - 2)], 5);
   LeastError found{static_cast<double>(least), difference_m2[static_cast<std::size_t>(least)]};
   for (int part = -2 * kParts; part <= 2 * kParts; ++part) {
@@ -60,17 +60,19 @@ LeastError least_error(const std::array<double, kMeasuredShifts>& difference_m2)
   return {found.shift, std::max(found.difference_m2, 0.0)};
 }
 
-std::optional<MeasuredDisplacement> measured_of(const StrokeSums& sums, double target_rms_m) {
-  if (!sums.measured_known) return std::nullopt;
-  const auto rms = [&](double sum) { return std::sqrt(sum / static_cast<double>(sums.rows)); };
-  MeasuredDisplacement measured;
-  measured.rms_m = rms(sums.measured_m2);
-  if (target_rms_m == 0) return measured;
-  const LeastError least = least_error(sums.measured_difference_m2);
-  measured.error_db = over_db(rms(least.difference_m2), target_rms_m);
-  measured.level_db = over_db(measured.rms_m, target_rms_m);
-  measured.shift_s = measured_shift_s(least.shift);
-  return measured;
+StrokeDisplacement displacement_of(const ShiftedSums& sums, std::uint64_t rows, double target_rms_m) {
+  const auto rms = [&](double sum) { return std::sqrt(sum / static_cast<double>(rows)); };
+  StrokeDisplacement displacement;
+  displacement.rms_m = rms(sums.displacement_m2);
+  if (target_rms_m == 0) return displacement;
+  LeastError least = least_error(sums.difference_m2);
+  if (least.shift > 0 && least.shift < kShifts - 1)
+    displacement.shift_s = shift_s_at(least.shift);
+  else
+    least.difference_m2 = sums.difference_m2[kUnshifted];
+  displacement.error_db = over_db(rms(least.difference_m2), target_rms_m);
+  displacement.level_db = over_db(displacement.rms_m, target_rms_m);
+  return displacement;
 }
 
 PlayedStroke stroke_of(const StrokeSums& sums) {
@@ -78,16 +80,13 @@ PlayedStroke stroke_of(const StrokeSums& sums) {
   PlayedStroke stroke;
   stroke.from_s = sums.first.row.time_s, stroke.to_s = sums.last.row.time_s;
   stroke.from_m = sums.first.row.position_m, stroke.to_m = sums.last.row.position_m;
-  stroke.predicted.rms_m = rms(sums.predicted_m2);
   stroke.limited_ticks = sums.limited_ticks;
   stroke.energy_limited_ticks = sums.energy_limited_ticks;
   stroke.gated_ticks = sums.gated_ticks;
   if (sums.unlimited_known) stroke.limits = sums.limits;
   if (sums.known && !target_is_zero(sums)) stroke.target_rms_m = rms(sums.target_m2);
-  stroke.measured = measured_of(sums, stroke.target_rms_m);
-  if (stroke.target_rms_m == 0) return stroke;
-  stroke.predicted.error_db = over_db(rms(sums.difference_m2), stroke.target_rms_m);
-  stroke.predicted.level_db = over_db(stroke.predicted.rms_m, stroke.target_rms_m);
+  stroke.predicted = displacement_of(sums.predicted, sums.rows, stroke.target_rms_m);
+  if (sums.measured_known) stroke.measured = displacement_of(sums.measured, sums.rows, stroke.target_rms_m);
   return stroke;
 }
 

@@ -14,17 +14,16 @@
 
 namespace tacto::playback {
 
-/// A displacement over a stroke's rows.
+/// A displacement over a stroke's rows: that of the model, or that of the tray's sensor. Its error is the
+/// smallest for a constant shift in time within 1 ms either way, one shift per stroke, because an instrument
+/// may have a delay. If it is smallest at an end of that range, the shift is not found, and the error is that
+/// without a shift.
 struct StrokeDisplacement {
   double rms_m = 0;
   double error_db = 0;  ///< RMS of it - target, re RMS of the target
   double level_db = 0;  ///< re the target
-};
-
-/// The displacement measured by the tray's sensor. Its error is the smallest for a constant shift in time
-/// within 1 ms either way, one shift per stroke, because an instrument may have a delay.
-struct MeasuredDisplacement : StrokeDisplacement {
-  double shift_s = 0;  ///< delay of the measured displacement relative to the target; removed from the error
+  /// Delay of the displacement relative to the target; removed from the error. None: not found.
+  std::optional<double> shift_s;
 };
 
 /// A movement of the finger without turning, during playback.
@@ -33,7 +32,7 @@ struct PlayedStroke {
   double from_m = 0, to_m = 0;
   double target_rms_m = 0;                                  ///< 0 if unknown, or below 1 pm
   StrokeDisplacement predicted;                             ///< error and level only if the target is known
-  std::optional<MeasuredDisplacement> measured;             ///< none: no sensor, or samples are missing
+  std::optional<StrokeDisplacement> measured;               ///< none: no sensor, or samples are missing
   std::uint64_t limited_ticks = 0;                          ///< by amplitude or slew
   std::uint64_t energy_limited_ticks = 0, gated_ticks = 0;  ///< reduced; without contact
   std::optional<LimitTally> limits;                         ///< none: unknown
@@ -67,13 +66,11 @@ struct StrokeListener {
 /// Target: as TargetReader, with the gain of the commands and changes of texture. Periods without a tick are
 /// filled, for one stop at most so many that the rows before it have no influence after it. Predicted: the
 /// recorded drive through the model of the transducer's file (with the hysteresis of the file): the
-/// actuator's response if that file is correct, without a finger on it. A delay of the session that the
-/// look-ahead did not compensate is part of its error. Measured, if the device reports its tray: the
-/// session's samples (measured_rows.hpp). All in the same band. A stroke is at least 5 mm long. The effect of
-/// the limits: read_unlimited_where_known(), with a note if it is unknown.
-/// Memory depends neither on the length of the session nor on that of a stroke: it is that of a block
-/// (JudgedBlocks; 200,000 rows at 10 kHz) and its textures, of the strokes kept, and of the commands. A block
-/// has less than 2^24 readings.
+/// actuator's response if that file is correct, without a finger on it. Measured, if the device reports its
+/// tray: the session's samples (measured_rows.hpp). All in the same band. A stroke is at least 5 mm long. The
+/// effect of the limits: read_unlimited_where_known(), with a note if it is unknown. Memory depends neither
+/// on the length of the session nor on that of a stroke: it is that of a block (JudgedBlocks; 200,000 rows at
+/// 10 kHz) and its textures, of the strokes kept, and of the commands. A block has less than 2^24 readings.
 /// Errors: as session_overview. If a texture is missing or has changed, or if the session does not name a
 /// change (an older one), the strokes with a part of it have no target, with a note. If ticks are missing,
 /// the strokes that end before them are judged, as if the drive ended there, with a note; the effect of the

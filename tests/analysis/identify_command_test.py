@@ -209,6 +209,7 @@ def stopped_leaving_nothing(*arguments):
     work = subprocess.Popen([tacto.COMMAND, *arguments], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
                             env={**os.environ, "TMPDIR": str(scratch.resolve())})
     while not list(scratch.iterdir()) and arguments[0] == "fidelity":
+        assert work.poll() is None, work.communicate()
         time.sleep(0.02)
     if arguments[0] == "identify":
         work.stderr.readline()  # waits for its first progress
@@ -358,7 +359,7 @@ def what_is_identified_is_undone():
     assert errors["bench"]["all three"] < errors["wiertlewski2011"]["all three"] - 10, errors
     assert errors["bench"]["ideal"] > -15, errors  # inverting a hysteresis that the tray does not have
     stopped_leaving_nothing("fidelity", "c-01", "--speed", "10mm/s,11mm/s,12mm/s")
-    stopped_leaving_nothing("identify", "-d", "sim:tray_sensor=on,paced=1", "-o", "never")
+    stopped_leaving_nothing("identify", "-d", "sim:tray_sensor=on,paced=1", "-o", "never", "--progress")
     assert not pathlib.Path("never.transducer.json").exists()
     assert "finger's speed" in tacto.run("fidelity", "c-01", "--speed", "1e9mm/s", code=2)[1]
     assert "describe little of it" in tacto.run("fidelity", "c-01", "-d", "sim:hysteresis=0.1", "--speed", "1.2mm/s")[1]

@@ -5,7 +5,6 @@ import os
 import pathlib
 import signal
 import subprocess
-import time
 
 import numpy as np
 
@@ -24,27 +23,30 @@ def table():
     np.savetxt("long.csv", rows, fmt="%.9f", delimiter=",", header="f,x", comments="")
 
 
-def size_of(name):
-    """0 if the import has renamed or removed the file since it was listed."""
-    try:
-        return os.path.getsize(name)
-    except FileNotFoundError:
-        return 0
+def written(name):
+    return any(one.startswith(f".{name}.wav") for one in hidden())
 
 
-def begun(name):
-    """An import that has begun to write its samples, and is blocked there."""
-    process = subprocess.Popen([tacto.COMMAND, "import", "long.csv", "-o", name, *IMPORT],
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    while process.poll() is None and not any(one.startswith(f".{name}.wav") and size_of(one) > 1000 for one in hidden()):
-        time.sleep(0.0002)
-    process.send_signal(signal.SIGSTOP)
-    assert process.poll() is None, "the import was over before it could be killed"
-    return process
+def stopped(name):
+    """An import that has begun to write its samples, and is stopped there."""
+    for _ in range(20):
+        process = subprocess.Popen([tacto.COMMAND, "import", "long.csv", "-o", name, *IMPORT],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while process.poll() is None and not written(name):
+            pass
+        process.send_signal(signal.SIGSTOP)
+        if os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT).si_code == os.CLD_STOPPED:
+            if written(name):
+                return process
+            process.send_signal(signal.SIGCONT)
+        process.wait()
+        for ending in (".wav", ".json"):  # the import ended before it was stopped: again
+            pathlib.Path(name + ending).unlink(missing_ok=True)
+    raise AssertionError("in 20 attempts the import ended before it could be stopped")
 
 
 def killed(name):
-    process = begun(name)
+    process = stopped(name)
     process.send_signal(signal.SIGKILL)
     process.wait()
     assert hidden(), "nothing was left to remove"
@@ -79,7 +81,7 @@ def doctor_removes_and_says_it():
 
 def what_runs_is_left_alone():
     table()
-    process = begun("oak")
+    process = stopped("oak")
     before = hidden()
     tacto.run("recover", "oak", code=3)
     tacto.run("doctor", "-d", "sim:finger=up")

@@ -13,6 +13,7 @@ import termios
 import time
 
 import tacto
+from machine_stops import MachineStops
 
 COLUMNS = 120
 DEVICE = "sim:surface=flat,paced=1,strokes=20,length=25mm"  # a stroke of 20 mm takes 0.5 s, and 0.1 s of rest
@@ -45,22 +46,24 @@ def on_a_terminal(arguments, keys, columns=COLUMNS):
 
 
 def redrawn_marked_and_stopped():
-    shown, code = on_a_terminal(["record", "-d", DEVICE, "-o", "oak"], [(0.8, b"m"), (1.3, b"x"), (2.2, b"q")])
+    with MachineStops() as stops:
+        shown, code = on_a_terminal(["record", "-d", DEVICE, "-o", "oak"], [(0.8, b"m"), (1.3, b"x"), (2.2, b"q")])
     assert code == 0, shown
     lines = shown.split("\r\x1b[K")[1:-1]  # before the first line is nothing, after the last the report
-    assert 8 <= len(lines) <= 80, (len(lines), shown)
     for line in lines:
         first = line.split("\r\n")[0]
         assert len(first) < COLUMNS, first
         assert re.match(r"\d+\.\d s   *\d+ mm/s (ok|FASTER|SLOWER)  load \d\.\d\d N (ok|MORE|LESS)  \d+ strokes  0 lost  ", first), first
     times = [float(line.split(" s ")[0]) for line in lines]
-    assert times == sorted(times) and times[-1] > 1.5, times
+    assert lines and times == sorted(times) and times[-1] > 1.5, times
     side = json.loads(pathlib.Path("oak.json").read_text())
     assert [mark["label"] for mark in side["marks"]] == ["mark"], side["marks"]
-    # The first line appears some tenths of a second after the device's first frame; on a busy machine both, and the
-    # key, are later.
-    assert 0.5 < side["marks"][0]["frame"] / 1e4 < 2.5, side["marks"]
-    assert side["data"]["frames"] / 1e4 < 6 and "ended" not in side
+    assert "ended" not in side and 0 < side["marks"][0]["frame"] < side["data"]["frames"], side
+    # The first line appears some tenths of a second after the device's first frame.
+    if stops.allow(0.3, "the times of the lines and of the mark"):
+        assert 8 <= len(lines) <= 80, (len(lines), shown)
+        assert 0.5 < side["marks"][0]["frame"] / 1e4 < 2.5, side["marks"]
+        assert side["data"]["frames"] / 1e4 < 6, side["data"]
     return side
 
 

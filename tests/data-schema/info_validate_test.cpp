@@ -25,12 +25,12 @@ struct Outcome {
 };
 
 Outcome run(std::vector<std::string> arguments) {
-  constexpr std::array<const cli::Verb*, 2> kVerbs = {&kInfoVerb, &kValidateVerb};
+  const cli::VerbGroup kGroups[] = {{"See", {&kInfoVerb, &kValidateVerb}}};
   std::vector<const char*> argv = {"tactograph"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  const int code = cli::run_command(kVerbs, static_cast<int>(argv.size()), argv.data());
+  const int code = cli::run_command(kGroups, static_cast<int>(argv.size()), argv.data());
   return {code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
 }
 

@@ -12,7 +12,6 @@ import pathlib
 import shutil
 import sys
 import tempfile
-import time
 import warnings
 
 import numpy as np
@@ -128,16 +127,17 @@ def a_stored_session_is_read():
 
 
 def a_session_of_the_daemon_has_its_gains():
-    daemon_test.prepare_files()
+    daemon_test.prepare_files(device="sim:paced=0")  # ticks come as fast as the daemon reads, whatever the machine does
     with daemon_test.daemon():
         client = daemon_test.Client()
         client.must(request="load", file="oak", gain_m_per_n=0.0005)
         name = pathlib.Path(client.must(request="arm")["session"])
         client.must(request="play")
         for gain in (0.5, 0.25, 2.0):
-            client.must(request="gain", gain=gain)
-            time.sleep(0.1)  # so that ticks lie between the commands
-        client.wait_for("playing")
+            before = client.must(request="gain", gain=gain) and client.must(request="status")["ticks"]
+            while client.must(request="status")["ticks"] < before + 200:  # so that ticks lie between the commands
+                pass
+        assert client.must(request="status")["state"] == "playing"
         client.must(request="disarm")
         client.wait_for("idle")
     shutil.copy(name, "steered.session")

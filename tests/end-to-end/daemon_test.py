@@ -43,7 +43,9 @@ def prepare_files(**changed):
     write_texture("oak", 0.02 * np.sin(2 * np.pi * 1000 * x))
     pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.004\n0.2,0.004\n1.0,0.034\n1.2,0.034\n")
     config = {"kind": "daemon", "version": "1.0", "device": "sim:", "transducer": "wiertlewski2011", "rate_hz": 2000,
-              "socket": "control", "sessions": "sessions", "finger_path": "path.csv", **changed}
+              "socket": "control", "sessions": "sessions", "finger_path": "path.csv",
+              "watchdog_ms": 1000,  # the longest: a busy machine stops for tenths of a second
+              **changed}
     pathlib.Path("tactographd.json").write_text(json.dumps(config))
 
 
@@ -174,14 +176,16 @@ def what_the_limits_took_is_found():
     weak = {**json.loads(preset.read_text()), "name": "weak", "drive_limit_v": 0.3}
     pathlib.Path("weak.transducer.json").write_text(json.dumps(weak))
     live_members = ("limits_took_db", "limits_took_last_second_db", "limits_in_db")
-    on_host = {"loop": "host", "device": "sim:rate=2kHz", "most_late_percent": 100, "watchdog_ms": 500}
+    on_host = {"loop": "host", "device": "sim:rate=2kHz", "most_late_percent": 100, "watchdog_ms": 1000}
     for limited in ({"transducer": "weak"}, {"transducer": "weak", **on_host}, {"playback": {"energy_rms_v": 0.1, "energy_window_s": 0.1}}):
         prepare_files(**limited)
         with daemon():
             client = Client()
             begin(client)
             status = client.must(request="status")
+            deadline = time.monotonic() + 60
             while "limits_took_last_second_db" not in status:
+                assert status["state"] == "playing" and time.monotonic() < deadline, status
                 limited_ticks = status["limited_ticks"] + status["energy_limited_ticks"]
                 assert ("limits_in_db" in status) == (limited_ticks > 0), status
                 time.sleep(0.05)
@@ -228,7 +232,7 @@ def kill_9_in_mid_play():
 def sigstop_of_200_ms():
     """A link that holds 250 ms and a device that ticks on: the device must stop safely, and the daemon must report
     it."""
-    prepare_files(device="sim:link_buffer=1s")
+    prepare_files(device="sim:link_buffer=1s", watchdog_ms=100)
     with daemon() as process:
         client = Client()
         session = begin(client)
@@ -428,7 +432,7 @@ def full_disk_for_the_log():
 def the_loop_closed_on_the_host():
     """The same with the kernel on this computer's real-time thread. Lateness is measured, not asserted: machines
     stall."""
-    prepare_files(loop="host", device="sim:rate=2kHz", most_late_percent=100, watchdog_ms=500)
+    prepare_files(loop="host", device="sim:rate=2kHz", most_late_percent=100, watchdog_ms=1000)
     with daemon() as process:
         client = Client()
         session = begin(client)

@@ -1,9 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A long list is in --json in full, and like warnings are one line."""
+"""Output is whole in a pipe; on a terminal long tables stop and say so; like warnings are one line."""
+import contextlib
+import fcntl
 import json
+import os
 import pathlib
+import pty
+import re
+import struct
 import subprocess
+import termios
 
 import tacto
 
@@ -14,23 +21,57 @@ def printed(*arguments, code=0):
     """All lines that a user sees on stdout and stderr."""
     done = subprocess.run([tacto.COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=600)
     assert done.returncode == code, (arguments, done)
-    lines = (done.stdout + done.stderr).splitlines()
-    # On a terminal the progress of long work is redrawn in place.
-    return [line for line in lines if not line.rstrip().endswith(" %")]
+    return (done.stdout + done.stderr).splitlines()
 
 
 def make_strokes():
     tacto.run("record", "-d", f"sim:surface=C,speed=50mm/s,seed=1,strokes={STROKES},length=20mm", "--time", "15s", "-o", "many")
 
 
-def json_has_what_the_lines_leave_out():
+def on_a_terminal(rows, columns, *arguments):
+    """The lines that the command prints on a terminal of that size; stderr goes elsewhere."""
+    ours, its = pty.openpty()
+    fcntl.ioctl(its, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+    process = subprocess.Popen([tacto.COMMAND, *map(str, arguments)], stdout=its, stderr=subprocess.DEVNULL)
+    os.close(its)
+    shown = b""
+    with contextlib.suppress(OSError):  # EIO: the process has closed the terminal
+        while piece := os.read(ours, 65536):
+            shown += piece
+    os.close(ours)
+    assert process.wait(timeout=600) == 0, shown
+    return shown.decode().replace("\r", "").splitlines()
+
+
+def rows_shown(lines):
+    """The rows of a table of strokes: they begin with a number."""
+    return sum(re.match(r" +\d+ ", line) is not None for line in lines)
+
+
+def a_pipe_has_all_and_a_terminal_what_fits():
     make_strokes()
-    tacto.run("spatial", "many", "-o", "t")
-    textures = sorted(str(path) for path in pathlib.Path(".").glob("t-*.texture.json"))
-    lines = printed("describe", *textures, "-o", "d.csv")
-    assert "--json" in lines[-1] and "not shown" in lines[-1], lines
-    full = tacto.run_json("describe", *textures, "-o", "e.csv")
-    assert len(full["textures"]) == len(textures)
+    listed = ["spatial", "many", "--list"]
+    strokes = len(tacto.run_json(*listed)["strokes"])
+    assert strokes >= 20 and rows_shown(printed(*listed)) == strokes
+    lines = on_a_terminal(16, 200, *listed)
+    shown = rows_shown(lines)
+    assert len(lines) <= 15 and 5 <= shown < strokes, lines
+    more = re.search(r"and (\d+) more rows", "\n".join(lines))
+    assert more and int(more[1]) == strokes - shown and "--rows all" in "\n".join(lines), lines
+    assert rows_shown(on_a_terminal(16, 200, *listed, "--rows", "all")) == strokes
+    assert rows_shown(on_a_terminal(16, 200, *listed, "--rows", "3")) == rows_shown(printed(*listed, "--rows", "3")) == 3
+    for wrong in ("0", "some", "-1", "1.5", "99999999999"):
+        printed(*listed, "--rows", wrong, code=2)
+
+
+def no_column_and_no_value_is_lost_where_a_table_is_too_wide():
+    """One row is printed below the other: the same labels and values as in the table."""
+    make_strokes()
+    listed = ["spatial", "many", "--list"]
+    wide, narrow = (on_a_terminal(10_000, columns, *listed) for columns in (400, 60))
+    table, blocks = (lines[lines.index("strokes") + 1:] for lines in (wide, narrow))
+    assert max(map(len, blocks)) <= 60 < max(map(len, table)), blocks
+    assert set(" ".join(table).split()) <= set(" ".join(blocks).split()), (table[:3], blocks[:20])
 
 
 def like_warnings_are_one_line():
@@ -44,5 +85,6 @@ def like_warnings_are_one_line():
 
 
 if __name__ == "__main__":
-    for test in (json_has_what_the_lines_leave_out, like_warnings_are_one_line):
+    for test in (a_pipe_has_all_and_a_terminal_what_fits, no_column_and_no_value_is_lost_where_a_table_is_too_wide,
+                 like_warnings_are_one_line):
         tacto.in_folder(test)

@@ -67,12 +67,16 @@ def the_core_compiles_from_its_package(packages, folder):
     assert (folder / "usr/share/tactograph/schemas/texture.schema.json").is_file()
 
 
+def skip_without_mirror(done):
+    if done.returncode != 0 and re.search(r"Could not (resolve|connect)|Failed to fetch|Temporary failure|timed out", done.stdout + done.stderr):
+        skip("no Debian mirror answers; packages and lintian were checked")
+
+
 def bare_debian(folder):
     done = subprocess.run(["mmdebstrap", "--variant=apt", "bookworm", str(folder)], capture_output=True, text=True)
     if done.returncode == 0:
         return
-    if re.search(r"Could not (resolve|connect)|Failed to fetch|Temporary failure|timed out", done.stderr):
-        skip("no Debian mirror answers")
+    skip_without_mirror(done)
     raise AssertionError(done.stderr)
 
 
@@ -83,6 +87,7 @@ def everything_works_inside(folder, packages):
     (folder / "root/inside.sh").write_text(INSIDE)
     done = subprocess.run(["unshare", "-mpf", f"--mount-proc={folder}/proc", "chroot", str(folder), "bash", "/root/inside.sh"],
                           capture_output=True, text=True)
+    skip_without_mirror(done)
     assert done.returncode == 0 and done.stdout.endswith("all of it worked\n"), done.stdout[-4000:] + done.stderr[-2000:]
     exposure = float(re.search(r"exposure level for tactographd.service: ([0-9.]+)", done.stdout)[1])
     print(f"systemd's exposure level of the unit: {exposure}")

@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 
 import tacto
-from play_test import write_grating
+from play_test import write_grating, write_strokes
 
 
 def write_way(from_m, to_m):
@@ -77,9 +77,8 @@ def what_stands_before_a_damage_is_the_same():
     """Cut, or with a changed bit, 1000 bytes before its end: each tick before the damage is the same, and the exit code
     reports the damage."""
     write_grating()
-    write_way(0.004, 0.034)
-    # In real time, so that it is written in many blocks.
-    tacto.run("play", "oak", "-d", "sim:paced=1", "--finger-path", "way.csv", "-o", "whole")
+    write_strokes(20)  # long, so that it is written in many blocks
+    tacto.run("play", "oak", "-d", "sim:", "--finger-path", "path.csv", "--time", "20s", "-o", "whole")
     whole = pathlib.Path("whole.session").read_bytes()
     flipped = bytearray(whole)
     flipped[len(whole) - 1000] ^= 1

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "data-schema/wav/wav.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -16,16 +17,9 @@ namespace fs = std::filesystem;
 
 class DriveFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("tacto_drive_files_") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string in(const std::string& name) const { return (folder_ / name).string(); }
+  std::string in(const std::string& name) const { return folder_ / name; }
 
-  fs::path folder_;
+  tests::TemporaryFolder folder_;
   schema::TimeSignal signal_{10e3, 0, {0.5, -0.25, 1}};
 };
 
@@ -42,7 +36,7 @@ TEST_F(DriveFiles, AppearTogetherOrNotAtAll) {
   const auto written = write_signal_files(files, schema::Existing::keep);
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().kind, schema::ErrorKind::cannot_write);
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_EQ(folder_.files(), 0U);
 }
 
 TEST_F(DriveFiles, HoldNoNumberThatIsNotFinite) {
@@ -55,7 +49,7 @@ TEST_F(DriveFiles, HoldNoNumberThatIsNotFinite) {
     ASSERT_FALSE(written) << odd;
     EXPECT_EQ(written.error().kind, schema::ErrorKind::unsuitable);
     EXPECT_NE(written.error().what.find("sample 1 "), std::string::npos) << written.error().what;
-    EXPECT_TRUE(fs::is_empty(folder_));
+    EXPECT_EQ(folder_.files(), 0U);
   }
 }
 

@@ -141,22 +141,22 @@ TEST_F(HostLoopOnSim, PlaysOnTheDeviceAndItsSessionReplaysToTheBit) {
   const auto judged = report_strokes(session);
   ASSERT_TRUE(judged) << schema::message(judged.error());
   double best_db = 0, best_measured_db = 0;
-  bool measured = false;
+  bool is_measured = false;
   for (const PlayedStroke& stroke : judged->strokes) {
     best_db = std::min(best_db, stroke.predicted.error_db);
     if (stroke.measured) best_measured_db = std::min(best_measured_db, stroke.measured->error_db);
-    measured |= stroke.measured.has_value();
+    is_measured |= stroke.measured.has_value();
   }
   std::printf("%zu strokes, the best errs by %.1f dB as predicted, by %.1f dB as measured; ",
               judged->strokes.size(), best_db, best_measured_db);
   EXPECT_LT(best_db, -10);
   // The tray moves when the drive arrives. If a busy machine delays drives beyond the queue and the
   // prediction (6 ms on a quiet one), it moves late, which is no fault of the loop.
-  if (measured && status.latency.p50_s < 0.007 && status.latency.p99_s < 0.015)
+  if (is_measured && status.latency.p50_s < 0.007 && status.latency.p99_s < 0.015)
     EXPECT_LT(best_measured_db, -10);
   else
     std::printf("not judged: the measured displacement, because %s\n",
-                measured ? "drives arrived late" : "no stroke was measured");
+                is_measured ? "drives arrived late" : "no stroke was measured");
   EXPECT_GT(status.latency.p50_s, 2e-3);  // the queue is 4 ms deep
   EXPECT_GE(status.latency.p99_s, status.latency.p50_s);
   EXPECT_GE(status.late_parts.front(), status.late_parts.back());

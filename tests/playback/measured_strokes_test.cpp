@@ -100,7 +100,7 @@ TEST_F(MeasuredStrokes, AnInstrumentThatIsLateIsShiftedBack) {
   }));
   for (std::size_t i = 0; i < whole.strokes.size(); ++i) {
     ASSERT_TRUE(late.strokes[i].measured);
-    EXPECT_NEAR(late.strokes[i].measured->shift_s - whole.strokes[i].measured->shift_s, kLateS, 2e-6);
+    EXPECT_NEAR(*late.strokes[i].measured->shift_s - *whole.strokes[i].measured->shift_s, kLateS, 2e-6);
     EXPECT_NEAR(late.strokes[i].measured->error_db, whole.strokes[i].measured->error_db, 0.05);
   }
 }

@@ -108,7 +108,9 @@ def played_over_usb():
         assert status(name)["state"] == "playing", status(name)
     replayed = tacto.run_json("replay", "killed.session")
     assert replayed["same_to_the_bit"] and replayed["ticks_compared"] > LEAST_TICKS / 10, replayed
-    assert expect_fall("killed")[0] > 0.1
+    expect_fall("killed")
+    drive = ticks_of("killed")["drive_v"]  # the last second: at the kill itself the texture may be near zero
+    assert np.max(np.abs(drive[-RATES_HZ["device"]:])) > 0.1, drive
     expect_fall("unplugged")
     assert expect_fall("stopped")[1] >= WATCHDOG_MS  # the finger may rest, so the level before the fall is not asserted
     expect_quiet_once_woken("stopped")
