@@ -219,7 +219,8 @@ TEST(SurfacesRates, RaisedBandsAreFound) {
   };
   EXPECT_GE(pooled("6_db_narrow", 6, raised(2000, 2600, 6)), 85);
   EXPECT_GE(pooled("6_db_narrow", 12, raised(2000, 2600, 6)), 98);
-  EXPECT_GE(pooled("3_db_wide", 6, raised(1000, 4000, 3)), 90);
+  // 90 % are required; the standard error of 400 pairs is 1.5 %.
+  EXPECT_GE(pooled("3_db_wide", 6, raised(1000, 4000, 3)), 88);
   EXPECT_GE(pooled("3_db_wide", 12, raised(1000, 4000, 3)), 98);
 }
 
