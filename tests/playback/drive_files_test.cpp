@@ -32,11 +32,12 @@ TEST_F(DriveFiles, HoldTheSignal) {
 }
 
 TEST_F(DriveFiles, AppearTogetherOrNotAtAll) {
-  const std::vector<SignalFile> files{{in("a.wav"), &signal_}, {in("absent/b.wav"), &signal_}};
+  std::ofstream(in("file")) << "no folder can have this name";
+  const std::vector<SignalFile> files{{in("a.wav"), &signal_}, {in("file/b.wav"), &signal_}};
   const auto written = write_signal_files(files, schema::Existing::keep);
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().kind, schema::ErrorKind::cannot_write);
-  EXPECT_EQ(folder_.files(), 0U);
+  EXPECT_EQ(folder_.files(), 1U);
 }
 
 TEST_F(DriveFiles, HoldNoNumberThatIsNotFinite) {

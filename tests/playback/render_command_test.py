@@ -30,7 +30,7 @@ def check_refusals(folder):
     expect_refusal(folder, NOT_FOUND, "wiertlewski2011-as-printed", transducer="nobody2012")
     expect_refusal(folder, NOT_FOUND, "absent", texture=folder / "absent")
     expect_refusal(folder, NOT_FOUND, "absent.csv", path=folder / "absent.csv")
-    expect_refusal(folder, CANNOT_WRITE, "absent", o=folder / "absent" / "drive.wav")
+    expect_refusal(folder, CANNOT_WRITE, "path.csv", o=folder / "path.csv" / "drive.wav")
     expect_refusal(folder, USAGE, "recording or texture", o=folder / "t.texture.wav")
     expect_refusal(folder, USAGE, "two outputs", target=folder / "drive.wav")
     expect_refusal(folder, USAGE, "mm/N", gain="1")

@@ -313,7 +313,7 @@ class Spectrogram(unittest.TestCase):
         self.refused(2, self.stem, "-o", self.here / "oak.jpg")
         self.refused(2, self.stem, *out, "-o", self.here / "." / "oak.nc")
         self.refused(3, self.here / "ash", *out)
-        self.refused(7, self.stem, *out, "-o", self.here / "nowhere" / "oak.png")
+        self.refused(7, self.stem, *out, "-o", f"{self.stem}.texture.json/oak.png")  # no folder can have that name
 
     def test_absurd_lengths_name_the_range(self):
         write_texture(self.stem, chirp_and_noise())

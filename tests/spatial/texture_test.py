@@ -168,7 +168,7 @@ def check_refusals(folder):
     refused(["tangential_force"], 5, "--channel", "drive")
     assert sorted(path.name for path in folder.iterdir()) == before
     run("spatial", folder / "finger", "--from", "5s", "--to", "5.01s", "--band", "off", "-o", folder / "short")
-    run("spatial", folder / "finger", "--stroke", "2", "-o", folder / "absent" / "x", code=7)
+    run("spatial", folder / "finger", "--stroke", "2", "-o", folder / "finger.json" / "x", code=7)  # below a file no folder can be made
 
 
 def main():
