@@ -89,7 +89,7 @@ std::vector<schema::ResultFigure> surfaces_figures(const SurfaceComparison& c) {
 
 std::vector<ResultPicture> surfaces_pictures(const SurfaceComparison& c) {
   std::vector<ResultPicture> pictures = {
-      {"Mean levels of the strokes", kSixthsLabel, fmt::format("level (dB re 1 {}^2)", c.unit), true, {}}};
+      {"Mean levels of the strokes", kSixthsLabel, fmt::format("level (dB re 1 {}²)", c.unit), true, {}}};
   pictures[0].curves = {curve_of(c, c.a.name, false, [&](std::size_t i) { return c.a.level_db[i]; }),
                         curve_of(c, c.b.name, true, [&](std::size_t i) { return c.b.level_db[i]; })};
   if (!c.test) return pictures;

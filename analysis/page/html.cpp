@@ -18,7 +18,7 @@ p.answer { font-size: 1.2rem; font-weight: 600; margin: .8rem 0; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .8rem 0; }
 th, td { padding: .35rem .6rem; text-align: right; vertical-align: top; border-bottom: 1px solid #e3e6ea; }
 th { font-weight: 600; vertical-align: bottom; } td:first-child, th:first-child { text-align: left; }
-table.c9 { font-size: .9rem; } td.long { overflow-wrap: anywhere; } td.text { text-align: left; }
+table.pairs th, table.pairs td { text-align: left; } table.c9 { font-size: .9rem; } td.long { overflow-wrap: anywhere; } td.text { text-align: left; }
 img { width: 100%; height: auto; margin: .6rem 0; } p.note { color: #56606b; font-size: .9rem; }
 details { margin: .8rem 0; border: 1px solid #d5d9de; border-radius: .3rem; padding: 0 .8rem; }
 summary { cursor: pointer; padding: .5rem 0; font-weight: 600; }
@@ -46,8 +46,10 @@ std::string list_style() {
   return style;
 }
 
-// The CSS class for a table of so many columns; empty for a table that never becomes a list.
+// The CSS class for a table of so many columns: names and values side by side, or one that becomes a list on
+// a narrow screen; empty for other tables.
 std::string table_class(std::size_t columns) {
+  if (columns == 2) return " class=\"pairs\"";
   for (const ListedBelow& rule : kListedBelow)
     if (columns >= rule.columns) return fmt::format(" class=\"c{}\"", rule.columns);
   return "";
