@@ -16,6 +16,7 @@ import warnings
 
 import numpy as np
 import soundfile
+import xarray
 
 TESTS = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / "end-to-end"), str(TESTS.parent / "data-schema" / "python")]
@@ -104,6 +105,20 @@ def spectrogram_is_upright_and_loaded():
     assert read.density.dims == ("spatial_frequency", "position") and read.known.dtype == bool
     assert np.allclose(read.density_db, 10 * np.log10(read.density.astype("float64")), atol=1e-4)  # float32 in the file
     assert read.density_db.attrs["units"] == "dB"
+    with xarray.open_dataset("ridge.nc") as stored:  # in millimetres
+        for name, units, factor in (("position", "m", 1e-3), ("spatial_frequency", "1/m", 1e3), ("density", "N2 m", 1e-3)):
+            assert read[name].attrs["units"] == units, read[name].attrs
+            assert np.allclose(read[name].transpose(*stored[name].dims), stored[name] * factor, rtol=1e-6, atol=0), name
+        assert np.isclose(read.attrs["window_m"], stored.attrs["window_mm"] * 1e-3) and "window_mm" not in read.attrs
+    run("spectrogram", "ridge", "--window", "5mm", "--scaling", "amplitude", "-o", "amplitudes.nc")
+    amplitudes = tactograph.read_spectrogram("amplitudes")
+    assert amplitudes.amplitude.attrs["units"] == "N" and amplitudes.position.attrs["units"] == "m"
+    texture = tactograph.read_texture("ridge")
+    assert abs(float(read.position[0]) - float(texture.position[0])) < 0.02, "the same axis as the texture's"
+
+
+def the_version_is_that_of_the_program():
+    assert f"tactograph {tactograph.__version__}" in run("--version")[0]
 
 
 def session_equals_its_export(name):
@@ -203,7 +218,7 @@ def main():
         shutil.copytree(STORED, folder)
         os.chdir(folder)
         for check in (texture_has_its_positions_and_band, clipping_is_masked, recording_is_physical_and_keeps_its_gaps,
-                      average_tells_its_spread, spectrogram_is_upright_and_loaded, a_stored_session_is_read,
+                      average_tells_its_spread, spectrogram_is_upright_and_loaded, the_version_is_that_of_the_program, a_stored_session_is_read,
                       a_session_holds_what_the_tray_sensor_measured, a_session_of_the_daemon_has_its_gains, a_session_that_was_cut_is_read_up_to_there,
                       a_newer_minor_version_is_read_with_a_warning, what_cannot_be_read_is_named):
             check()

@@ -15,4 +15,5 @@ from tactograph.session import read_session
 from tactograph.spectrogram import read_spectrogram
 from tactograph.texture import read_texture
 
+__version__ = "0.1.0"  # that of the program (CMakeLists.txt); python_reader_test.py compares them
 __all__ = ["FileProblem", "read_recording", "read_session", "read_spectrogram", "read_texture"]
