@@ -129,7 +129,8 @@ void Envelope::add(double x, double y) {
 
 ResultCurve Envelope::curve(const spatial::ShownRange& range) const {
   ResultCurve curve{"", {}, {}, false};
-  const auto shown = [&](double value) { return std::clamp(value, range.low, range.high); };
+  // A value beyond the axis is a gap: at the axis's end it would look like a saturated sensor.
+  const auto shown = [&](double value) { return value >= range.low && value <= range.high ? value : NAN; };
   for (const Piece& piece : pieces_) {
     curve.x.push_back(piece.x);
     curve.y.push_back(shown(piece.low));

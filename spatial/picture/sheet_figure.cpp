@@ -10,6 +10,7 @@
 #include "spatial/picture/draw/display_unit.hpp"
 #include "spatial/picture/draw/fitted_text.hpp"
 #include "spatial/picture/draw/heading.hpp"
+#include "spatial/picture/draw/shown_range.hpp"
 #include "spatial/picture/formant_ridges.hpp"
 #include "spatial/picture/level_bar.hpp"
 #include "spatial/picture/spectrogram_layout.hpp"
@@ -60,6 +61,16 @@ std::string sheet_facts(const std::vector<SpectrogramPanel>& panels) {
       panels.size(), 1e3 * first.window_m, 1e3 * first.hop_m);
 }
 
+ShownRange outside(const Axis& axis, std::span<const double> values) {
+  ShownRange range{axis.low, axis.high, 0, values.size(), 0};
+  for (const double value : values) {
+    if (value >= axis.low && value <= axis.high) continue;
+    ++range.beyond;
+    if (std::abs(value) > std::abs(range.furthest)) range.furthest = value;
+  }
+  return range;
+}
+
 }  // namespace
 
 Result<SheetScales> sheet_scales(std::span<const SpectrogramPanel> panels,
@@ -72,9 +83,9 @@ Result<SheetScales> sheet_scales(std::span<const SpectrogramPanel> panels,
   for (const SpectrogramPanel& panel : panels) {
     const auto& signal = panel.texture->signal;
     scales.length_mm = std::max(scales.length_mm, 1e3 * signal.length_m());
-    const auto [least, most] = std::ranges::minmax(signal.values);
-    low = std::min(low, least);
-    high = std::max(high, most);
+    const ShownRange shown = shown_range(signal.values);  // a spike in one panel must not compress the others
+    low = std::min(low, shown.low);
+    high = std::max(high, shown.high);
   }
   const Axis roomy = roomy_axis(low, high);
   scales.low_value = roomy.low;
@@ -143,6 +154,9 @@ void SheetFigure::draw_trace(Canvas& canvas, std::size_t index) const {
   for (const auto& piece : trace(x, y, positions(index), axis, canvas.pixels_per_point()))
     canvas.polyline(piece, {kSheetTrace, 0.5});
   canvas.release();
+  if (const ShownRange beyond = outside(axis, y); beyond.beyond > 0)
+    canvas.text({cell.trace.right() - 3, cell.trace.y + 2}, out_of_range_text(beyond, unit.text),
+                {.size = 7, .colour = kGreyInk, .align_x = 1, .align_y = 0});
   canvas.frame(cell.trace, {});
   draw_axis(canvas, cell.trace, Side::left, axis, ticks_for(axis, 3, cell.leftmost));
   if (cell.leftmost)

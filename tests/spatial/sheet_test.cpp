@@ -57,6 +57,19 @@ TEST(Sheet, CellsShareOneScale) {
   EXPECT_EQ(png.at(beyond, middle) & 0xFFFFFF, 0xFFFFFFU);
 }
 
+// A spike of 50 times the amplitude in one texture does not change the axis of all.
+TEST(Sheet, ASpikeDoesNotFlattenThePanels) {
+  const SheetDrawn plain = drawn_sheet(samples::sine(1, 1000, 40000), "plain");
+  SheetDrawn spiked = plain;
+  spiked.texture.signal.values[20000] = 50;
+  const std::vector<SpectrogramPanel> panels = {plain.panel(), spiked.panel()};
+  const auto scales = sheet_scales(panels, {});
+  ASSERT_TRUE(scales);
+  EXPECT_LT(scales->high_value, 3);
+  EXPECT_GE(scales->high_value, 1);
+  EXPECT_TRUE(to_png(SheetFigure(panels, *scales, "Woods")));
+}
+
 TEST(Sheet, CellsKeepToTheirPlaces) {
   for (const std::size_t cells : {1U, 2U, 3U, 5U, 9U, 24U}) {
     const SheetLayout layout(cells, 0);
