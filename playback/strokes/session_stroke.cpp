@@ -43,7 +43,11 @@ Result<Found> find_stroke(const std::string& name, const SessionOverview& overvi
   RowMaker maker(overview, 2 * rows_around(overview.header));
   std::uint64_t index = 0;
   const auto read = read_rows(
-      maker, name, [&](const SessionRow& row) { finder.add({.index = index++, .row = row}); }, progress);
+      maker, name,
+      [&](const SessionRow& row) {
+        finder.add({index++, row, 0, true, {}, {}, {}});
+      },
+      progress);
   TACTO_TRY(read);
   finder.end();
   return found;
