@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A faulty cable: frames from the device are dropped, damaged, cut, doubled or delayed on request.
+// A faulty cable: frames from the device are dropped, damaged, cut, doubled or delayed on request. Also a
+// device whose ring was full for one period.
 #pragma once
 
 #include <deque>
@@ -8,12 +9,13 @@
 #include <random>
 #include <vector>
 
+#include "firmware-host/core/wire/device_messages.hpp"
 #include "firmware-host/core/wire/frame_decoder.hpp"
 #include "firmware-host/link/transport.hpp"
 
 namespace tacto::tests {
 
-enum class Harm { none, drop, corrupt, truncate, duplicate, delay, garbage_before, unplug };
+enum class Harm { none, drop, corrupt, truncate, duplicate, delay, garbage_before, unplug, shorten };
 
 class FaultyTransport final : public firmware_host::Transport {
  public:
@@ -60,6 +62,7 @@ class FaultyTransport final : public firmware_host::Transport {
     const std::size_t place = random_() % frame.size();
     if (harm == Harm::corrupt) frame[place] = static_cast<std::uint8_t>(frame[place] ^ (1 + random_() % 255));
     if (harm == Harm::truncate) frame.resize(place);
+    if (harm == Harm::shorten) frame = shortened(frame);
     if (harm == Harm::garbage_before)
       for (int i = 0; i < 40; ++i) out_.push_back(static_cast<std::uint8_t>(i % 3 == 0 ? 0xA5 : random_()));
     if (harm == Harm::unplug) {
@@ -70,6 +73,24 @@ class FaultyTransport final : public firmware_host::Transport {
     if (harm == Harm::duplicate) put(frame);
     if (harm != Harm::delay && !held_.empty()) put(std::exchange(held_, {}));
     if (harm == Harm::delay) held_ = frame;
+  }
+  // The same message without its last frame or tick.
+  static Bytes shortened(const Bytes& frame) {
+    wire::FrameHeader header;
+    wire::read_header(frame.data(), header);
+    return static_cast<wire::MessageType>(header.type) == wire::MessageType::ticks
+               ? one_less<wire::Ticks>(frame, header)
+               : one_less<wire::Samples>(frame, header);
+  }
+  template <class Message>
+  static Bytes one_less(const Bytes& frame, const wire::FrameHeader& header) {
+    Message message{};
+    if (wire::parse(frame.data() + wire::kHeaderSize, header.length, message) != wire::Parse::ok)
+      std::abort();
+    --message.count;
+    Bytes shorter(frame.size());
+    shorter.resize(wire::encode_frame(message, header.sequence, shorter.data(), shorter.size()));
+    return shorter;
   }
   void put(const Bytes& bytes) { out_.insert(out_.end(), bytes.begin(), bytes.end()); }
 

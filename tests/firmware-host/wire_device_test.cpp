@@ -135,6 +135,18 @@ INSTANTIATE_TEST_SUITE_P(Harms, OneBlockHarmed,
                                          LostBlock{"delayed", Harm::delay}),
                          [](const auto& harm) { return harm.param.name; });
 
+TEST(WireDevice, ASingleLostFrameIsAGap) {
+  Bench bench = bench_with(harm_the(100, MessageType::samples, Harm::shorten));
+  const Streamed streamed = stream_from(**bench.device, 10000);
+  EXPECT_FALSE(streamed.error);
+  ASSERT_EQ(streamed.events.gaps.size(), 1U);
+  EXPECT_EQ(streamed.events.gaps[0].frame, 100 * 32 - 1U);
+  EXPECT_EQ(streamed.events.gaps[0].count, 1U);
+  EXPECT_EQ(streamed.events.gaps[0].device_sequence, 100 * 32U);
+  EXPECT_EQ((*bench.device)->counts().lost_frames, 1U);
+  expect_no_silent_hole(streamed);
+}
+
 TEST(WireDevice, DoubledFramesAndGarbageDoNoHarm) {
   for (const Harm harm : {Harm::duplicate, Harm::garbage_before}) {
     Bench bench = bench_with(harm_all(MessageType::samples, harm));

@@ -111,6 +111,7 @@ class PlayerOnSim : public testing::Test {
   double jump_s_ = 1e9;
   bool tell_limits_ = false;
   std::unique_ptr<firmware_host::SimDevice> device_;
+  std::unique_ptr<firmware_host::Client> faulty_;  // over a faulty cable, if a test needs one
   std::unique_ptr<Player> player_;
 };
 

@@ -12,6 +12,7 @@
 #include "playback/player/player_device.hpp"
 #include "playback/strokes/session_stroke.hpp"
 #include "playback/strokes/stroke_report.hpp"
+#include "tests/firmware-host/faulty_transport.hpp"
 #include "tests/playback/full_disk.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
@@ -187,6 +188,36 @@ TEST_F(PlayerOnSim, WhatAnEarlierProgramsRunHasStillToSayBelongsToNobody) {
   EXPECT_EQ((*next)->status().ticks.lost(), 0U);
   EXPECT_GE((*next)->status().ticks.ticks(), 1000U);
   EXPECT_EQ((*next)->state(), PlayerState::playing);
+}
+
+TEST_F(PlayerOnSim, ASingleLostTickIsCountedAndRecorded) {
+  auto choice = [count = 0](wire::MessageType of) mutable {
+    return of == wire::MessageType::ticks && ++count == 20 ? tests::Harm::shorten : tests::Harm::none;
+  };
+  auto client = firmware_host::Client::connect(
+      std::make_unique<tests::FaultyTransport>(
+          std::make_unique<firmware_host::SimTransport>(device_->board(), false), choice),
+      "sim:");
+  ASSERT_TRUE(client) << schema::message(client.error());
+  faulty_ = std::move(*client);
+  PlayerOptions options;
+  options.full_queue = FullQueue::wait;
+  auto player = Player::make(*faulty_, "sim:", options);
+  ASSERT_TRUE(player) << schema::message(player.error());
+  player_ = std::move(*player);
+  begin();
+  ASSERT_TRUE(player_->play());
+  run(0.5);
+  EXPECT_EQ(player_->status().ticks.lost(), 1U);
+  ASSERT_TRUE(player_->disarm());
+  std::vector<schema::SessionLoss> losses;
+  auto reader = schema::SessionReader::open(session_);
+  while (auto block = reader->next())
+    if (const auto* loss = std::get_if<schema::SessionLoss>(&*block)) losses.push_back(*loss);
+  ASSERT_EQ(losses.size(), 1U);
+  EXPECT_EQ(losses[0].first_tick, 20 * 20 - 1U);  // 20 ticks of 0.5 ms in a message
+  EXPECT_EQ(losses[0].count, 1U);
+  EXPECT_EQ(losses[0].why, schema::SessionLoss::Why::link);
 }
 
 TEST_F(PlayerOnSim, APlayedTextureThatIsNoNumberNeverGetsToTheDevice) {
