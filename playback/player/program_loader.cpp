@@ -20,10 +20,12 @@ Result<Program> made_within_memory(const ProgramLoader::Make& make) try {
   return fail(ErrorKind::unsuitable, "needs more memory than is available", "load", "play a shorter part");
 }
 
-// Lowers the priority to about a third, so that a load still ends on a busy machine.
+// Lowers the thread's priority to about a third of the process's, so that a load still ends on a busy
+// machine.
 void step_back(pid_t thread) {
-  constexpr int kNice = 5;
-  setpriority(PRIO_PROCESS, static_cast<id_t>(thread), kNice);
+  constexpr int kNicer = 5;
+  const int of_process = getpriority(PRIO_PROCESS, static_cast<id_t>(getpid()));
+  setpriority(PRIO_PROCESS, static_cast<id_t>(thread), of_process + kNicer);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ class RenderHysteresis : public testing::Test {
   Rendering rendered(const schema::Transducer& transducer) const {
     auto rendering = render(texture_, path_, transducer, options_);
     EXPECT_TRUE(rendering) << message(rendering.error());
-    return std::move(*rendering);
+    return rendering ? std::move(*rendering) : Rendering{};
   }
 
   schema::Transducer straight_ = *schema::read_transducer("wiertlewski2011"), bent_ = straight_;
