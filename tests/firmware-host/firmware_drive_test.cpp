@@ -296,6 +296,37 @@ TEST(FirmwareDrive, SweepsWithinItsLimitsAndEnds) {
   EXPECT_EQ(bench.board.drive_v, 0);
 }
 
+// release_s, 5 ms, whatever ends it: half the level after half of the release, and no step above the
+// envelope's steepest, 1.5 / 50 ticks. Near the maximum of 2 V of a sine of 10 Hz, which falls by 5 % in the
+// meantime.
+TEST(FirmwareDrive, ASweepFallsOverItsRelease) {
+  constexpr int kReleaseTicks = 50;
+  for (const char* how : {"stop", "disarm", "enable input"}) {
+    FirmwareBench bench;
+    bench.expect_ok(bench.code(kTestLimits));
+    bench.expect_ok(bench.code(wire::Sweep{2, 10'000, 11'000, 188'000}));
+    bench.expect_ok(bench.code(wire::Arm{wire::DriveSource::sweep, kTenKilohertz}));
+    bench.run(20);
+    EXPECT_EQ(bench.board.drive_v, 0) << "armed is silent";
+    bench.expect_ok(bench.code(wire::Play{}));
+    bench.run(245);
+    float before_v = bench.board.drive_v;
+    ASSERT_NEAR(before_v, 2, 0.02);
+    bench.drives.clear();
+    if (how == std::string("stop")) bench.expect_ok(bench.code(wire::Stop{}));
+    if (how == std::string("disarm")) bench.expect_ok(bench.code(wire::Disarm{}));
+    if (how == std::string("enable input")) bench.board.enabled = false;
+    bench.run(kTicksToZero);
+    ASSERT_GE(bench.drives.size(), kReleaseTicks + 1U) << how;
+    EXPECT_NEAR(bench.drives[kReleaseTicks / 2], 1, 0.15) << how;
+    for (const float drive_v : bench.drives) {
+      EXPECT_LE(std::abs(drive_v - before_v), 2 * 1.5 / kReleaseTicks * 1.05) << how;
+      before_v = drive_v;
+    }
+    EXPECT_EQ(bench.board.drive_v, 0) << how;
+  }
+}
+
 TEST(FirmwareDrive, LateTicksAreCountedAndMarked) {
   FirmwareBench bench;
   bench.play_profile(1);

@@ -102,7 +102,9 @@ float Ticker::target(int32_t count, bool& lacks) noexcept {
     end_change();
     return target;
   }
-  if (source_ == DriveSource::sweep) return supervisor_.state() == DriveState::playing ? sweep_.next() : 0;
+  // After `stop` or a fault the sweep goes on below the falling envelope until the drive is at rest.
+  if (source_ == DriveSource::sweep)
+    return supervisor_.state() == DriveState::playing || !kernel_.at_rest() ? sweep_.next() : 0;
   const float* next = drive_queue_.front();
   lacks = next == nullptr;
   if (lacks) return kernel_.last_v();
