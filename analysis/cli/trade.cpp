@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // tactograph trade: error and cost of each choice, measured on this machine.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <functional>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "analysis/cli/compared_input.hpp"
@@ -37,10 +35,6 @@ struct TradeVerbOptions {
   bool calibrate = false, unfit_transducer = false, implausible = false;
   schema::Existing existing = schema::Existing::keep;
   std::vector<std::string> outputs;
-  const CLI::App* app = nullptr;
-
-  /// With --json the report has all rows, otherwise the summary.
-  bool json() const { return app->count("--json") > 0; }
 };
 
 constexpr const char* kTradeTableEnding = ".trade.json";
@@ -80,6 +74,16 @@ Report choice_row(const TradeHalf& half, const TradeRow& row, const Worth& worth
   return report.add("note", row.note);
 }
 
+// Single choices only; pairs of them ("window x hop") are in the table.
+std::string best_words(const TradeHalf& half) {
+  std::string words;
+  for (const PlainAnswer& answer : plain_answers(half.rows))
+    if (answer.knee_row && answer.knob.find(" x ") == std::string::npos)
+      words +=
+          fmt::format("{}{}: {}", words.empty() ? "" : "; ", answer.knob, half.rows[*answer.knee_row].choice);
+  return words.empty() ? "no best choice" : words;
+}
+
 Report trade_report(const Trade& trade) {
   Report report;
   report.add("texture", trade.texture).add("machine", trade.machine);
@@ -87,6 +91,7 @@ Report trade_report(const Trade& trade) {
   std::vector<Report> rows;
   std::vector<Report> answers;
   for (const TradeHalf& half : trade.halves) {
+    report.add(half.name == "offline" ? "best_offline" : "best_real_time", best_words(half));
     const auto worth = worth_of(half.rows);
     for (std::size_t i = 0; i < half.rows.size(); ++i)
       rows.push_back(choice_row(half, half.rows[i], worth[i]));
@@ -127,68 +132,6 @@ Result<Trade> measured_on(const std::string& name, const TradeVerbOptions& o,
   if (!trade && trade.error().where == "the texture") trade.error().where = name;
   if (trade) trade->texture = input->name;
   return trade;
-}
-
-constexpr std::size_t kWidestLine = 120;
-
-// Breaks the text between words; only the first line has the label.
-void add_wrapped(Report& report, const std::string& label, std::string_view text, std::size_t room) {
-  std::string key = label;
-  while (text.size() > room) {
-    const std::size_t space = text.rfind(' ', room);
-    const std::size_t cut = space == std::string_view::npos || space == 0 ? room : space;
-    report.add(std::exchange(key, ""), text.substr(0, cut));
-    text.remove_prefix(cut);
-    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-  }
-  report.add(std::move(key), text);
-}
-
-// Single choices only; pairs of them ("window x hop") are in the table.
-std::string best_words(const TradeHalf& half) {
-  std::string words;
-  for (const PlainAnswer& answer : plain_answers(half.rows))
-    if (answer.knee_row && answer.knob.find(" x ") == std::string::npos)
-      words +=
-          fmt::format("{}{}: {}", words.empty() ? "" : "; ", answer.knob, half.rows[*answer.knee_row].choice);
-  return words.empty() ? "no best choice" : words;
-}
-
-std::vector<Report> answer_rows(const Trade& trade) {
-  std::vector<Report> rows;
-  for (const TradeHalf& half : trade.halves)
-    for (const PlainAnswer& answer : plain_answers(half.rows)) {
-      Report row;
-      row.add("half", half.name).add("choice_of", answer.knob);
-      if (answer.knee_row) {
-        const TradeRow& best = half.rows[*answer.knee_row];
-        row.add("best", best.choice).add("error_percent", 100 * best.error);
-        row.add("cost", fmt::format("{:.3g} ns per {}", best.cost_ns, best.per));
-      }
-      row.add("never_worth_it", fmt::format("{} of {}", answer.never_worth_it, answer.choices));
-      rows.push_back(std::move(row));
-    }
-  return rows;
-}
-
-// The summary: the best choice of each parameter for its cost. Output files contain the rows; without output
-// files the table of the answers follows.
-Report trade_for_people(const TradeVerbOptions& o, const Trade& trade) {
-  constexpr std::string_view kLongestLabel = "best, real time  ";
-  constexpr std::size_t kRoom = kWidestLine - kLongestLabel.size();
-  Report report;
-  add_wrapped(report, "texture", trade.texture, kRoom);
-  add_wrapped(report, "machine", trade.machine, kRoom);
-  if (!trade.simulated.empty()) add_wrapped(report, "simulated", trade.simulated, kRoom);
-  std::size_t rows = 0;
-  for (const TradeHalf& half : trade.halves) {
-    add_wrapped(report, "best, " + half.name, best_words(half), kRoom);
-    rows += half.rows.size();
-  }
-  report.add("choices", fmt::format("{} measured; --json, NAME.csv and NAME.html have them all", rows));
-  if (o.outputs.empty()) return report.add("answers", answer_rows(trade));
-  add_wrapped(report, "written", fmt::format("{}", fmt::join(o.outputs, "; ")), kRoom);
-  return report;
 }
 
 // Checks the transducer for the real-time half only, in the band of played_case(); the offline half does not
@@ -234,7 +177,6 @@ Result<Report> measure(const TradeVerbOptions& o) {
   const auto written = write_outputs(
       o.outputs, o.existing, trade_results(o, trade), report, [&] { return trade_page(trade); }, kinds);
   TACTO_TRY(written);
-  if (!o.json()) return trade_for_people(o, trade);
   if (!o.outputs.empty()) report.add("written", o.outputs);
   return report;
 }
@@ -301,7 +243,6 @@ Result<Report> run_trade(const TradeVerbOptions& o) {
 
 cli::Action declare_trade(CLI::App& app) {
   auto options = std::make_shared<TradeVerbOptions>();
-  options->app = &app;
   app.add_option("WHAT", options->what,
                  "Texture, recording (its stroke) or scene (the worst of its textures)");
   app.add_option("-o,--output", options->outputs,
