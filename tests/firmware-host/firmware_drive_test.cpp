@@ -24,8 +24,15 @@ wire::Drive constant_drive(std::uint16_t count, float drive_v) {
   return drive;
 }
 
-void expect_ramp_to_zero(FirmwareBench& bench, float from_v) {
-  const float step_v = kTestLimits.slew_v_per_s / 10000 * 1.0001F;
+// The largest step of the release from this drive: the largest slope of the envelope's weight is 1.5.
+float release_step_v(float from_v) {
+  return 1.5F * std::abs(from_v) / (kTestLimits.release_s * 10000);
+}
+
+constexpr float kSlewStepV = kTestLimits.slew_v_per_s / 10000;
+
+void expect_ramp_to_zero(FirmwareBench& bench, float from_v, float largest_step_v) {
+  const float step_v = largest_step_v * 1.0001F;
   float before_v = from_v;
   for (const float drive_v : bench.drives) {
     EXPECT_LE(std::abs(drive_v), std::abs(before_v)) << "never up again";
@@ -122,7 +129,7 @@ TEST(FirmwareDrive, ASilentHostIsAFaultAndZero) {
   bench.drives.erase(bench.drives.begin(),
                      std::find_if(bench.drives.begin(), bench.drives.end(), [](float v) { return v < 5; }));
   EXPECT_NEAR(200 - static_cast<double>(bench.drives.size()), 500 - 59 - 430 + 1, 1);
-  expect_ramp_to_zero(bench, 5);
+  expect_ramp_to_zero(bench, 5, release_step_v(5));
   ASSERT_EQ(bench.faults.size(), 1U);
   EXPECT_EQ(bench.faults[0].code, FaultCode::host_silent);
   EXPECT_EQ(bench.pulse().state, DriveState::fault);
@@ -136,7 +143,7 @@ TEST(FirmwareDrive, AnOpenEnableInputIsAFaultAndZeroEvenIfItClosesAgain) {
   bench.run(1);
   bench.board.enabled = true;
   bench.run(100);
-  expect_ramp_to_zero(bench, -4);
+  expect_ramp_to_zero(bench, -4, release_step_v(-4));
   EXPECT_EQ(bench.faults.at(0).code, FaultCode::enable_open);
   EXPECT_EQ(bench.code(wire::Play{}), AnswerCode::wrong_state);
   bench.expect_ok(bench.code(wire::Disarm{}));
@@ -155,8 +162,25 @@ TEST(FirmwareDrive, AnEncodersJumpIsAFaultAndZero) {
     bench.board.encoder += jump;
     bench.drives.clear();
     bench.run(100);
-    expect_ramp_to_zero(bench, 3);
+    // The farthest place is outside the profile, where the target is zero.
+    expect_ramp_to_zero(bench, 3, jump == 101 || jump == -101 ? release_step_v(3) : kSlewStepV);
     EXPECT_EQ(bench.faults.at(0).code, FaultCode::encoder_jump);
+  }
+}
+
+// The counter has 32 bits: after 2^31 - 1 comes -2^31, and the way from one to the other is one count.
+TEST(FirmwareDrive, TheEncodersWrapIsNoJump) {
+  for (const int way : {1, -1, 100, -100}) {
+    FirmwareBench bench;
+    const auto end =
+        way > 0 ? std::numeric_limits<std::int32_t>::max() : std::numeric_limits<std::int32_t>::min();
+    bench.board.encoder = end - way / 2;
+    bench.play_profile(3);
+    bench.board.encoder = static_cast<std::int32_t>(static_cast<std::uint32_t>(bench.board.encoder) +
+                                                    static_cast<std::uint32_t>(way));
+    bench.run(100);
+    EXPECT_TRUE(bench.faults.empty()) << way;
+    EXPECT_EQ(bench.pulse().state, DriveState::playing) << way;
   }
 }
 
@@ -215,7 +239,7 @@ TEST(FirmwareDrive, AFilteredDriveThatIsNoNumberIsAFaultAndZero) {
   bench.run(100);
   ASSERT_EQ(bench.faults.size(), 1U);
   EXPECT_EQ(bench.faults.at(0).code, FaultCode::not_a_number);
-  expect_ramp_to_zero(bench, 5);
+  expect_ramp_to_zero(bench, 5, kSlewStepV);
 }
 
 TEST(FirmwareDrive, AFaultIsToldOnceAndEndsWithDisarm) {
@@ -238,7 +262,7 @@ TEST(FirmwareDrive, HelloEndsWhateverRan) {
   bench.drives.clear();
   bench.greet();
   bench.run(60, false);
-  expect_ramp_to_zero(bench, 2);
+  expect_ramp_to_zero(bench, 2, release_step_v(2));
   EXPECT_EQ(bench.firmware->drive_state(), DriveState::idle);
 }
 

@@ -101,11 +101,28 @@ TEST(HermiteInverse, SolvesASegmentWithATripleRoot) {
     EXPECT_NEAR(segment.value(solve_segment(segment, segment.value(u))), segment.value(u), 1e-15) << u;
 }
 
+TEST(HermiteInverse, AgreesInTheFirstAndTheLastSegment) {
+  Knots knots = finger(0);
+  for (const std::size_t count : {2, 3, 50}) {
+    const Knots few{{knots.t.begin(), knots.t.begin() + count}, {knots.x.begin(), knots.x.begin() + count}};
+    std::vector<double> at;
+    for (const std::size_t i : {std::size_t{0}, count - 2})
+      for (const double part : {0.001, 0.4, 0.999}) at.push_back(few.x[i] + part * (few.x[i + 1] - few.x[i]));
+    std::ranges::sort(at);
+    EXPECT_LT(position_error(few, at), 1e-14) << count;
+    EXPECT_LT(time_error(few, at), 1e-10) << count;
+  }
+}
+
 TEST(HermiteInverse, StaysWithinItsKnots) {
   const Knots knots = finger(0);
   const HermiteInverse inverse(knots.t, knots.x);
   EXPECT_EQ(inverse(knots.x.front() - 1), knots.t.front());
   EXPECT_EQ(inverse(knots.x.back() + 1), knots.t.back());
+  const std::vector<double> outside{knots.x.front() - 1, knots.x.back(), knots.x.back() + 1};
+  std::vector<double> t(outside.size());
+  inverse.evaluate_sorted(outside, t);
+  EXPECT_EQ(t, (std::vector{knots.t.front(), knots.t.back(), knots.t.back()}));
   for (std::size_t i = 0; i < knots.x.size(); ++i) EXPECT_EQ(inverse(knots.x[i]), knots.t[i]);
 }
 
