@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/compare/band_sums.hpp"
 
+#include "data-schema/base/decibels.hpp"
+
 #include <algorithm>
-#include <cmath>
 #include <complex>
 #include <numbers>
 
@@ -12,7 +13,7 @@ namespace {
 constexpr double kLeastRatio = 1e-30;  // equal signals: -300 dB, not -infinity
 
 double ratio_db(double part, double whole) {
-  return 10 * std::log10(std::max(part / whole, kLeastRatio));
+  return schema::power_db(std::max(part / whole, kLeastRatio));
 }
 
 void add_column(std::vector<double>& column, const std::vector<double>& density,

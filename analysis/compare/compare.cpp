@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "analysis/compare/band_sums.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "playback/session/session_rows.hpp"
 #include "spatial/features/third_octaves.hpp"
@@ -77,7 +78,7 @@ BandComparison compared_band(const schema::ThirdOctaveBand& band, const BandSums
 void compare_whole(Comparison& comparison, const BandSums& whole) {
   comparison.a_rms = std::sqrt(whole.aa);
   comparison.b_rms = std::sqrt(whole.bb);
-  comparison.power_level_db = 10 * std::log10(whole.bb / whole.aa);
+  comparison.power_level_db = schema::power_db(whole.bb / whole.aa);
   if (!whole.paired) return;
   comparison.gain = whole.gain();
   comparison.error_db = whole.error_db();

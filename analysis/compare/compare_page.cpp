@@ -8,6 +8,7 @@
 
 #include "analysis/page/html.hpp"
 #include "analysis/page/picture_svg.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 
 namespace tacto::analysis {
@@ -43,7 +44,7 @@ ResultCurve density_curve(const Comparison& c, const std::string& name, const st
   const auto flush = [&] {
     if (count > 0 && sum > 0) {
       curve.x.push_back(kPerMm * frequencies / count);
-      curve.y.push_back(10 * std::log10(scale * sum / count));
+      curve.y.push_back(schema::power_db(scale * sum / count));
     }
     sum = frequencies = count = 0;
   };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/compare/local_mean.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::analysis {
@@ -114,7 +115,7 @@ std::optional<SpectralLine> strongest_line(std::span<const double> a, std::span<
   const Peak in_a = highest_over(of_a, of_b), in_b = highest_over(of_b, of_a);
   const Peak& peak = in_b.power > in_a.power ? in_b : in_a;
   const auto level_db = [&](double power) {  // `power` in units of a bin's power
-    return 10 * std::log10(1 + power * kTaperBandwidth * window / (kHannWidth * static_cast<double>(n)));
+    return schema::power_db(1 + power * kTaperBandwidth * window / (kHannWidth * static_cast<double>(n)));
   };
   const double threshold = chance_power(bins);
   return SpectralLine{static_cast<double>(first + peak.at) * step,

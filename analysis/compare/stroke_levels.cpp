@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "analysis/compare/cross_spectrum.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::analysis {
@@ -66,7 +67,7 @@ std::vector<double> stroke_levels_db(std::span<const double> values, double pitc
   const double most = *std::ranges::max_element(levels);
   if (!(most > 0)) return {};
   const double least = most * std::pow(10, -kLevelFloorDb / 10);
-  for (double& level : levels) level = 10 * std::log10(std::max(level, least));
+  for (double& level : levels) level = schema::power_db(std::max(level, least));
   return levels;
 }
 

@@ -10,6 +10,7 @@
 #include <random>
 #include <span>
 
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/base/statistics.hpp"
 
@@ -21,7 +22,7 @@ constexpr std::uint64_t kDrawSeed = 6;
 constexpr double kFloorDb = 60;  // lower powers come from windows and converters, not from the texture
 
 double db_of(double ratio) {
-  return 10 * std::log10(ratio);
+  return schema::power_db(ratio);
 }
 
 using Bands = std::vector<double>;

@@ -6,6 +6,7 @@
 #include <complex>
 #include <numbers>
 
+#include "data-schema/base/decibels.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::analysis {
@@ -105,7 +106,7 @@ ReplayError replay_error(const schema::TimeSignal& came, const schema::TimeSigna
       std::round(best_delay(comparison, max_delay_s) / kResolutionS) * kResolutionS + 0.0;  // no -0
   found.error_rms = comparison.error_rms(found.delay_s);
   found.target_rms = comparison.target_rms();
-  found.error_db = 20 * std::log10(found.error_rms / found.target_rms);
+  found.error_db = schema::amplitude_db(found.error_rms / found.target_rms);
   return found;
 }
 

@@ -13,6 +13,7 @@
 #include "analysis/fidelity/emulated_trays.hpp"
 #include "analysis/fidelity/scratch_folder.hpp"
 #include "analysis/fidelity/tray_displacement.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "playback/model/finger_path.hpp"
 #include "spatial/features/band_kept.hpp"
@@ -162,8 +163,8 @@ void note_unit(FidelitySpeed& speed, const std::vector<double>& target_m, double
       fmt::format("at {:g} mm/s the target is {}, {:.0f} dB over the transducer's limit of {}: check the "
                   "texture's unit, and "
                   "--gain",
-                  1e3 * speed.speed_mps, schema::length_for_people(peak_m), 20 * std::log10(peak_m / limit_m),
-                  schema::length_for_people(limit_m)));
+                  1e3 * speed.speed_mps, schema::length_for_people(peak_m),
+                  schema::amplitude_db(peak_m / limit_m), schema::length_for_people(limit_m)));
 }
 
 tl::unexpected<schema::Error> fidelity_stopped() {

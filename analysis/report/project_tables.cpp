@@ -7,6 +7,7 @@
 
 #include "analysis/identify/measure/angles.hpp"
 #include "analysis/report/project_readers.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/calibration/calibration.hpp"
 #include "data-schema/results/trade_table.hpp"
@@ -35,7 +36,7 @@ ResultCurve response_curve(const std::string& name, bool phase,
   }
   if (phase) curve.y = carried_phase_deg(values);
   if (!phase)
-    for (const auto& value : values) curve.y.push_back(20 * std::log10(std::abs(value)));
+    for (const auto& value : values) curve.y.push_back(schema::amplitude_db(std::abs(value)));
   return curve;
 }
 
@@ -77,7 +78,7 @@ ResultCurve bands_curve(const schema::Description& description) {
   ResultCurve curve{description.texture, {}, {}, false};
   for (const schema::ThirdOctaveBand& band : description.bands) {
     curve.x.push_back(1e-3 * band.centre_per_m);
-    curve.y.push_back(20 * std::log10(band.rms));
+    curve.y.push_back(schema::amplitude_db(band.rms));
   }
   return curve;
 }

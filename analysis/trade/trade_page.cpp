@@ -14,13 +14,14 @@
 #include "analysis/page/picture_svg.hpp"
 #include "analysis/trade/rows/pareto.hpp"
 #include "analysis/trade/rows/played_speeds.hpp"
+#include "data-schema/base/decibels.hpp"
 
 namespace tacto::analysis {
 namespace {
 
 double error_db(const TradeRow& row) {
   constexpr double kSmallest = 1e-8;
-  return 20 * std::log10(std::max(row.error, kSmallest));
+  return schema::amplitude_db(std::max(row.error, kSmallest));
 }
 
 bool drawn(const TradeRow& row) {

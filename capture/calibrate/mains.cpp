@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "capture/calibrate/hann_line.hpp"
+#include "data-schema/base/decibels.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -43,7 +44,7 @@ std::optional<MainsLine> line_at(const Samples& samples, double frequency_hz) {
   const double amplitude = highest_near(samples, frequency_hz);
   const double floor = mean_power_around(samples, frequency_hz), power = amplitude * amplitude;
   if (!(power > kLineToFloorPower * floor) || power == 0) return std::nullopt;
-  return MainsLine{frequency_hz, amplitude, 10 * std::log10(power / std::max(floor, 1e-300))};
+  return MainsLine{frequency_hz, amplitude, schema::power_db(power / std::max(floor, 1e-300))};
 }
 
 std::vector<MainsLine> family(const Samples& samples, double base_hz, double highest_hz) {

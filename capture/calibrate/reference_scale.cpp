@@ -100,24 +100,25 @@ std::vector<double> newtons(const Take& take, std::size_t channel, double scale)
 }
 
 bool clips(const Take& take, std::size_t channel) {
-  const schema::Channel& told = take.header.channels[channel];
+  const schema::Channel& properties = take.header.channels[channel];
   return std::ranges::any_of(take.codes[channel], [&](double code) {
-    const double value = code * told.scale + told.offset;
-    return (told.range_max && value >= *told.range_max) || (told.range_min && value <= *told.range_min);
+    const double value = properties.physical(code);
+    return (properties.range_max && value >= *properties.range_max) ||
+           (properties.range_min && value <= *properties.range_min);
   });
 }
 
 Result<void> check(const Take& take, std::size_t channel, std::size_t reference) {
-  const schema::Channel& told = take.header.channels[channel];
-  if (!take.header.transducer || told.quantity != "tangential_force")
-    return schema::fail(ErrorKind::unsuitable, "is not the transducer's own channel", told.name,
+  const schema::Channel& properties = take.header.channels[channel];
+  if (!take.header.transducer || properties.quantity != "tangential_force")
+    return schema::fail(ErrorKind::unsuitable, "is not the transducer's own channel", properties.name,
                         "load cells are calibrated by weights: --mass 0g --mass 100g");
   if (take.header.channels[reference].unit != "N" || channel == reference)
     return schema::fail(ErrorKind::usage, "is not a force that can be a reference",
                         take.header.channels[reference].name, "for example --reference net_force");
   if (static_cast<double>(take.frames()) < kShortestPush_s * take.header.sample_rate_hz)
     return schema::fail(ErrorKind::unsuitable, fmt::format("needs at least {:g} s", kShortestPush_s),
-                        told.name);
+                        properties.name);
   for (const std::size_t each : {channel, reference})
     if (clips(take, each))
       return schema::fail(ErrorKind::unsuitable, "is clipped", take.header.channels[each].name,

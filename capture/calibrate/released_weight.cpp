@@ -26,7 +26,7 @@ struct Window {
 };
 
 Result<Window> window_of(const Release& release, std::size_t channel) {
-  const schema::Channel& told = release.take.header.channels[channel];
+  const schema::Channel& properties = release.take.header.channels[channel];
   const std::vector<double>& codes = release.take.codes[channel];
   const double rate_hz = release.take.header.sample_rate_hz;
   const double middle = std::accumulate(codes.begin(), codes.end(), 0.0) / static_cast<double>(codes.size());
@@ -35,16 +35,17 @@ Result<Window> window_of(const Release& release, std::size_t channel) {
   const auto length = static_cast<std::ptrdiff_t>(kRinging_s * rate_hz);
   if (peak - codes.begin() < before || codes.end() - (peak - before) < length)
     return schema::fail(
-        ErrorKind::unsuitable, "the release is too near the start or the end", told.name,
+        ErrorKind::unsuitable, "the release is too near the start or the end", properties.name,
         fmt::format("{:g} s before it and {:g} s after it are needed", kBefore_s, kRinging_s - kBefore_s));
   Window window{{peak - before, peak - before + length}, rate_hz};
   const std::ptrdiff_t quiet = before * 9 / 10;
   const double rest = std::accumulate(window.newtons.begin(), window.newtons.begin() + quiet, 0.0) /
                       static_cast<double>(quiet);
-  for (double& value : window.newtons) value = (value - rest) * told.scale;
-  const double physical = *peak * told.scale + told.offset;
-  if ((told.range_max && physical >= *told.range_max) || (told.range_min && physical <= *told.range_min))
-    return schema::fail(ErrorKind::unsuitable, "is clipped", told.name, "release a smaller weight");
+  for (double& value : window.newtons) value = (value - rest) * properties.scale;
+  const double physical = properties.physical(*peak);
+  if ((properties.range_max && physical >= *properties.range_max) ||
+      (properties.range_min && physical <= *properties.range_min))
+    return schema::fail(ErrorKind::unsuitable, "is clipped", properties.name, "release a smaller weight");
   return window;
 }
 

@@ -26,9 +26,9 @@ constexpr double kLowestNoise_hz = 20, kHighestNoise_hz = 480;
 constexpr int kLines = 100;
 
 std::vector<double> physical(const Take& take, std::size_t channel) {
-  const Channel& told = take.header.channels[channel];
+  const Channel& properties = take.header.channels[channel];
   std::vector<double> values = take.codes[channel];
-  for (double& value : values) value = value * told.scale + told.offset;
+  for (double& value : values) value = properties.physical(value);
   return values;
 }
 
@@ -49,11 +49,11 @@ double rms_about_mean(std::span<const double> samples) {
 }
 
 ChannelTare tare_of_channel(const Take& take, std::size_t channel) {
-  const Channel& told = take.header.channels[channel];
-  const double rate_hz = take.header.sample_rate_hz, native_hz = told.native_rate_hz.value_or(rate_hz);
+  const Channel& properties = take.header.channels[channel];
+  const double rate_hz = take.header.sample_rate_hz, native_hz = properties.native_rate_hz.value_or(rate_hz);
   const std::vector<double> values = physical(take, channel);
   ChannelTare tare{channel, mean_of(take.codes[channel]), 0, rms_about_mean(values), 0, {}};
-  tare.mean = tare.zero.value * told.scale + told.offset;
+  tare.mean = properties.physical(tare.zero.value);
   tare.noise_density = noise_density(values, rate_hz, native_hz);
   tare.mains = mains_lines(values, rate_hz, native_hz);
   return tare;
@@ -65,49 +65,50 @@ bool is_transducers(const Take& take, const Channel& channel) {
 }
 
 void judge(const Take& take, const ChannelTare& tare, Tare& all) {
-  const Channel& told = take.header.channels[tare.channel];
+  const Channel& properties = take.header.channels[tare.channel];
   if (drift_ratio(take.codes[tare.channel]) > kMostTareDrift)
-    all.motion_signs.push_back(fmt::format("{} drifts", told.name));
-  if (!is_transducers(take, told) && std::abs(tare.mean) > kResting_n)
+    all.motion_signs.push_back(fmt::format("{} drifts", properties.name));
+  if (!is_transducers(take, properties) && std::abs(tare.mean) > kResting_n)
     all.warnings.push_back(
         fmt::format("{} is {:.3g} {} at rest: check whether this is the offset of the sensor or a load on it",
-                    told.name, tare.mean, told.unit));
-  if (!is_transducers(take, told)) return;
+                    properties.name, tare.mean, properties.unit));
+  if (!is_transducers(take, properties)) return;
   double power = tare.noise_rms * tare.noise_rms;
   for (const MainsLine& line : tare.mains) power -= line.amplitude * line.amplitude / 2;
   const double floor =
       take.header.transducer->noise_n_per_sqrt_hz * std::sqrt(take.header.sample_rate_hz / 2);
   if (floor > 0 && power > std::pow(kMostNoise * floor, 2))
     all.motion_signs.push_back(fmt::format("{} has {:.3g} N of noise, and its noise floor is {:.3g} N",
-                                           told.name, std::sqrt(power), floor));
+                                           properties.name, std::sqrt(power), floor));
 }
 
 void judge_motion(const Take& take, Tare& all) {
   for (std::size_t i = 0; i < take.codes.size(); ++i) {
-    const Channel& told = take.header.channels[i];
-    if (told.quantity != "position") continue;
+    const Channel& properties = take.header.channels[i];
+    if (properties.quantity != "position") continue;
     const auto [least, most] = std::ranges::minmax(take.codes[i]);
-    const double moved_m = std::abs((most - least) * told.scale);
+    const double moved_m = std::abs((most - least) * properties.scale);
     if (moved_m > kMoved_m)
       all.warnings.push_back(fmt::format("{} moved by {:.3g} mm: nothing may touch the device during a tare",
-                                         told.name, moved_m * 1e3));
+                                         properties.name, moved_m * 1e3));
   }
 }
 
 bool is_clipped(const Take& take, std::size_t channel) {
-  const Channel& told = take.header.channels[channel];
+  const Channel& properties = take.header.channels[channel];
   const std::vector<double> values = physical(take, channel);
   const auto [least, most] = std::ranges::minmax(values);
-  return (told.range_max && most >= *told.range_max) || (told.range_min && least <= *told.range_min);
+  return (properties.range_max && most >= *properties.range_max) ||
+         (properties.range_min && least <= *properties.range_min);
 }
 
-std::vector<std::string> notes_on(const ChannelTare& tare, const Channel& told) {
+std::vector<std::string> notes_on(const ChannelTare& tare, const Channel& properties) {
   std::vector<std::string> notes = {
       "uncertainty: scatter of the means of 20 blocks (type A), and the step of the converter if noise does "
       "not dither it"};
   for (const MainsLine& line : tare.mains)
     notes.push_back(fmt::format("mains at {:g} Hz: {:.3g} {} peak, {:.0f} dB above its neighbours",
-                                line.frequency_hz, line.amplitude, told.unit, line.above_floor_db));
+                                line.frequency_hz, line.amplitude, properties.unit, line.above_floor_db));
   return notes;
 }
 
@@ -119,10 +120,10 @@ Result<Tare> tare_of(const Take& take) {
                         "time");
   Tare tare;
   for (std::size_t i = 0; i < take.codes.size(); ++i) {
-    const Channel& told = take.header.channels[i];
-    if (told.unit != "N") continue;
+    const Channel& properties = take.header.channels[i];
+    if (properties.unit != "N") continue;
     if (is_clipped(take, i))
-      return schema::fail(ErrorKind::unsuitable, "is at the limit of its converter's range", told.name,
+      return schema::fail(ErrorKind::unsuitable, "is at the limit of its converter's range", properties.name,
                           "remove the load, or check the wiring");
     tare.channels.push_back(tare_of_channel(take, i));
     judge(take, tare.channels.back(), tare);
@@ -135,15 +136,15 @@ Result<Tare> tare_of(const Take& take) {
 std::vector<schema::CalibrationEntry> entries_of(const Tare& tare, const Take& take) {
   std::vector<schema::CalibrationEntry> entries;
   for (const ChannelTare& one : tare.channels) {
-    const Channel& told = take.header.channels[one.channel];
-    schema::CalibrationEntry entry{told.name, told.unit, "tare", {}, told.scale, {}, {},
-                                   {},        {},        0,      {}, {},         {}};
+    const Channel& properties = take.header.channels[one.channel];
+    schema::CalibrationEntry entry{
+        properties.name, properties.unit, "tare", {}, properties.scale, {}, {}, {}, {}, 0, {}, {}, {}};
     entry.zero = one.zero.value;
     entry.zero_uncertainty = one.zero.uncertainty;
     entry.degrees_of_freedom = one.zero.degrees_of_freedom;
     entry.noise_rms = one.noise_rms;
     entry.noise_density = one.noise_density;
-    entry.notes = notes_on(one, told);
+    entry.notes = notes_on(one, properties);
     entries.push_back(std::move(entry));
   }
   return entries;

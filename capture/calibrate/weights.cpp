@@ -100,18 +100,19 @@ Result<Weighing> weighing_of(const Take& take, const std::string& name, double f
   const auto index = schema::find_channel(take.header, name);
   if (!index)
     return schema::fail(ErrorKind::usage, index.error().what, index.error().where, index.error().remedy);
-  const schema::Channel& told = take.header.channels[*index];
-  if (told.unit != "N") return schema::fail(ErrorKind::unsuitable, "is not a force channel", name);
-  if (told.quantity == "tangential_force" && take.header.transducer) return static_force_error(take, name);
+  const schema::Channel& properties = take.header.channels[*index];
+  if (properties.unit != "N") return schema::fail(ErrorKind::unsuitable, "is not a force channel", name);
+  if (properties.quantity == "tangential_force" && take.header.transducer)
+    return static_force_error(take, name);
   const std::vector<double>& codes = take.codes[*index];
   if (codes.size() < kFewestSamples) return schema::fail(ErrorKind::unsuitable, "is too short", name);
   if (drift_ratio(codes) > kMostDrift)
     return schema::fail(ErrorKind::unsuitable, fmt::format("is not constant under {:.4g} N", force_n), name,
                         "wait until the weight hangs still");
   const auto [least, most] = std::ranges::minmax(codes);
-  const double low = least * told.scale + told.offset, high = most * told.scale + told.offset;
-  if ((told.range_max && std::max(low, high) >= *told.range_max) ||
-      (told.range_min && std::min(low, high) <= *told.range_min))
+  const double low = properties.physical(least), high = properties.physical(most);
+  if ((properties.range_max && std::max(low, high) >= *properties.range_max) ||
+      (properties.range_min && std::min(low, high) <= *properties.range_min))
     return schema::fail(ErrorKind::unsuitable, "is at the limit of its converter's range", name,
                         "use smaller weights");
   Weighing weighing{force_n, mean_of(codes)};

@@ -125,7 +125,7 @@ Result<cli::Report> by_weights(const CalibrateForceOptions& options) {
   cli::Report report = report_on(take);
   report.add("channel", channel.name);
   add_scale(report, found->scale, channel.scale, "N");
-  report.add("offset_n", found->zero.value * channel.scale + channel.offset);
+  report.add("offset_n", channel.physical(found->zero.value));
   std::vector<cli::Report> rows;
   for (std::size_t i = 0; i < weighed->masses.size(); ++i)
     rows.push_back(row_of(weighed->masses[i], weighed->weighings[i], *found));

@@ -86,7 +86,7 @@ Result<Table> read_table(const Source& source, const Columns& columns,
   const auto take = [&](const RowBlock& block) -> Result<void> {
     for (std::size_t row = 0; row < block.rows(); ++row) {
       const double* const at = block.numbers.data() + row * block.columns;
-      table.height_m.push_back(at[0] * columns.height.scale + columns.height.offset);
+      table.height_m.push_back(columns.height.physical(at[0]));
       if (columns.position)
         table.position_m.push_back(at[block.columns - 1] * columns.position->scale +
                                    columns.position->offset);

@@ -128,7 +128,7 @@ void Import::take_times(const RowBlock& block) {
   const ScaledColumn& time = *plan_.time;
   const auto place = std::ranges::find(columns_, time.column) - columns_.begin();
   gather(block, static_cast<std::size_t>(place), times_s_);
-  for (double& value : times_s_) value = value * time.scale + time.offset;
+  for (double& value : times_s_) value = time.physical(value);
 }
 
 // The clock must be known before the first position can be written.
@@ -299,8 +299,7 @@ void Import::add_warnings(RecordingHeader& header) const {
 }
 
 ChannelRange range_of(const schema::Channel& channel, double low, double high) {
-  const auto [smallest, largest] =
-      std::minmax({low * channel.scale + channel.offset, high * channel.scale + channel.offset});
+  const auto [smallest, largest] = std::minmax({channel.physical(low), channel.physical(high)});
   return {smallest, largest};
 }
 

@@ -30,8 +30,7 @@ schema::Channel described(const ChannelSpec& spec, const Source& source, const s
 void describe_range(schema::Channel& channel, int code_bits) {
   if (code_bits == 0) return;
   const double full = std::ldexp(1.0, code_bits - 1);
-  const auto [low, high] =
-      std::minmax({-full * channel.scale + channel.offset, (full - 1) * channel.scale + channel.offset});
+  const auto [low, high] = std::minmax({channel.physical(-full), channel.physical(full - 1)});
   channel.range_min = low;
   channel.range_max = high;
 }

@@ -63,7 +63,7 @@ class Plausibility {
     std::vector<Sighting> first;
     void add(std::uint64_t sample, double value, const PlaceOf& place_of);
   };
-  double physical(double stored) const { return stored * channel_.scale + channel_.offset; }
+  double physical(double stored) const { return channel_.physical(stored); }
   bool is_beyond(double stored) const;
   void note(Sightings& sightings, std::uint64_t sample, double value, const PlaceOf& place_of);
   std::string people(double in_si) const;

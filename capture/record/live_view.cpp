@@ -36,8 +36,8 @@ LiveFigures::LiveFigures(const schema::RecordingHeader& header)
 
 double LiveFigures::physical(std::span<const std::int32_t> codes, std::size_t frame,
                              std::size_t channel) const {
-  const schema::Channel& told = header_.channels[channel];
-  return codes[frame * header_.channels.size() + channel] * told.scale + told.offset;
+  const schema::Channel& properties = header_.channels[channel];
+  return properties.physical(codes[frame * header_.channels.size() + channel]);
 }
 
 void LiveFigures::add(std::span<const std::int32_t> codes) {
@@ -60,8 +60,8 @@ std::uint64_t LiveFigures::clipped_in(std::span<const std::int32_t> frame) const
 double LiveFigures::next_position_m(std::int32_t code) {
   unwrapped_ = begun_ ? unwrapped_ + firmware_host::counts_between(last_code_, code) : code;
   last_code_ = code;
-  const schema::Channel& told = header_.channels[*position_];
-  return static_cast<double>(unwrapped_) * told.scale + told.offset;
+  const schema::Channel& properties = header_.channels[*position_];
+  return properties.physical(static_cast<double>(unwrapped_));
 }
 
 void LiveFigures::add_motion(std::span<const std::int32_t> codes) {

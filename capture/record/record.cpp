@@ -131,12 +131,12 @@ bool Capture::goes_on() const {
 // If a device reports only the number of losses, they are assumed to be before the block.
 void Capture::take_events(FrameBlock& block) {
   block.events = device_.take_events();
-  std::uint64_t told = 0;
-  for (const schema::Gap& gap : block.events.gaps) told += gap.count;
+  std::uint64_t noted = 0;
+  for (const schema::Gap& gap : block.events.gaps) noted += gap.count;
   const std::uint64_t lost = device_.counts().lost_frames;
-  if (told == 0 && lost > lost_noted_)
+  if (noted == 0 && lost > lost_noted_)
     block.events.gaps.push_back({frames_, frames_ + lost, lost - lost_noted_});
-  lost_noted_ = std::max(lost, lost_noted_ + told);
+  lost_noted_ = std::max(lost, lost_noted_ + noted);
 }
 
 void Capture::take_block() {

@@ -105,7 +105,7 @@ schema::Channel nominal(const schema::Channel& channel) {
   plain.scale = channel.calibration->nominal_scale;
   plain.offset = channel.calibration->nominal_offset;
   const auto back = [&](double physical) {
-    return (physical - channel.offset) / channel.scale * plain.scale + plain.offset;
+    return plain.physical((physical - channel.offset) / channel.scale);
   };
   if (plain.range_min) plain.range_min = back(*plain.range_min);
   if (plain.range_max) plain.range_max = back(*plain.range_max);

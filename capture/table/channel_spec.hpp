@@ -14,11 +14,14 @@
 
 namespace tacto::capture {
 
-/// A column and the scale of its numbers: physical = number * scale + offset, in the SI unit of a dimension.
+/// A column and the scale of its numbers.
 struct ScaledColumn {
   std::size_t column = 0;  ///< 0-based
   double scale = 1;
   double offset = 0;
+
+  /// In the SI unit of the channel's dimension.
+  double physical(double number) const { return number * scale + offset; }
 };
 
 /// A channel and its column.

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decibels of many cells at once, for files and pictures. Internal to this folder.
+// Decibels: of one ratio, and of many cells at once for files and pictures.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 
 namespace tacto::schema {
+
+inline double power_db(double ratio) {
+  return 10 * std::log10(ratio);
+}
+inline double amplitude_db(double ratio) {
+  return 20 * std::log10(ratio);
+}
 
 /// out[i] = factor * log10(cells[i]), within 2e-5 dB for factors up to 20 (single precision, a polynomial of
 /// the mantissa); NaN where a cell is not above 0. `out` gives the number of cells.

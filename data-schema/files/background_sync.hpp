@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Syncs files to disk while they are written. Internal to this folder.
+// Syncs files to disk while they are written.
 #pragma once
 
 #include <condition_variable>

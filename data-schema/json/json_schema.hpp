@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON Schemas (draft-07) of this room, and breaches of them. Internal to this folder.
+// JSON Schemas (draft-07) of this room, and breaches of them.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON text from outside, in one place: stored files, requests and replies. Internal to this folder.
+// JSON text from outside, in one place: stored files, requests and replies.
 #pragma once
 
 #include <string>

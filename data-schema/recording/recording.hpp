@@ -31,8 +31,7 @@ struct AppliedCalibration {
   std::optional<double> zero_uncertainty;  ///< in the channel's unit
 };
 
-/// One channel. A stored number becomes physical as: stored * scale + offset, in `unit`, which is always the
-/// SI unit.
+/// One channel. `unit` is always the SI unit.
 struct Channel {
   std::string name;      ///< unique in the recording; the quantity where there is one channel of it
   std::string quantity;  ///< one of quantity_names(): tangential_force, position, speed, ...
@@ -46,6 +45,8 @@ struct Channel {
   std::string derivation;  ///< empty if measured; else how it was made ("nominal, 40 mm/s")
   std::string calibrated;  ///< ISO date of the calibration, or empty
   std::optional<AppliedCalibration> calibration;  ///< if one of the device's calibration file was applied
+
+  double physical(double stored) const { return stored * scale + offset; }
 };
 
 /// Missing frames: `count` of them are absent before stored frame `frame`.

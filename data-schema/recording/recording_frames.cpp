@@ -65,8 +65,8 @@ Result<void> RecordingFrames::read_stored(std::size_t channel, std::uint64_t fir
 
 Result<void> RecordingFrames::read(std::size_t channel, std::uint64_t first, std::span<double> out) {
   if (auto done = read_stored(channel, first, out); !done) return done;
-  const Channel& told = channels_[channel];
-  for (double& value : out) value = value * told.scale + told.offset;
+  const Channel& properties = channels_[channel];
+  for (double& value : out) value = properties.physical(value);
   return {};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording's sidecar as JSON and back. Internal to this folder.
+// A recording's sidecar as JSON and back.
 #pragma once
 
 #include "data-schema/json/json_document.hpp"

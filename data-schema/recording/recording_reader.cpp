@@ -105,13 +105,13 @@ Result<std::vector<double>> read_stored(const Recording& recording, std::size_t 
 Result<TimeSignal> read_channel(const Recording& recording, std::size_t channel) {
   auto stored = read_stored(recording, channel);
   TACTO_TRY(stored);
-  const Channel& told = recording.header.channels[channel];
+  const Channel& properties = recording.header.channels[channel];
   TimeSignal signal{recording.header.sample_rate_hz, frame_time_s(recording.header, 0), std::move(*stored)};
-  for (double& value : signal.values) value = value * told.scale + told.offset;
+  for (double& value : signal.values) value = properties.physical(value);
   const auto broken = std::ranges::find_if(signal.values, [](double value) { return !std::isfinite(value); });
   if (broken == signal.values.end()) return signal;
   return fail(ErrorKind::malformed,
-              fmt::format("channel '{}', sample {}: {} is not a finite number", told.name,
+              fmt::format("channel '{}', sample {}: {} is not a finite number", properties.name,
                           broken - signal.values.begin(), *broken),
               wav_path(recording));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The entries of a report, for its printers. Internal to this folder.
+// The entries of a report, for its printers.
 #pragma once
 
 #include "data-schema/report/report.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The object `playback` of scenes, requests, configurations and sessions. Internal to this folder.
+// The object `playback` of scenes, requests, configurations and sessions.
 #pragma once
 
 #include "data-schema/json/json_document.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The only use of the netCDF library: an open file that keeps its first failure, so that a sequence of calls
-// is checked once at its end. Internal to this folder.
+// is checked once at its end.
 #pragma once
 
 #include <cstddef>

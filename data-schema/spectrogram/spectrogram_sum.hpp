@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The checksum of a spectrogram in its file: cells, axes, and the attributes that give them their meaning.
-// Internal to this folder.
+//
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A texture's sidecar as JSON, and the paths of its two files. Internal to this folder.
+// A texture's sidecar as JSON, and the paths of its two files.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The layout of a WAV, and the contents of its header. Internal to this folder.
+// The layout of a WAV, and the contents of its header.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Repairs a WAV's header in place. Internal to this folder.
+// Repairs a WAV's header in place.
 #pragma once
 
 #include <cstdint>

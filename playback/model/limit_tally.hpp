@@ -3,10 +3,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "firmware-host/core/kernel/tick_kernel.hpp"
+
+#include "data-schema/base/decibels.hpp"
 
 namespace tacto::playback {
 
@@ -39,7 +40,7 @@ class LimitTally {
   /// RMS of what amplitude, slew and energy limits removed, re RMS of the unlimited drive; at least -300.
   double removed_db() const {
     return unlimited_v2_ > 0 && removed_v2_ > 0
-               ? std::max(10 * std::log10(removed_v2_ / unlimited_v2_), -300.0)
+               ? std::max(schema::power_db(removed_v2_ / unlimited_v2_), -300.0)
                : -300.0;
   }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "data-schema/base/decibels.hpp"
 #include "playback/prepare/toeplitz.hpp"
 
 namespace tacto::playback {
@@ -24,7 +25,7 @@ constexpr double kRidge = 1e-12;
 constexpr int kMostLawsonRounds = 80;
 
 double decibels(double ratio) {
-  return 20 * std::log10(std::max(ratio, 1e-30));
+  return schema::amplitude_db(std::max(ratio, 1e-30));
 }
 
 class Designer {

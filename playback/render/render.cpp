@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/recording/statistics.hpp"
 #include "playback/model/identified_band.hpp"
 #include "playback/model/spatial_content.hpp"
@@ -33,7 +34,7 @@ constexpr double kMostSamples = 1 << 24;
 constexpr double kLargestGain = 1;
 
 double level_db(double ratio) {
-  return 20 * std::log10(ratio);
+  return schema::amplitude_db(ratio);
 }
 
 Result<void> check_options(const RenderOptions& o) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <span>
 
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "playback/session/session_limits.hpp"
 #include "playback/strokes/block_judge.hpp"
@@ -25,7 +26,7 @@ bool target_is_zero(const StrokeSums& sums) {
 }
 
 double over_db(double value_m, double of_m) {
-  return 20 * std::log10(value_m / of_m);
+  return schema::amplitude_db(value_m / of_m);
 }
 
 // The polynomial through the five values around the minimum, at `u` steps from the middle one: its error for

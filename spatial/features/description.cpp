@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "spatial/features/steady_part.hpp"
 #include "spatial/features/third_octaves.hpp"
@@ -77,7 +78,7 @@ double slope_of(const std::vector<ThirdOctaveBand>& bands, double low_per_m, dou
     if (!(band.density > 0)) continue;
     const double from = std::max(band.low_per_m, low_per_m), to = std::min(band.high_per_m, high_per_m);
     const double weight = std::log2(to / from);
-    const double x = 0.5 * std::log2(from * to), y = 10 * std::log10(band.density);
+    const double x = 0.5 * std::log2(from * to), y = schema::power_db(band.density);
     w += weight;
     wx += weight * x;
     wy += weight * y;

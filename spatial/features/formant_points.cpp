@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data-schema/base/decibels.hpp"
 #include "spatial/numbers/parabolic_peak.hpp"
 
 namespace tacto::spatial {
@@ -19,7 +20,7 @@ constexpr double kValleyReach = 4;
 constexpr double kPointLeakage_db = 55;
 
 double level(double density) {
-  return 10 * std::log10(density);
+  return schema::power_db(density);
 }
 
 class RowPeaks {

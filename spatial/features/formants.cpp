@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data-schema/base/decibels.hpp"
 #include "spatial/features/ridge_tracker.hpp"
 #include "spatial/numbers/robust_statistics.hpp"
 #include "spatial/spectrogram/known_bins.hpp"
@@ -50,7 +51,7 @@ std::vector<Ridge> all_ridges(const Spectrogram& spectrogram, const FormantOptio
 }
 
 double level_of(const RidgePoint& point) {
-  return 10 * std::log10(point.density);
+  return schema::power_db(point.density);
 }
 
 // Number of points at the ridge's beginning that are more than 6 dB below the strongest point within a window

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "spatial/features/speed_hypotheses.hpp"
 
+#include "data-schema/base/decibels.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -29,7 +31,7 @@ double normal_share(double z) {
 // Log likelihood ratio of spatial over temporal, from the vibration's prominence over position and over time.
 double unevenness_evidence(const StrokeLines& stroke, const Vibration& vibration) {
   const auto cost_db = [&](double smear, double resolution) {
-    return 10 * std::log10(std::hypot(1, smear / resolution));
+    return schema::power_db(std::hypot(1, smear / resolution));
   };
   const double in_space = 2 * vibration.frequency_per_m * stroke.unevenness;
   const double in_time = 2 * vibration.frequency_hz * stroke.unevenness;

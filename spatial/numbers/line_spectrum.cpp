@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "data-schema/base/decibels.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 #include "spatial/numbers/parabolic_peak.hpp"
 #include "spatial/numbers/robust_statistics.hpp"
@@ -34,7 +35,7 @@ double gamma_quantile(double looks, double normal_quantile) {
 }
 
 double level_of(double power) {
-  return 10 * std::log10(power);
+  return schema::power_db(power);
 }
 
 // Mean of the periodograms of Blackman windows, one-sided density.

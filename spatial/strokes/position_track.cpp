@@ -31,10 +31,10 @@ schema::Result<void> PositionTrack::survey(std::size_t frames, std::span<const s
     return {};
   };
   if (auto done = chunk_by_chunk({0, frames}, add); !done) return done;
-  const schema::Channel& told = *source_->channel(Track::position);
+  const schema::Channel& properties = *source_->channel(Track::position);
   const double counts = std::max(std::abs(finder.lowest()), std::abs(finder.highest()));
-  furthest_m_ = counts * std::abs(told.scale) + std::abs(told.offset);
-  moves_ = finder.lowest() < finder.highest() && told.scale != 0;
+  furthest_m_ = counts * std::abs(properties.scale) + std::abs(properties.offset);
+  moves_ = finder.lowest() < finder.highest() && properties.scale != 0;
   wraps_ = finder.finish();
   return {};
 }
@@ -46,8 +46,8 @@ schema::Result<void> PositionTrack::read(std::size_t first, std::span<double> ou
   }
   if (auto done = source_->read_stored(Track::position, first, out); !done) return done;
   wraps_.unwrap(first, out);
-  const schema::Channel& told = *source_->channel(Track::position);
-  for (double& value : out) value = value * told.scale + told.offset;
+  const schema::Channel& properties = *source_->channel(Track::position);
+  for (double& value : out) value = properties.physical(value);
   return {};
 }
 

@@ -28,8 +28,8 @@ class TouchSource {
   /// The same in SI units.
   schema::Result<void> read(Track track, std::size_t first, std::span<double> out) {
     if (auto done = read_stored(track, first, out); !done) return done;
-    const schema::Channel& told = *channel(track);
-    for (double& value : out) value = value * told.scale + told.offset;
+    const schema::Channel& properties = *channel(track);
+    for (double& value : out) value = properties.physical(value);
     return {};
   }
 };
