@@ -4,23 +4,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <stdexcept>
 
 namespace tacto::analysis {
 namespace {
 
 constexpr std::string_view kStyle = R"(
-:root { color-scheme: light; }
-body { font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; color: #1d2126; background: #fff; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; overflow-wrap: break-word; }
-h1 { font-size: 1.7rem; margin-bottom: .2rem; } h2 { font-size: 1.25rem; margin-top: 2.6rem; border-top: 1px solid #d5d9de; padding-top: 1.2rem; }
+:root { color-scheme: light dark; --text: #1d2126; --page: #fff; --soft: #56606b; --line: #d5d9de; --row: #aab2bb; --note: #fff3d6; --edge: #e0a100; }
+@media (prefers-color-scheme: dark) { :root { --text: #e4e7ea; --page: #16191d; --soft: #a7b0ba; --line: #3a4149; --row: #59626c; --note: #3d3110; } }
+body { font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; color: var(--text); background: var(--page); max-width: 62rem; margin: 2rem auto; padding: 0 1rem; overflow-wrap: break-word; }
+h1 { font-size: 1.7rem; margin-bottom: .2rem; } h2 { font-size: 1.25rem; margin-top: 2.6rem; border-top: 1px solid var(--line); padding-top: 1.2rem; }
 p.answer { font-size: 1.2rem; font-weight: 600; margin: .8rem 0; }
-.simulated { background: #fff3d6; border-left: .4rem solid #e0a100; padding: .6rem 1rem; }
+.simulated { background: var(--note); border-left: .4rem solid var(--edge); padding: .6rem 1rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .8rem 0; }
-th, td { padding: .35rem .6rem; text-align: right; vertical-align: top; border-bottom: 1px solid #e3e6ea; }
+th, td { padding: .35rem .6rem; text-align: right; vertical-align: top; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; vertical-align: bottom; } td:first-child, th:first-child { text-align: left; }
 table.pairs th, table.pairs td { text-align: left; } table.c9 { font-size: .9rem; } td.long { overflow-wrap: anywhere; } td.text { text-align: left; }
-img { width: 100%; height: auto; margin: .6rem 0; } p.note { color: #56606b; font-size: .9rem; }
-details { margin: .8rem 0; border: 1px solid #d5d9de; border-radius: .3rem; padding: 0 .8rem; }
+img { width: 100%; height: auto; margin: .6rem 0; background: #fff; border-radius: .3rem; } p.note { color: var(--soft); font-size: .9rem; }
+details { margin: .8rem 0; border: 1px solid var(--line); border-radius: .3rem; padding: 0 .8rem; }
 summary { cursor: pointer; padding: .5rem 0; font-weight: 600; }
 )";
 
@@ -38,9 +40,9 @@ std::string list_style() {
     style += fmt::format(
         "@media (max-width: {0}) {{ table.c{1}, .c{1} tbody, .c{1} tr {{ display: block; }} .c{1} thead {{ "
         "display: none; }}\n"
-        ".c{1} tr {{ border-bottom: 2px solid #aab2bb; padding: .5rem 0; }} .c{1} td {{ display: flex; "
+        ".c{1} tr {{ border-bottom: 2px solid var(--row); padding: .5rem 0; }} .c{1} td {{ display: flex; "
         "justify-content: space-between; gap: 1rem; border: 0; padding: .1rem 0; text-align: right; }}\n"
-        ".c{1} td::before {{ content: attr(data-label); text-align: left; color: #56606b; }} .c{1} "
+        ".c{1} td::before {{ content: attr(data-label); text-align: left; color: var(--soft); }} .c{1} "
         "td:first-child {{ font-weight: 600; }} }}\n",
         rule.width, rule.columns);
   return style;
@@ -110,11 +112,30 @@ std::size_t sign_bytes(std::string_view text) {
   return bytes;
 }
 
+// The unit that begins at `text`, without what it is divided by; empty if it is another word.
+std::string_view unit_at(std::string_view text) {
+  constexpr std::string_view kUnits[] = {"um", "mm", "nm", "cm", "m",   "Hz",  "kHz", "dB",
+                                         "%",  "N",  "mN", "uV", "mV",  "V",   "ns",  "us",
+                                         "ms", "s",  "g",  "kg", "1/m", "1/mm"};
+  const auto end = std::ranges::find_if(
+      text, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)) && c != '%' && c != '/'; });
+  const std::string_view word(text.begin(), end);
+  const std::string_view before = word.substr(0, word.find('/', word.starts_with("1/") ? 2 : 0));
+  return std::ranges::find(kUnits, before) == std::end(kUnits) ? "" : before;
+}
+
 }  // namespace
 
 std::string escaped(std::string_view text) {
   std::string safe;
   for (std::size_t i = 0; i < text.size();) {
+    if (i > 0 && text[i] == ' ' && std::isdigit(static_cast<unsigned char>(text[i - 1])))
+      if (const std::string_view unit = unit_at(text.substr(i + 1)); !unit.empty()) {
+        const bool micro = unit.size() == 2 && unit.front() == 'u';
+        safe += fmt::format("&nbsp;{}{}", micro ? "\u00B5" : "", unit.substr(micro ? 1 : 0));
+        i += 1 + unit.size();
+        continue;
+      }
     const std::size_t bytes = sign_bytes(text.substr(i));
     safe += bytes == 0 ? "\uFFFD" : bytes == 1 ? entity(text[i]) : std::string(text.substr(i, bytes));
     i += std::max<std::size_t>(1, bytes);

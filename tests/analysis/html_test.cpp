@@ -8,6 +8,12 @@
 namespace tacto::analysis {
 namespace {
 
+TEST(Html, ANumberAndItsUnitDoNotBreakApart) {
+  EXPECT_EQ(escaped("2.8 um, 15 um/V at 2 1/mm"), "2.8&nbsp;\u00B5m, 15&nbsp;\u00B5m/V at 2&nbsp;1/mm");
+  EXPECT_EQ(escaped("5 %; 3 strokes; take 2 mumble; 7 m"), "5&nbsp;%; 3 strokes; take 2 mumble; 7&nbsp;m");
+  EXPECT_EQ(escaped("um 4"), "um 4");
+}
+
 TEST(Html, TextCannotBecomeMarkup) {
   EXPECT_EQ(escaped("<b>\"A & B\"</b>"), "&lt;b&gt;&quot;A &amp; B&quot;&lt;/b&gt;");
   EXPECT_EQ(html_table({{"a"}, {"<"}}),
