@@ -7,6 +7,7 @@
 
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
+#include "data-schema/device/device.hpp"
 #include "data-schema/recording/statistics.hpp"
 #include "data-schema/report/progress.hpp"
 #include "playback/choose/choices.hpp"
@@ -271,8 +272,12 @@ Result<Rendering> rendered(RenderVerbOptions& o, const schema::Transducer& trans
 // One of --transducer and --device.
 Result<Report> run_render(RenderVerbOptions o) {
   if (o.transducer.empty())
-    return schema::fail(schema::ErrorKind::usage, "--transducer or --device is required", {},
-                        "a tray has a transducer; a scene with force patches is played by a force device");
+    return schema::fail(
+        schema::ErrorKind::usage, "--transducer or --device is required", {},
+        fmt::format(
+            "a tray has a transducer: a preset ({}) or NAME.transducer.json; a scene with force patches "
+            "is played by a force device: a preset ({}) or NAME.device.json",
+            fmt::join(schema::preset_names(), ", "), fmt::join(schema::device_preset_names(), ", ")));
   const auto budget = o.budget.budget();
   TACTO_TRY(budget);
   o.render.budget = *budget;
