@@ -60,8 +60,7 @@ Result<void> write_scene(const std::string& stem, const Scene& scene);
 /// sliders, masses of bodies, friction. Errors: unsuitable, by JSON pointer.
 Result<void> check_patches(const Scene& scene, const std::string& where);
 
-/// For commands that play a tray. Errors: unsuitable, if the scene has force patches: their playback is not
-/// built yet.
+/// For commands that play a tray. Errors: unsuitable, if the scene has force patches.
 Result<void> check_only_tray(const Scene& scene, const std::string& where);
 
 /// NAME.scene.json of a stem or file name.

@@ -13,6 +13,7 @@
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/loop_report.hpp"
 #include "playback/cli/memory_report.hpp"
+#include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/player/program.hpp"
 #include "playback/render/at_speed.hpp"
@@ -28,7 +29,8 @@ namespace {
 struct ExplainOptions {
   ProgramRequest program;
   std::optional<double> speed_mps;
-  std::string transducer = "wiertlewski2011";
+  std::string transducer = "wiertlewski2011", device;
+  CLI::Option* rate = nullptr;
   std::size_t device_memory = 0;
   PrepareOptions prepare;
   AskedBudget budget;
@@ -183,6 +185,7 @@ cli::Action declare_explain(CLI::App& app) {
   ExplainOptions& o = *options;
   app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
   app.add_option("--transducer", o.transducer, "A preset or NAME.transducer.json")->capture_default_str();
+  declare_force_device(app, o.device);
   cli::add_quantity(
       app, "--speed", o.speed_mps, Dimension::speed,
       "Can a finger of this speed feel the texture: yes or no, how much of the tightest limit and of "
@@ -191,7 +194,8 @@ cli::Action declare_explain(CLI::App& app) {
   cli::refuse_force(app);
   app.add_flag("--implausible", o.program.implausible,
                "Accept a transducer file with impossible numbers, for example a mass of 1e-12 kg");
-  cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Tick rate of the drive");
+  o.rate = cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency,
+                             "Tick rate; with --device: default its largest");
   cli::add_quantity(app, "--encoder-step", o.prepare.metres_per_count, Dimension::length,
                     "Length of one encoder count");
   app.add_option("--device-memory", o.device_memory,
@@ -202,7 +206,14 @@ cli::Action declare_explain(CLI::App& app) {
   app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
                "Do not invert the hysteresis of the transducer's file");
   declare_tick_budget(app, o.budget);
-  return [options] { return run_explain(*options); };
+  return [options, &app]() -> Result<Report> {
+    const ExplainOptions& o = *options;
+    if (o.device.empty()) return run_explain(o);
+    TACTO_TRY(check_force_options(app, {"device", "rate", "device-memory"}));
+    const auto rate_hz = o.rate->count() > 0 ? std::optional(o.prepare.rate_hz) : std::nullopt;
+    const auto bytes = o.device_memory > 0 ? std::optional(o.device_memory * sizeof(float)) : std::nullopt;
+    return explain_forces(o.program.file, o.device, rate_hz, bytes);
+  };
 }
 
 }  // namespace
@@ -212,6 +223,7 @@ const cli::Verb kExplainVerb{
     "List what is built to play a texture or scene, what it costs in memory and time, "
     "and what was left out",
     "tactograph explain bench.scene.json\n"
+    "  tactograph explain plane.scene.json --device sandpaper-1990\n"
     "  tactograph explain oak --speed 150mm/s --transducer mine\n"
     "  tactograph explain oak --transducer mine --rate 10kHz --quality balanced --explain\n"
     "  tactograph explain oak --interpolation sinc --inverse magnitude --reconstruction butterworth3",

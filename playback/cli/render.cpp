@@ -7,6 +7,7 @@
 
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
+#include "data-schema/device/device.hpp"
 #include "data-schema/recording/statistics.hpp"
 #include "data-schema/report/progress.hpp"
 #include "playback/choose/choices.hpp"
@@ -14,6 +15,7 @@
 #include "playback/cli/ends_option.hpp"
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/loop_report.hpp"
+#include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/model/drive_files.hpp"
 #include "playback/player/placed_textures.hpp"
@@ -36,11 +38,11 @@ struct NamedChoices {
 
 struct RenderVerbOptions {
   ProgramRequest what;
-  std::string path, transducer, drive, displacement, target;
+  std::string path, transducer, device, hand, drive, displacement, target;
   schema::Existing existing = schema::Existing::keep;
   RenderOptions render;
   AskedBudget budget;
-  CLI::Option* engine = nullptr;
+  CLI::Option *engine = nullptr, *rate = nullptr;
   NamedChoices named;
   std::optional<schema::PlaybackGain> kept_gain;
   double signed_gain = 0;  ///< as reported; the weights of the textures have the signs
@@ -50,16 +52,20 @@ void add_files(CLI::App& app, RenderVerbOptions& o) {
   app.add_option("what", o.what.file, "Texture or scene: its stem, NAME.texture.json, NAME.scene.json ...")
       ->required();
   app.add_option("--path", o.path,
-                 "Finger path: CSV with the columns time_s,position_m; interpolated by monotone cubics")
+                 "Finger path: CSV with the columns time_s,position_m (with --device: time_s,x_m,y_m); "
+                 "interpolated by monotone cubics")
       ->required();
-  app.add_option(
-         "--transducer", o.transducer,
-         fmt::format("A preset ({}) or NAME.transducer.json", fmt::join(schema::preset_names(), ", ")))
-      ->required();
+  app.add_option("--transducer", o.transducer,
+                 fmt::format("Of a texture or a scene of a tray: a preset ({}) or NAME.transducer.json",
+                             fmt::join(schema::preset_names(), ", ")));
+  declare_force_device(app, o.device);
+  declare_hand(app, o.hand);
   cli::declare_unfit_transducer(app, o.what.unfit_transducer);
   app.add_flag("--implausible", o.what.implausible,
                "Accept a transducer file with impossible numbers, for example a mass of 1e-12 kg");
-  app.add_option("-o,--output", o.drive, "The drive: float WAV in volts at the amplifier's input")
+  app.add_option(
+         "-o,--output", o.drive,
+         "The drive: float WAV in volts at the amplifier's input; with --device the forces on the hand: CSV")
       ->required();
   cli::declare_force(app, o.existing);
   app.add_option("--displacement", o.displacement,
@@ -69,7 +75,8 @@ void add_files(CLI::App& app, RenderVerbOptions& o) {
 
 void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
   RenderOptions& o = verb.render;
-  cli::add_quantity(app, "--rate", o.rate_hz, Dimension::frequency, "Sample rate of the drive");
+  verb.rate = cli::add_quantity(app, "--rate", o.rate_hz, Dimension::frequency,
+                                "Sample rate of the drive; with --device: tick rate, default its largest");
   cli::add_quantity(app, "--gain", verb.what.gain_m_per_n, Dimension::compliance,
                     "Of a texture: displacement for force; default: the gain in its file, or 1mm/N");
   cli::add_quantity(app, "--at", verb.what.at_m, Dimension::length,
@@ -262,7 +269,15 @@ Result<Rendering> rendered(RenderVerbOptions& o, const schema::Transducer& trans
                 [&](double fraction) { progress.update(fraction); });
 }
 
+// One of --transducer and --device.
 Result<Report> run_render(RenderVerbOptions o) {
+  if (o.transducer.empty())
+    return schema::fail(
+        schema::ErrorKind::usage, "--transducer or --device is required", {},
+        fmt::format(
+            "a tray has a transducer: a preset ({}) or NAME.transducer.json; a scene with force patches "
+            "is played by a force device: a preset ({}) or NAME.device.json",
+            fmt::join(schema::preset_names(), ", "), fmt::join(schema::device_preset_names(), ", ")));
   const auto budget = o.budget.budget();
   TACTO_TRY(budget);
   o.render.budget = *budget;
@@ -287,17 +302,27 @@ cli::Action declare_render(CLI::App& app) {
   add_quantities(app, *options);
   declare_ends(app, options->what.ends);
   add_model(app, *options);
-  return [options] { return run_render(*options); };
+  return [options, &app]() -> Result<Report> {
+    const RenderVerbOptions& o = *options;
+    if (o.device.empty() && !o.hand.empty())
+      return schema::fail(schema::ErrorKind::usage, "--hand requires --device");
+    if (o.device.empty()) return run_render(o);
+    TACTO_TRY(check_force_options(app, {"path", "device", "hand", "output", "rate", "force"}));
+    const auto rate_hz = o.rate->count() > 0 ? std::optional(o.render.rate_hz) : std::nullopt;
+    return render_forces({o.what.file, o.device, o.path, o.drive, o.hand, rate_hz, o.existing});
+  };
 }
 
 }  // namespace
 
 const cli::Verb kRenderVerb{
-    "render", "Play a texture or scene along a finger path, offline: the drive for the transducer",
+    "render",
+    "Play a texture or scene along a path, offline: the drive of a transducer or the forces of a device",
     "tactograph render oak --path path.csv --transducer wiertlewski2011 -o drive.wav --displacement "
     "tray.wav\n"
     "  tactograph render bench.scene.json --path path.csv --transducer wiertlewski2011 --engine kernel -o "
-    "drive.wav",
+    "drive.wav\n"
+    "  tactograph render plane.scene.json --path hand.csv --device sandpaper-1990 -o forces.csv",
     declare_render};
 
 }  // namespace tacto::playback

@@ -33,6 +33,11 @@ schema::Result<FingerPath> read_finger_path(const std::string& file);
 /// The same for a text in memory; errors give `name` as the file.
 schema::Result<FingerPath> parse_finger_path(std::string_view text, const std::string& name);
 
+/// Reads the path of a hand on a device: the columns `time_s` and NAME_m for each axis, one path per axis,
+/// all with the same times. Format and errors as above.
+schema::Result<std::vector<FingerPath>> read_axis_paths(const std::string& file,
+                                                        const std::vector<std::string>& axes);
+
 /// One knot per sample. Precondition: at least 2 samples of position in m.
 FingerPath finger_path_of(const schema::TimeSignal& position);
 

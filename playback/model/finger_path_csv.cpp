@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -20,9 +19,16 @@ using schema::Result;
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kColumns = {"time_s", "position_m", "normal_force_n"};
-constexpr std::size_t kNeeded = 2, kForce = 2;
-constexpr std::string_view kRemedy = "write a header line 'time_s,position_m', then one row per knot";
+// The first one is the time.
+struct Columns {
+  std::vector<std::string> names;
+  std::size_t needed;  // of them; the others may be absent
+
+  std::string header() const {
+    return fmt::format("{}", fmt::join(names.begin(), names.begin() + needed, ","));
+  }
+  std::string remedy() const { return "write a header line '" + header() + "', then one row per knot"; }
+};
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
@@ -67,38 +73,38 @@ std::optional<double> number_in(std::string_view field, char separator) {
 
 struct Table {
   const std::string& name;
+  const Columns& columns;
   char separator;
   std::vector<std::string_view> header;
-  std::array<std::size_t, kColumns.size()> column{};  // their indices in the header
-  bool has_force = false;
+  std::vector<std::optional<std::size_t>> column = {};  // where each of the columns is in the header
 
   std::string place(std::size_t line, std::size_t which) const {
-    return fmt::format("{}, line {}, column {} ({})", name, line, column[which] + 1, kColumns[which]);
+    return fmt::format("{}, line {}, column {} ({})", name, line, *column[which] + 1, columns.names[which]);
   }
 };
 
-Result<Table> read_header(std::string_view line, const std::string& name) {
+Result<Table> read_header(std::string_view line, const std::string& name, const Columns& columns) {
   if (std::ranges::any_of(line, [](char c) { return c >= 0 && c < ' ' && c != '\t'; }))
     return fail(ErrorKind::malformed, "this is not a table: its first line contains binary data", name,
-                "a path is a CSV with the columns time_s,position_m");
+                "a path is a CSV with the columns " + columns.header());
   const char separator = separator_of(line);
-  Table table{name, separator, split(line, separator), {}, false};
-  for (std::size_t which = 0; which < kColumns.size(); ++which) {
-    const auto found = std::ranges::find(table.header, kColumns[which]);
-    if (which == kForce) table.has_force = found != table.header.end();
-    if (which < kNeeded && found == table.header.end())
-      return fail(
-          ErrorKind::malformed,
-          fmt::format("there is no column '{}', only {}", kColumns[which], fmt::join(table.header, ", ")),
-          name + ", line 1", std::string(kRemedy));
-    table.column[which] = static_cast<std::size_t>(found - table.header.begin());
+  Table table{name, columns, separator, split(line, separator)};
+  for (std::size_t which = 0; which < columns.names.size(); ++which) {
+    const auto found = std::ranges::find(table.header, columns.names[which]);
+    const bool there = found != table.header.end();
+    if (which < columns.needed && !there)
+      return fail(ErrorKind::malformed,
+                  fmt::format("there is no column '{}', only {}", columns.names[which],
+                              fmt::join(table.header, ", ")),
+                  name + ", line 1", columns.remedy());
+    table.column.push_back(there ? std::optional(found - table.header.begin()) : std::nullopt);
   }
   return table;
 }
 
 Result<double> cell(const Table& table, const std::vector<std::string_view>& fields, std::size_t line,
                     std::size_t which) {
-  const std::string_view text = fields[table.column[which]];
+  const std::string_view text = fields[*table.column[which]];
   const auto value = number_in(text, table.separator);
   if (!value)
     return fail(ErrorKind::malformed, fmt::format("'{}' is not a number", text), table.place(line, which));
@@ -107,49 +113,68 @@ Result<double> cell(const Table& table, const std::vector<std::string_view>& fie
   return *value;
 }
 
-Result<void> add_row(FingerPath& path, const Table& table, std::string_view text, std::size_t line) {
+// The numbers of each column; without one that is absent.
+using Numbers = std::vector<std::vector<double>>;
+
+Result<void> add_row(Numbers& numbers, const Table& table, std::string_view text, std::size_t line) {
   const auto fields = split(text, table.separator);
   if (fields.size() != table.header.size())
     return fail(ErrorKind::malformed,
                 fmt::format("the row has {} fields, the header {}", fields.size(), table.header.size()),
                 fmt::format("{}, line {}", table.name, line));
-  const auto time_s = cell(table, fields, line, 0);
-  TACTO_TRY(time_s);
-  const auto position_m = cell(table, fields, line, 1);
-  TACTO_TRY(position_m);
-  if (!path.time_s.empty() && *time_s <= path.time_s.back())
-    return fail(ErrorKind::malformed,
-                fmt::format("the time does not increase: {} s after {} s", *time_s, path.time_s.back()),
-                table.place(line, 0), "each row must be later than the one before");
-  path.time_s.push_back(*time_s);
-  path.position_m.push_back(*position_m);
-  if (!table.has_force) return {};
-  const auto force_n = cell(table, fields, line, kForce);
-  TACTO_TRY(force_n);
-  path.normal_force_n.push_back(*force_n);
+  for (std::size_t which = 0; which < numbers.size(); ++which) {
+    if (!table.column[which]) continue;
+    const auto value = cell(table, fields, line, which);
+    TACTO_TRY(value);
+    auto& column = numbers[which];
+    if (which == 0 && !column.empty() && *value <= column.back())
+      return fail(ErrorKind::malformed,
+                  fmt::format("the time does not increase: {} s after {} s", *value, column.back()),
+                  table.place(line, 0), "each row must be later than the one before");
+    column.push_back(*value);
+  }
   return {};
+}
+
+Result<Numbers> parse_columns(std::string_view text, const std::string& name, const Columns& columns) {
+  const auto lines = lines_of(text);
+  if (lines.empty()) return fail(ErrorKind::malformed, "the file is empty", name, columns.remedy());
+  const auto table = read_header(lines.front(), name, columns);
+  TACTO_TRY(table);
+  Numbers numbers(columns.names.size());
+  for (std::size_t i = 1; i < lines.size(); ++i) TACTO_TRY(add_row(numbers, *table, lines[i], i + 1));
+  if (numbers.front().size() < 2)
+    return fail(ErrorKind::malformed,
+                fmt::format("a path needs at least 2 rows, this one has {}", numbers.front().size()), name,
+                columns.remedy());
+  return numbers;
 }
 
 }  // namespace
 
 Result<FingerPath> parse_finger_path(std::string_view text, const std::string& name) {
-  const auto lines = lines_of(text);
-  if (lines.empty()) return fail(ErrorKind::malformed, "the file is empty", name, std::string(kRemedy));
-  const auto table = read_header(lines.front(), name);
-  TACTO_TRY(table);
-  FingerPath path;
-  for (std::size_t i = 1; i < lines.size(); ++i) TACTO_TRY(add_row(path, *table, lines[i], i + 1));
-  if (path.time_s.size() < 2)
-    return fail(ErrorKind::malformed,
-                fmt::format("a path needs at least 2 rows, this one has {}", path.time_s.size()), name,
-                std::string(kRemedy));
-  return path;
+  auto numbers = parse_columns(text, name, {{"time_s", "position_m", "normal_force_n"}, 2});
+  TACTO_TRY(numbers);
+  return FingerPath{std::move((*numbers)[0]), std::move((*numbers)[1]), std::move((*numbers)[2])};
 }
 
 Result<FingerPath> read_finger_path(const std::string& file) {
   const auto text = schema::read_file(file);
   TACTO_TRY(text);
   return parse_finger_path(*text, file);
+}
+
+Result<std::vector<FingerPath>> read_axis_paths(const std::string& file,
+                                                const std::vector<std::string>& axes) {
+  Columns columns{{"time_s"}, axes.size() + 1};
+  for (const std::string& axis : axes) columns.names.push_back(axis + "_m");
+  const auto text = schema::read_file(file);
+  TACTO_TRY(text);
+  const auto numbers = parse_columns(*text, file, columns);
+  TACTO_TRY(numbers);
+  std::vector<FingerPath> paths;
+  for (std::size_t i = 1; i < numbers->size(); ++i) paths.push_back({numbers->front(), (*numbers)[i]});
+  return paths;
 }
 
 }  // namespace tacto::playback

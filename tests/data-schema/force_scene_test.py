@@ -9,7 +9,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "end-to-end"))
 from tacto import run, run_json
 
-REFUSAL = "this scene has force patches; playback of force patches is not built yet"
+REFUSAL = "this scene has force patches, which a tray cannot play"
 MALFORMED, UNSUITABLE = 4, 5
 LAYERS = [{"type": "grooves", "profile": "square", "period_m": 0.001, "kappa_n": 1,
            "depth_m": {"value": 0.0002, "slider": {"from": 0, "to": 0.001}}},

@@ -12,6 +12,7 @@ import sys
 from measured import measured
 
 CYCLES = 168_000_000 // 20_000  # 20 kHz at 168 MHz
+SCENE_CYCLES = 168_000_000 // 5_000  # force devices tick at 1 to 4 kHz
 CYCLES_PER_INSTRUCTION = 3      # more than this core's instruction mix needs
 
 
@@ -37,15 +38,17 @@ def main():
     texture = instructions(figures["texture_counts"] / figures["kernel_ticks"])
     change = instructions(figures["change_counts"] / figures["change_ticks"])
     change_most = instructions(figures["change_most_counts"])
+    scene, scene_most = instructions(figures["scene_counts"] / figures["kernel_ticks"]), instructions(figures["scene_most_counts"])
     tick = instructions(figures["firmware_tick_counts"] / figures["firmware_ticks"])
     poll = instructions(figures["firmware_poll_counts"] / figures["firmware_ticks"])
     flash, ram = int(size[0]) + int(size[1]), int(size[1]) + int(size[2])
+    print(f"the kernel of a scene of three patches and four layers {scene:.0f}, at most {scene_most:.0f} instructions a tick")
     print(f"a texture's kernel (two levels, 64 taps) {texture:.0f}, at most {instructions(figures['texture_most_counts']):.0f}; "
           f"while it changes {change:.0f}, at most {change_most:.0f}; kernel of eight sections {kernel:.0f}, whole tick {tick:.0f}, poll {poll:.0f} instructions a tick, of {CYCLES} cycles; "
           f"flash {flash} B, RAM {ram} B with this program's buffers, of which the firmware "
           f"{figures['firmware_bytes']} B, stack {figures['deepest_stack_bytes']} B")
     for name, value in (("kernel", kernel), ("texture", texture), ("change", change), ("change_most", change_most),
-                        ("tick", tick), ("poll", poll)):
+                        ("tick", tick), ("poll", poll), ("scene", scene), ("scene_most", scene_most)):
         measured(f"cortex_m4.{name}_instructions", value)
     measured("cortex_m4.flash_kb", 1e-3 * flash)
     measured("cortex_m4.stack_kb", 1e-3 * figures["deepest_stack_bytes"])
@@ -53,8 +56,9 @@ def main():
     assert (tick + poll) * CYCLES_PER_INSTRUCTION < CYCLES
     assert (tick - kernel + texture + poll) * CYCLES_PER_INSTRUCTION < CYCLES
     assert (tick - kernel + change_most) * CYCLES_PER_INSTRUCTION < CYCLES
+    assert (tick - kernel + scene_most) * CYCLES_PER_INSTRUCTION < SCENE_CYCLES
     assert instructions(figures["firmware_tick_most_counts"]) * CYCLES_PER_INSTRUCTION < CYCLES / 2
-    assert flash < 64 * 1024 and figures["firmware_bytes"] < 48 * 1024 and figures["deepest_stack_bytes"] < 2048
+    assert flash < 80 * 1024 and figures["firmware_bytes"] < 48 * 1024 and figures["deepest_stack_bytes"] < 2048
 
 
 if __name__ == "__main__":

@@ -50,9 +50,11 @@ TEST(Allocation, NeitherTickNorPollAllocates) {
 TEST(Allocation, TheKernelDoesNotAllocate) {
   static tests::KernelWorkload workload;
   static tests::TextureWorkload texture;
+  static tests::SceneWorkload scene;
   const long before = tests::allocations_here();
   for (int i = 0; i < 1000; ++i) workload.tick();
   for (int i = 0; i < 20000; ++i) texture.tick();
+  for (int i = 0; i < 20000; ++i) scene.tick();
   EXPECT_EQ(tests::allocations_here(), before);
 }
 

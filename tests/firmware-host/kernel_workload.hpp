@@ -4,6 +4,7 @@
 #pragma once
 
 #include "firmware-host/core/kernel/tick_kernel.hpp"
+#include "firmware-host/core/scene/scene_kernel.hpp"
 
 namespace tacto::tests {
 
@@ -114,6 +115,63 @@ class TextureWorkload {
   int32_t count_ = 0, way_ = 1, speed_ = 3, part_ = 0;
   core::TickKernel kernel_;
   float samples_[kTextureSamples], taps_[kTextureTaps];
+};
+
+inline constexpr uint32_t kSceneFingerprint = 1725858485;
+
+/// A scene of three overlapping patches with springs and dampers, and a hand in the plane whose speed varies
+/// between rest and 60 counts per tick; all limits are reached.
+class SceneWorkload {
+ public:
+  SceneWorkload() noexcept {
+    block_.header.patches = 3, block_.header.layers = 4, block_.header.numbers = 8;
+    block_.patches[0] = {0.01F, 0, 0.8F, 0.6F, 0.02F, 0.01F, 0, 1, 0};
+    block_.patches[1] = {0, 0, 1, 0, 0.1F, 0.1F, 1, 2, 0};
+    block_.patches[2] = {0, 0.01F, 0.6F, -0.8F, 0.1F, 0.03F, 3, 1, 1};
+    const uint16_t kinds[4] = {1, 0, 1, 0}, firsts[4] = {0, 1, 4, 5};
+    for (int i = 0; i < 4; ++i) block_.layers[i] = {kinds[i], firsts[i]};
+    const float numbers[8] = {3.3F, 400, 0.003F, -0.002F, 7.7F, 60, 0.01F, 0};
+    for (int i = 0; i < 8; ++i) block_.numbers[i] = numbers[i];
+    block_.header.check = core::scene_check(&block_, sizeof block_);
+    core::SceneView view;
+    core::read_scene_block(&block_, sizeof block_, view);
+    core::ForceSetup setup;
+    setup.axes[0] = {core::AxisAlong::x, 1e-5F, 20, 5};
+    setup.axes[1] = {core::AxisAlong::y, 1e-5F, 20, 5};
+    setup.axis_count = 2;
+    setup.peak_n = 20, setup.continuous_n = 5;
+    setup.slew_n_per_s = 8000, setup.rate_hz = 4000;
+    setup.onset_s = setup.release_s = 0.02F;
+    kernel_.set(view, setup);
+  }
+
+  /// One tick; the sum of both forces.
+  float tick() noexcept {
+    for (int i = 0; i < 2; ++i) {
+      const int32_t draw = next_();
+      if (draw % 200 == 0) speed_[i] = (draw >> 4) % 61;
+      if (draw % 333 == 0) speed_[i] = draw % 2;
+      if (counts_[i] > 5000) speed_[i] = -speed_[i] < 0 ? -speed_[i] : speed_[i];
+      if (counts_[i] < -5000) speed_[i] = -speed_[i] > 0 ? -speed_[i] : speed_[i];
+      counts_[i] += speed_[i];
+    }
+    const auto output = kernel_.tick(counts_, ++ticks_ < kWorkloadTicks - 400);
+    flags_ |= output.flags;
+    return output.force_n[0] + output.force_n[1];
+  }
+  uint32_t flags() const noexcept { return flags_; }
+
+ private:
+  struct Block {
+    core::SceneHeader header;
+    core::ScenePatch patches[3];
+    core::SceneLayer layers[4];
+    float numbers[8];
+  } block_;
+  WorkloadRandom next_{1990};
+  uint32_t flags_ = 0, ticks_ = 0;
+  int32_t counts_[2] = {}, speed_[2] = {};
+  core::SceneKernel kernel_;
 };
 
 /// FNV-1a over the bits of the drives.

@@ -195,6 +195,15 @@ TEST(TickKernel, ATexturesBitsAreTheSameEverywhere) {
                                    wire::kTickEnergyLimited | wire::kTickGated | wire::kTickTouching);
 }
 
+TEST(SceneKernel, AScenesBitsAreTheSameEverywhere) {
+  auto workload = std::make_unique<tests::SceneWorkload>();
+  tests::DriveFingerprint fingerprint;
+  for (std::uint32_t i = 0; i < tests::kWorkloadTicks; ++i) fingerprint.add(workload->tick());
+  EXPECT_EQ(fingerprint.value(), tests::kSceneFingerprint);
+  EXPECT_EQ(workload->flags(),
+            wire::kTickAmplitudeLimited | wire::kTickSlewLimited | wire::kTickEnergyLimited);
+}
+
 TEST(TickKernel, WhatIsNoNumberDrivesTowardsZeroAndIsForgotten) {
   TickKernel kernel;
   kernel.set({5, 5000, 0, 0.001F, 100, 200}, 1e4F);

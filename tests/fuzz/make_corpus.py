@@ -75,6 +75,32 @@ DEVICES = {
 }
 
 
+def scene(motion, patches):
+    """scene_fuzz's input; a patch is (x, y, cosine, sine, half sizes, adds, [(kind, numbers)])."""
+    layers = [layer for patch in patches for layer in patch[-1]]
+    numbers = [number for _, of_layer in layers for number in of_layer]
+    block, first_layer, first_number = b"", 0, 0
+    for *place, adds, of_patch in patches:
+        block += struct.pack("<6fHHI", *place, first_layer, len(of_patch), adds)
+        first_layer += len(of_patch)
+    for kind, of_layer in layers:
+        block += struct.pack("<HH", kind, first_number)
+        first_number += len(of_layer)
+    block += struct.pack(f"<{len(numbers)}f", *numbers)
+    header = struct.pack("<4sHHHH", b"TSCN", 1, len(patches), len(layers), len(numbers))
+    return struct.pack("<4i", *motion) + header + bytes(4) + block
+
+
+SPRING, DAMPER = 0, 1
+SCENES = {
+    "spring": scene((3, -2, 5, 0), [(0, 0, 1, 0, 0.1, 0.1, 0, [(SPRING, (100, 0, 0))])]),
+    "ice_on_soup": scene((90, 1, -70, 40), [(0, 0, 0.6, 0.8, 0.01, 0.01, 0, [(DAMPER, (0.1,))]),
+                                           (0, 0, 1, 0, 1, 1, 0, [(DAMPER, (50,))]),
+                                           (0.01, 0, 1, 0, 1, 1, 1, [(SPRING, (1e6, 0.01, -0.02)), (DAMPER, (1e4,))])]),
+    "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,))])]),
+}
+
+
 def main():
     joined = re.sub(r"(?<=[0-9a-f])\n {4}(?=[0-9a-f]+$)", "", WIRE.read_text(), flags=re.M)
     frames = dict(re.findall(r"^([a-z_]+) (a554[0-9a-f]+)$", joined, re.M))
@@ -82,6 +108,8 @@ def main():
         (HERE / "corpus/wire" / name).write_bytes(b"\x3f" + bytes.fromhex(text))
     for name, actions in CONVERSATIONS.items():
         (HERE / "corpus/firmware" / name).write_bytes(actions)
+    for name, scene in SCENES.items():
+        (HERE / "corpus/scene" / name).write_bytes(scene)
     for name, sayings in DEVICES.items():
         (HERE / "corpus/client" / name).write_bytes(sayings)
 

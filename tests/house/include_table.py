@@ -32,7 +32,7 @@ MAY_INCLUDE = {
     "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
     "firmware-host/core/firmware": "firmware-host/{core/kernel core/wire}",
     "firmware-host/core/kernel": "firmware-host/core/wire",
-    "firmware-host/core/scene": "",
+    "firmware-host/core/scene": "firmware-host/core/{kernel wire}",
     "firmware-host/core/wire": "",
     "firmware-host/gadget":
         "data-schema/{base recording report} firmware-host/{core/firmware core/wire link sim/device}",
@@ -44,7 +44,7 @@ MAY_INCLUDE = {
     "firmware-host/sim/device":
         "data-schema/{base transducer} firmware-host/{core/firmware core/wire link sim/bench sim/physics}",
     "firmware-host/sim/physics": "data-schema/{base texture transducer}",
-    "firmware-host/sim/planar": "",
+    "firmware-host/sim/planar": "data-schema/device",
     "firmware-host/usb": "data-schema/base firmware-host/{core/firmware link}",
     "capture/calibrate": "capture/record data-schema/{base calibration recording transducer} firmware-host/link",
     "capture/cli":
@@ -80,8 +80,9 @@ MAY_INCLUDE = {
         "numbers strokes}",
     "playback/choose": "data-schema/{results scene} playback/{model prepare}",
     "playback/cli":
-        "data-schema/{base command control files recording report scene session texture} firmware-host/link "
-        "playback/{choose control host-loop model player render session strokes}",
+        "data-schema/{base command control device files recording report scene session texture} "
+        "firmware-host/{core/scene link} playback/{choose control host-loop model player prepare/scene render session "
+        "strokes}",
     "playback/control": "data-schema/{base control files} playback/session",
     "playback/daemon":
         "data-schema/{base control files report scene} playback/{control host-loop model player session}",
@@ -96,10 +97,13 @@ MAY_INCLUDE = {
         "data-schema/{base texture transducer} firmware-host/{core/kernel core/wire link} playback/model "
         "spatial/{dsp/filter dsp/fourier}",
     "playback/prepare/relief": "data-schema/scene firmware-host/core/scene",
+    "playback/prepare/scene": "data-schema/{device scene} firmware-host/core/scene",
     "playback/render":
-        "data-schema/{base recording scene texture transducer} firmware-host/core/kernel playback/{choose model "
-        "prepare render/reference} spatial/{dsp/filter features}",
-    "playback/render/reference": "data-schema/base firmware-host/core/scene playback/{model prepare} spatial/{dsp/filter dsp/fourier}",
+        "data-schema/{base device recording scene texture transducer} firmware-host/{core/kernel core/scene sim/planar} "
+        "playback/{choose model prepare prepare/scene render/reference} spatial/{dsp/filter features}",
+    "playback/render/reference":
+        "data-schema/{base device} firmware-host/core/scene playback/{model prepare prepare/scene} spatial/{dsp/filter "
+        "dsp/fourier}",
     "playback/session":
         "data-schema/{base control files session wav} firmware-host/{core/firmware core/kernel core/wire link} "
         "playback/model",

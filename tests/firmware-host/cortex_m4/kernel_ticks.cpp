@@ -25,6 +25,8 @@ tests::KernelWorkload workload;
 
 tests::TextureWorkload texture;
 
+tests::SceneWorkload scene;
+
 template <class Workload>
 uint32_t count_ticks(Workload& ticked, const char* fingerprint_name, const char* counts_name,
                      const char* most_name) {
@@ -48,7 +50,9 @@ bool count_kernel() {
       count_ticks(workload, "kernel_fingerprint", "kernel_counts", "kernel_most_counts");
   const uint32_t levels =
       count_ticks(texture, "texture_fingerprint", "texture_counts", "texture_most_counts");
-  return sections == tests::kWorkloadFingerprint && levels == tests::kTextureFingerprint;
+  const uint32_t patches = count_ticks(scene, "scene_fingerprint", "scene_counts", "scene_most_counts");
+  return sections == tests::kWorkloadFingerprint && levels == tests::kTextureFingerprint &&
+         patches == tests::kSceneFingerprint;
 }
 
 // During a change of texture both are read; its first tick also starts the change.

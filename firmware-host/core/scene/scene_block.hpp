@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene of force patches as one block of plain data: prepared on the computer, checked, and read in place.
+#pragma once
+
+#include <stdint.h>
+
+namespace tacto::core {
+
+inline constexpr uint32_t kSceneMark = 0x4E435354;  ///< "TSCN"
+inline constexpr uint16_t kSceneVersion = 1;
+inline constexpr uint32_t kMostSceneLayers = 256;
+inline constexpr uint32_t kMostLayerNumbers = 4;
+
+/// The kinds of layers that the kernel has. A number is never reused.
+enum class SceneLayerKind : uint16_t { spring = 0, damper = 1 };
+inline constexpr uint16_t kSceneLayerKinds = 2;
+
+/// The places of a layer's numbers, from its first one.
+enum SpringNumber : uint32_t { kSpringStiffness = 0, kSpringCentreX = 1, kSpringCentreY = 2 };
+enum DamperNumber : uint32_t { kDamperDamping = 0 };
+
+/// How many numbers a layer of a kind has.
+constexpr uint32_t numbers_of(SceneLayerKind kind) noexcept {
+  return kind == SceneLayerKind::spring ? 3 : 1;
+}
+
+/// The block is, in this order and little-endian: this header, the patches, the layers, the numbers.
+struct SceneHeader {
+  uint32_t mark = kSceneMark;
+  uint16_t version = kSceneVersion;
+  uint16_t patches = 0, layers = 0, numbers = 0;
+  uint32_t check = 0;  ///< CRC-32C of the fields above and of all that follows this one
+};
+static_assert(sizeof(SceneHeader) == 16);
+
+/// A rectangle in the plane, turned by the angle of `cosine` and `sine`. The topmost patch is the first one.
+struct ScenePatch {
+  float centre_x_m = 0, centre_y_m = 0;
+  float cosine = 1, sine = 0;
+  float half_width_m = 0, half_height_m = 0;
+  uint16_t first_layer = 0, layers = 0;
+  uint32_t adds = 0;  ///< 1: it acts beside the topmost patch
+};
+static_assert(sizeof(ScenePatch) == 32);
+
+struct SceneLayer {
+  uint16_t kind = 0;  ///< SceneLayerKind
+  uint16_t first_number = 0;
+};
+static_assert(sizeof(SceneLayer) == 4);
+
+/// A block that was read; it points into its memory.
+struct SceneView {
+  const ScenePatch* patches = nullptr;
+  const SceneLayer* layers = nullptr;
+  const float* numbers = nullptr;
+  uint32_t patch_count = 0, layer_count = 0, number_count = 0;
+  bool needs_speed = false;  ///< it has a damper
+};
+
+enum class SceneFault : uint8_t {
+  none,
+  size,       ///< shorter or longer than its header says
+  mark,       ///< not a scene
+  version,    ///< of another version
+  check,      ///< changed since it was made
+  structure,  ///< a patch or layer refers to what is not there, or a kind is not known
+  value,      ///< a number out of its range, or not a number
+};
+
+/// Makes a view of a block, whose memory is aligned to 4 bytes. Refuses every block that could make the
+/// kernel read outside of it or compute a force that is not finite. Sets `view` only if there is no fault.
+SceneFault read_scene_block(const void* block, uint32_t bytes, SceneView& view) noexcept;
+
+/// The check of a block of at least a header's size.
+uint32_t scene_check(const void* block, uint32_t bytes) noexcept;
+
+struct PlaneVector {
+  float x = 0, y = 0;
+};
+
+/// A vector of the plane in the axes of a patch. Safe in the tick.
+inline PlaneVector into_patch(const ScenePatch& patch, PlaneVector v) noexcept {
+  return {patch.cosine * v.x + patch.sine * v.y, patch.cosine * v.y - patch.sine * v.x};
+}
+
+/// The place in the axes of a patch, from its centre. Safe in the tick.
+inline PlaneVector place_in_patch(const ScenePatch& patch, PlaneVector place) noexcept {
+  return into_patch(patch, {place.x - patch.centre_x_m, place.y - patch.centre_y_m});
+}
+
+/// Whether a place, in the axes of the patch, belongs to it; its border does. Safe in the tick.
+inline bool within_patch(const ScenePatch& patch, PlaneVector place) noexcept {
+  return place.x >= -patch.half_width_m && place.x <= patch.half_width_m && place.y >= -patch.half_height_m &&
+         place.y <= patch.half_height_m;
+}
+
+}  // namespace tacto::core

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware-host/core/scene/scene_kernel.hpp"
+
+#include "firmware-host/core/kernel/finite.hpp"
+
+namespace tacto::core {
+
+void SceneKernel::set(const SceneView& scene, const ForceSetup& setup) noexcept {
+  scene_ = scene;
+  setup_ = setup;
+  for (EdgeSpeed& speed : speeds_) speed.rest();
+  envelope_.set(setup.onset_s * setup.rate_hz, setup.release_s * setup.rate_hz);
+  limiter_.set(setup);
+}
+
+// In the axes of the patch.
+PlaneVector SceneKernel::force_in(const ScenePatch& patch, PlaneVector place,
+                                  PlaneVector speed) const noexcept {
+  PlaneVector sum;
+  for (uint32_t i = 0; i < patch.layers; ++i) {
+    const SceneLayer& layer = scene_.layers[patch.first_layer + i];
+    const float* const number = scene_.numbers + layer.first_number;
+    switch (static_cast<SceneLayerKind>(layer.kind)) {
+      case SceneLayerKind::spring:
+        sum.x -= number[kSpringStiffness] * (place.x - number[kSpringCentreX]);
+        sum.y -= number[kSpringStiffness] * (place.y - number[kSpringCentreY]);
+        break;
+      case SceneLayerKind::damper:
+        sum.x -= number[kDamperDamping] * speed.x;
+        sum.y -= number[kDamperDamping] * speed.y;
+        break;
+    }
+  }
+  return sum;
+}
+
+PlaneVector SceneKernel::force(PlaneVector place, PlaneVector speed) const noexcept {
+  PlaneVector sum;
+  bool covered = false;
+  for (uint32_t i = 0; i < scene_.patch_count; ++i) {
+    const ScenePatch& patch = scene_.patches[i];
+    const bool adds = patch.adds != 0;
+    if (covered && !adds) continue;
+    const PlaneVector here = place_in_patch(patch, place);
+    if (!within_patch(patch, here)) continue;
+    covered = covered || !adds;
+    const PlaneVector local = force_in(patch, here, into_patch(patch, speed));
+    sum.x += patch.cosine * local.x - patch.sine * local.y;
+    sum.y += patch.sine * local.x + patch.cosine * local.y;
+  }
+  return sum;
+}
+
+ForceOutput SceneKernel::tick(const int32_t* counts, bool raise) noexcept {
+  float place_m[2] = {}, speed_mps[2] = {};
+  for (uint32_t i = 0; i < setup_.axis_count; ++i) {
+    const auto along = static_cast<uint32_t>(setup_.axes[i].along);
+    if (along > 1) continue;
+    const float step_m = setup_.axes[i].metres_per_count;
+    place_m[along] = static_cast<float>(counts[i]) * step_m;
+    if (scene_.needs_speed) speed_mps[along] = speeds_[along].track(counts[i]) * (step_m * setup_.rate_hz);
+  }
+  const PlaneVector sum = force({place_m[0], place_m[1]}, {speed_mps[0], speed_mps[1]});
+  ForceOutput output;
+  output.sound = is_finite(sum.x) && is_finite(sum.y);
+  const float weight = envelope_.step(raise && output.sound);
+  for (uint32_t i = 0; i < setup_.axis_count && output.sound; ++i) {
+    const AxisAlong along = setup_.axes[i].along;
+    if (along != AxisAlong::z) output.unlimited_n[i] = weight * (along == AxisAlong::x ? sum.x : sum.y);
+    output.force_n[i] = output.unlimited_n[i];
+  }
+  limiter_.limit(output.force_n, output.flags);
+  return output;
+}
+
+}  // namespace tacto::core

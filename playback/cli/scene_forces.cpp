@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/cli/scene_forces.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "data-schema/base/unknown_note.hpp"
+#include "data-schema/device/device.hpp"
+#include "data-schema/device/hand.hpp"
+#include "data-schema/files/files.hpp"
+#include "firmware-host/core/scene/scene_kernel.hpp"
+#include "playback/player/placed_textures.hpp"
+#include "playback/prepare/scene/scene_device.hpp"
+#include "playback/render/plane_render.hpp"
+
+namespace tacto::playback {
+
+using cli::Report;
+using schema::ErrorKind;
+using schema::fail;
+using schema::Result;
+
+namespace {
+
+constexpr int kCostTicks = 500, kCostRuns = 5;
+
+struct SceneOnDevice {
+  schema::Device device;
+  PreparedScene scene;
+  core::ForceSetup setup;
+};
+
+void warn_of_newer(const std::string& name, const auto& document) {
+  if (const std::string note = schema::unknown_note(name, document); !note.empty()) cli::warn(note);
+}
+
+Result<SceneOnDevice> scene_on_device(const std::string& scene_name, const std::string& device_name,
+                                      std::optional<double> rate_hz) {
+  if (!names_a_scene(scene_name))
+    return fail(ErrorKind::unsuitable, "is a texture; a force device plays the force patches of a scene",
+                scene_name, "name a scene, or give --transducer instead of --device");
+  const std::string file = schema::scene_path(scene_name);
+  const auto scene = schema::read_scene(file);
+  TACTO_TRY(scene);
+  auto device = schema::read_device(device_name);
+  TACTO_TRY(device);
+  const auto setup = force_setup_of(*device, rate_hz);
+  TACTO_TRY(setup);
+  auto prepared = prepare_scene(*scene, file);
+  TACTO_TRY(prepared);
+  warn_of_newer(file, *scene);
+  warn_of_newer(device_name, *device);
+  if (!scene->layers.empty())
+    cli::warn(fmt::format("{}: its {} layers of a tray are left out", file, scene->layers.size()));
+  for (const std::string& note : limits_of_device(*prepared, *device)) cli::warn(note);
+  return SceneOnDevice{std::move(*device), std::move(*prepared), *setup};
+}
+
+Result<std::optional<schema::Hand>> hand_of(const std::string& name) {
+  if (name.empty()) return std::optional<schema::Hand>();
+  auto hand = schema::read_hand(name);
+  TACTO_TRY(hand);
+  warn_of_newer(name, *hand);
+  return std::optional(std::move(*hand));
+}
+
+bool is_force_table(std::string_view beginning) {
+  const auto header = beginning.substr(0, beginning.find('\n'));
+  return header.starts_with("time_s,") && header.find("force_") != std::string_view::npos;
+}
+
+std::vector<const PlaneAxisRun*> axes_with_force(const PlaneRendering& rendering) {
+  std::vector<const PlaneAxisRun*> axes;
+  for (const PlaneAxisRun& axis : rendering.axes)
+    if (axis.name != "z") axes.push_back(&axis);
+  return axes;
+}
+
+std::string table_of(const PlaneRendering& rendering) {
+  const auto axes = axes_with_force(rendering);
+  fmt::memory_buffer text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "time_s");
+  for (const PlaneAxisRun* axis : axes) fmt::format_to(out, ",{}_m", axis->name);
+  for (const PlaneAxisRun* axis : axes) fmt::format_to(out, ",force_{}_n", axis->name);
+  for (const PlaneAxisRun* axis : axes)
+    if (!axis->hand_m.empty()) fmt::format_to(out, ",hand_{}_m", axis->name);
+  fmt::format_to(out, "\n");
+  for (std::size_t i = 0; i < rendering.time_s.size(); ++i) {
+    fmt::format_to(out, "{}", rendering.time_s[i]);
+    for (const PlaneAxisRun* axis : axes) fmt::format_to(out, ",{}", axis->place_m[i]);
+    for (const PlaneAxisRun* axis : axes) fmt::format_to(out, ",{}", axis->force_n[i]);
+    for (const PlaneAxisRun* axis : axes)
+      if (!axis->hand_m.empty()) fmt::format_to(out, ",{}", axis->hand_m[i]);
+    fmt::format_to(out, "\n");
+  }
+  return fmt::to_string(text);
+}
+
+std::vector<Report> rows_of_axes(const PlaneRendering& rendering, const schema::Device& device) {
+  std::vector<Report> rows;
+  for (std::size_t i = 0; i < rendering.axes.size(); ++i) {
+    const PlaneAxisRun& axis = rendering.axes[i];
+    double square = 0, peak_n = 0;
+    for (const double force_n : axis.force_n) {
+      square += force_n * force_n;
+      peak_n = std::max(peak_n, std::abs(force_n));
+    }
+    rows.push_back(Report()
+                       .add("axis", axis.name)
+                       .add("force_rms_n", std::sqrt(square / static_cast<double>(axis.force_n.size())))
+                       .add("force_peak_n", peak_n)
+                       .add("peak_limit_n", device.axes[i].peak_force_n)
+                       .add("encoder_step_m", device.axes[i].encoder_step_m));
+  }
+  return rows;
+}
+
+Report report_of(const ForceRendering& asked, const schema::Device& device, const PlaneRendering& r) {
+  Report report;
+  report.add("forces", asked.output).add("device", device.name);
+  report.add("hand", asked.hand.empty() ? "none: the path is imposed" : asked.hand).add("rate_hz", r.rate_hz);
+  report.add("ticks", r.time_s.size()).add("duration_s", r.time_s.back() - r.time_s.front());
+  report.add("axes", rows_of_axes(r, device)).add("force_peak_n", r.largest_force_n);
+  report.add("peak_limited_ticks", r.peak_limited)
+      .add("slew_limited_ticks", r.slew_limited)
+      .add("rms_limited_ticks", r.rms_limited);
+  return report.add("largest_rounding_n", r.largest_rounding_n).add("delay_s", device.delay_s);
+}
+
+// The time of a tick on this computer, with the hand in motion around the centre of a patch: the shortest
+// mean of several runs.
+double tick_cost_s(const core::SceneView& scene, const core::ForceSetup& setup, const schema::Patch& patch) {
+  core::SceneKernel kernel;
+  kernel.set(scene, setup);
+  double shortest_s = INFINITY;
+  for (int run = 0; run < kCostRuns; ++run) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int tick = 0; tick < kCostTicks; ++tick) {
+      std::int32_t counts[core::kMostAxes] = {};
+      for (std::uint32_t i = 0; i < setup.axis_count; ++i) {
+        const core::ForceAxis& axis = setup.axes[i];
+        const double centre_m = axis.along == core::AxisAlong::x ? patch.x_m : patch.y_m;
+        counts[i] = static_cast<std::int32_t>(centre_m / double{axis.metres_per_count}) + tick;
+      }
+      kernel.tick(counts, true);
+    }
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    shortest_s = std::min(shortest_s, took.count() / kCostTicks);
+  }
+  return shortest_s;
+}
+
+// The scene of this layer alone.
+double layer_cost_s(const schema::Patch& patch, const schema::ForceLayer& layer,
+                    const core::ForceSetup& setup) {
+  schema::Scene scene;
+  scene.patches = {patch};
+  scene.patches.front().layers = {layer};
+  const auto prepared = prepare_scene(scene, "");
+  return prepared ? tick_cost_s(prepared->view(), setup, patch) : NAN;
+}
+
+Report row_of_layer(const schema::Patch& patch, std::size_t index, const schema::Device& device,
+                    const core::ForceSetup& setup) {
+  const schema::ForceLayer& layer = patch.layers[index];
+  Report row;
+  row.add("patch", patch.name).add("layer", index).add("type", type_of(layer));
+  row.add("bytes", layer_bytes(layer)).add("alone_tick_s", layer_cost_s(patch, layer, setup));
+  const auto at_limit = [&](const char* key, double gain) {
+    if (gain > 0) row.add(key, device.peak_force_n / gain);
+  };
+  layer.visit(
+      [&](const schema::SpringLayer& spring) { at_limit("peak_force_at_m", spring.stiffness_n_per_m.value); },
+      [&](const schema::DamperLayer& damper) {
+        at_limit("peak_force_at_mps", damper.damping_n_s_per_m.value);
+      },
+      [](const auto& /*other*/) {});
+  return row;
+}
+
+std::vector<Report> rows_of_layers(const SceneOnDevice& on) {
+  std::vector<Report> rows;
+  for (const schema::Patch& patch : on.scene.patches)
+    for (std::size_t i = 0; i < patch.layers.size(); ++i)
+      rows.push_back(row_of_layer(patch, i, on.device, on.setup));
+  return rows;
+}
+
+void add_fit(Report& report, std::size_t bytes, std::optional<std::size_t> room, double tick_s,
+             double rate_hz) {
+  const bool small = !room || bytes <= *room, fast = tick_s * rate_hz <= 1;
+  report.add("fits", small && fast);
+  if (!small) report.add("because", fmt::format("the scene needs {} bytes, the device has {}", bytes, *room));
+  if (!fast) report.add("because", "a tick takes longer than the period of the device");
+}
+
+}  // namespace
+
+void declare_force_device(CLI::App& app, std::string& device) {
+  app.add_option(
+      "--device", device,
+      fmt::format("Of a scene with force patches: the force device that plays it, a preset ({}) or "
+                  "NAME.device.json",
+                  fmt::join(schema::device_preset_names(), ", ")));
+}
+
+void declare_hand(CLI::App& app, std::string& hand) {
+  app.add_option("--hand", hand,
+                 fmt::format("With --device: an emulated hand that holds the device, a preset ({}) or "
+                             "NAME.hand.json. The path is then the place to which the person moves the hand; "
+                             "without a hand the device moves along the path, whatever the force",
+                             fmt::join(schema::hand_preset_names(), ", ")));
+}
+
+Result<void> check_force_options(const CLI::App& app, std::initializer_list<std::string_view> names) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0 || option->get_positional() || option->check_lname("json")) continue;
+    const auto known = [&](const std::string& name) { return std::ranges::find(names, name) != names.end(); };
+    if (std::ranges::any_of(option->get_lnames(), known)) continue;
+    return fail(ErrorKind::usage, option->get_name() + " is an option for a tray, not for a force device", {},
+                fmt::format("with --device the options are --{}", fmt::join(names, ", --")));
+  }
+  return {};
+}
+
+Result<Report> render_forces(const ForceRendering& asked) {
+  TACTO_TRY(schema::check_table_free(asked.output, asked.existing, is_force_table));
+  const auto on = scene_on_device(asked.scene, asked.device, asked.rate_hz);
+  TACTO_TRY(on);
+  const auto paths = read_axis_paths(asked.path, plane_axes_of(on->device));
+  TACTO_TRY(paths);
+  const auto hand = hand_of(asked.hand);
+  TACTO_TRY(hand);
+  const auto rendering = render_plane(on->scene, on->device, asked.rate_hz, *paths, *hand);
+  TACTO_TRY(rendering);
+  schema::PendingFiles files;
+  TACTO_TRY(files.write(asked.output, table_of(*rendering)));
+  TACTO_TRY(files.commit(asked.existing));
+  return report_of(asked, on->device, *rendering);
+}
+
+Result<Report> explain_forces(const std::string& scene, const std::string& device,
+                              std::optional<double> rate_hz, std::optional<std::size_t> device_bytes) {
+  const auto on = scene_on_device(scene, device, rate_hz);
+  TACTO_TRY(on);
+  const core::SceneView view = on->scene.view();
+  double tick_s = 0;
+  for (const schema::Patch& patch : on->scene.patches)
+    tick_s = std::max(tick_s, tick_cost_s(view, on->setup, patch));
+  const double rate = double{on->setup.rate_hz};
+  Report report;
+  report.add("scene", schema::scene_path(scene)).add("device", on->device.name).add("rate_hz", rate);
+  add_fit(report, on->scene.bytes(), device_bytes, tick_s, rate);
+  report.add("layers", rows_of_layers(*on));
+  report.add("block_bytes", on->scene.bytes()).add("kernel_bytes", sizeof(core::SceneKernel));
+  report.add("tick_s", tick_s).add("tick_of_period_percent", 100 * tick_s * rate);
+  report.add("measured_on", "this computer");
+  if (!view.needs_speed)
+    report.add(
+        "left_out",
+        std::vector{Report().add("part", "speed of the hand").add("because", "no layer depends on it")});
+  return report;
+}
+
+}  // namespace tacto::playback

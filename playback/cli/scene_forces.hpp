@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `render` and `explain` for the force patches of a scene: what they do if a device is named.
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+
+#include "data-schema/command/output_options.hpp"
+
+namespace tacto::playback {
+
+/// --device; `device` must outlive the parser, here and below.
+void declare_force_device(CLI::App& app, std::string& device);
+
+/// --hand
+void declare_hand(CLI::App& app, std::string& hand);
+
+/// Errors: usage, if an option was given that is not among `names`: the others are those of a tray.
+schema::Result<void> check_force_options(const CLI::App& app, std::initializer_list<std::string_view> names);
+
+struct ForceRendering {
+  std::string scene, device, path, output;
+  std::string hand;  ///< empty: the path is imposed
+  std::optional<double> rate_hz;
+  schema::Existing existing = schema::Existing::keep;
+};
+
+/// Writes the forces along the path as a CSV.
+schema::Result<cli::Report> render_forces(const ForceRendering& asked);
+
+/// The layers with their memory and time, and whether they fit the device.
+schema::Result<cli::Report> explain_forces(const std::string& scene, const std::string& device,
+                                           std::optional<double> rate_hz,
+                                           std::optional<std::size_t> device_bytes);
+
+}  // namespace tacto::playback

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/prepare/scene/scene_device.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tacto::playback {
+
+using schema::Device;
+using schema::DeviceAxis;
+using schema::ErrorKind;
+using schema::fail;
+using schema::Result;
+
+namespace {
+
+constexpr int kPatchGrid = 101;  // places along each side of a patch
+
+// A place, or a force, in the plane.
+struct Vector {
+  double x = 0, y = 0;
+};
+
+const DeviceAxis* axis_named(const Device& device, std::string_view name) {
+  const auto found = std::ranges::find(device.axes, name, &DeviceAxis::name);
+  return found == device.axes.end() ? nullptr : &*found;
+}
+
+core::AxisAlong along_of(const DeviceAxis& axis) {
+  return axis.name == "x" ? core::AxisAlong::x : axis.name == "y" ? core::AxisAlong::y : core::AxisAlong::z;
+}
+
+core::ForceAxis axis_setup(const DeviceAxis& axis) {
+  return {along_of(axis), static_cast<float>(axis.encoder_step_m), static_cast<float>(axis.peak_force_n),
+          static_cast<float>(axis.continuous_force_n)};
+}
+
+// The two axes of the plane; an axis that the device does not have stays at 0.
+struct PlaneTravel {
+  const DeviceAxis* axes[2];
+
+  explicit PlaneTravel(const Device& device) : axes{axis_named(device, "x"), axis_named(device, "y")} {}
+  bool is_line() const { return axes[0] == nullptr || axes[1] == nullptr; }
+  bool reaches(Vector place) const {
+    const double along[2] = {place.x, place.y};
+    for (int i = 0; i < 2; ++i)
+      if (axes[i] != nullptr && (along[i] < axes[i]->travel_from_m || along[i] > axes[i]->travel_to_m))
+        return false;
+    return true;
+  }
+};
+
+// A patch with its axes.
+class TurnedPatch {
+ public:
+  explicit TurnedPatch(const schema::Patch& patch)
+      : patch_(patch),
+        cosine_(std::cos(patch.angle_deg * std::numbers::pi / 180)),
+        sine_(std::sin(patch.angle_deg * std::numbers::pi / 180)) {}
+  Vector in_plane(double u_m, double v_m) const {
+    return {patch_.x_m + cosine_ * u_m - sine_ * v_m, patch_.y_m + sine_ * u_m + cosine_ * v_m};
+  }
+  // From its centre, in its axes.
+  Vector in_patch(Vector place) const {
+    const double x = place.x - patch_.x_m, y = place.y - patch_.y_m;
+    return {cosine_ * x + sine_ * y, cosine_ * y - sine_ * x};
+  }
+  bool holds(Vector place) const {
+    const Vector local = in_patch(place);
+    return std::abs(local.x) <= patch_.width_m / 2 && std::abs(local.y) <= patch_.height_m / 2;
+  }
+  // The force of its springs, in the plane.
+  Vector spring_force_n(Vector place) const {
+    const Vector local = in_patch(place);
+    double u = 0, v = 0;
+    for (const schema::ForceLayer& layer : patch_.layers)
+      layer.visit(
+          [&](const schema::SpringLayer& spring) {
+            u -= spring.stiffness_n_per_m.value * (local.x - spring.centre_x_m.value);
+            v -= spring.stiffness_n_per_m.value * (local.y - spring.centre_y_m.value);
+          },
+          [](const auto& /*other*/) {});
+    return {cosine_ * u - sine_ * v, sine_ * u + cosine_ * v};
+  }
+
+ private:
+  const schema::Patch& patch_;
+  double cosine_, sine_;
+};
+
+// Places of the patch: a grid of it, or of the line on which a device of one axis moves.
+std::vector<Vector> places_of(const schema::Patch& patch, const TurnedPatch& turned,
+                              const PlaneTravel& travel) {
+  std::vector<Vector> places;
+  const auto part = [](int i) { return (i + 0.5) / kPatchGrid; };
+  if (!travel.is_line()) {
+    for (int i = 0; i < kPatchGrid; ++i)
+      for (int j = 0; j < kPatchGrid; ++j)
+        places.push_back(turned.in_plane(patch.width_m * (part(i) - 0.5), patch.height_m * (part(j) - 0.5)));
+    return places;
+  }
+  const bool along_x = travel.axes[0] != nullptr;
+  const DeviceAxis& axis = along_x ? *travel.axes[0] : *travel.axes[1];
+  for (int i = 0; i < kPatchGrid * kPatchGrid; ++i) {
+    const double at_m =
+        axis.travel_from_m + (axis.travel_to_m - axis.travel_from_m) * (i + 0.5) / (kPatchGrid * kPatchGrid);
+    const Vector place = along_x ? Vector{at_m, 0} : Vector{0, at_m};
+    if (turned.holds(place)) places.push_back(place);
+  }
+  return places;
+}
+
+bool exceeds(Vector force_n, const PlaneTravel& travel, double peak_n) {
+  const double along[2] = {force_n.x, force_n.y};
+  double square = 0;
+  for (int i = 0; i < 2; ++i) {
+    if (travel.axes[i] == nullptr) continue;
+    if (std::abs(along[i]) > travel.axes[i]->peak_force_n) return true;
+    square += along[i] * along[i];
+  }
+  return square > peak_n * peak_n;
+}
+
+double percent_of(std::size_t part, std::size_t of) {
+  return 100.0 * static_cast<double>(part) / static_cast<double>(of);
+}
+
+void note_patch(const schema::Patch& patch, const Device& device, std::vector<std::string>& notes) {
+  const PlaneTravel travel(device);
+  const TurnedPatch turned(patch);
+  std::vector<Vector> places = places_of(patch, turned, travel);
+  const std::size_t all = places.size();
+  std::erase_if(places, [&](Vector place) { return !travel.reaches(place); });
+  if (places.empty()) {
+    notes.push_back(fmt::format("patch '{}' is outside the travel of the device", patch.name));
+    return;
+  }
+  if (places.size() < all)
+    notes.push_back(fmt::format("patch '{}': {:.3g} % of its area is outside the travel of the device",
+                                patch.name, percent_of(all - places.size(), all)));
+  const auto high = std::ranges::count_if(places, [&](Vector place) {
+    return exceeds(turned.spring_force_n(place), travel, device.peak_force_n);
+  });
+  if (high > 0)
+    notes.push_back(fmt::format(
+        "patch '{}': its springs exceed the peak force of the device at {:.3g} % of the places that the hand "
+        "reaches; there the force is limited",
+        patch.name, percent_of(static_cast<std::size_t>(high), places.size())));
+}
+
+}  // namespace
+
+Result<core::ForceSetup> force_setup_of(const Device& device, std::optional<double> rate_hz) {
+  if (axis_named(device, "x") == nullptr && axis_named(device, "y") == nullptr)
+    return fail(ErrorKind::unsuitable,
+                fmt::format("the device '{}' has neither an axis x nor an axis y", device.name), {},
+                "force patches are in the plane of x and y");
+  const double rate = rate_hz.value_or(device.rates_hz.back());
+  if (std::ranges::find(device.rates_hz, rate) == device.rates_hz.end())
+    return fail(ErrorKind::unsuitable,
+                fmt::format("the device '{}' has no rate of {:g} Hz", device.name, rate), "--rate",
+                fmt::format("its rates are {} Hz", fmt::join(device.rates_hz, ", ")));
+  core::ForceSetup setup;
+  for (const DeviceAxis& axis : device.axes) setup.axes[setup.axis_count++] = axis_setup(axis);
+  setup.peak_n = static_cast<float>(device.peak_force_n);
+  setup.continuous_n = static_cast<float>(device.continuous_force_n);
+  setup.slew_n_per_s = static_cast<float>(device.slew_n_per_s);
+  setup.rate_hz = static_cast<float>(rate);
+  return setup;
+}
+
+std::vector<std::string> limits_of_device(const PreparedScene& scene, const Device& device) {
+  std::vector<std::string> notes;
+  for (const char* name : {"x", "y"})
+    if (axis_named(device, name) == nullptr)
+      notes.push_back(
+          fmt::format("the device has no axis {0}: the hand stays at {0} = 0, and forces along {0} "
+                      "are left out",
+                      name));
+  for (const schema::Patch& patch : scene.patches) note_patch(patch, device, notes);
+  return notes;
+}
+
+}  // namespace tacto::playback

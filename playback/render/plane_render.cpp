@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/render/plane_render.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware-host/core/scene/scene_kernel.hpp"
+#include "firmware-host/sim/planar/planar_body.hpp"
+#include "playback/prepare/scene/scene_device.hpp"
+#include "playback/render/reference/exact_scene.hpp"
+
+namespace tacto::playback {
+
+using schema::Device;
+using schema::DeviceAxis;
+using schema::ErrorKind;
+using schema::fail;
+using schema::Result;
+
+namespace {
+
+constexpr double kMostTicks = 1 << 26;
+
+Result<void> check_travel(const DeviceAxis& axis, const std::vector<double>& place_m, double rate_hz) {
+  const auto out = std::ranges::find_if(
+      place_m, [&](double place) { return place < axis.travel_from_m || place > axis.travel_to_m; });
+  if (out == place_m.end()) return {};
+  return fail(ErrorKind::unsuitable,
+              fmt::format("after {:g} s the path is at {} = {:g} m, beyond the travel of the device",
+                          static_cast<double>(out - place_m.begin()) / rate_hz, axis.name, *out),
+              axis.name + "_m",
+              fmt::format("its travel is from {:g} m to {:g} m", axis.travel_from_m, axis.travel_to_m));
+}
+
+// The places along the path, at each tick; 0 along an axis without a path.
+Result<std::vector<double>> places_along(const DeviceAxis& axis, const FingerPath* path, double rate_hz,
+                                         std::size_t ticks) {
+  if (path == nullptr) return std::vector<double>(ticks);
+  auto places_m = positions_along(*path, rate_hz, ticks);
+  TACTO_TRY(check_travel(axis, places_m, rate_hz));
+  return places_m;
+}
+
+void count_limits(PlaneRendering& rendering, std::uint32_t flags) {
+  rendering.peak_limited += (flags & wire::kTickAmplitudeLimited) != 0;
+  rendering.slew_limited += (flags & wire::kTickSlewLimited) != 0;
+  rendering.rms_limited += (flags & wire::kTickEnergyLimited) != 0;
+}
+
+// What moves the axes: the path, or a hand that the path moves.
+class Motion {
+ public:
+  Motion(const Device& device, const std::optional<schema::Hand>& hand, double rate_hz,
+         std::vector<std::vector<double>> path_m)
+      : device_(device), path_m_(std::move(path_m)) {
+    if (!hand) return;
+    body_.emplace(device, *hand, 1 / rate_hz);
+    body_->rest_at(path_at(0));
+  }
+  void read(std::size_t tick, PlaneRendering& rendering) const {
+    for (std::size_t i = 0; i < path_m_.size(); ++i) {
+      PlaneAxisRun& axis = rendering.axes[i];
+      axis.place_m.push_back(body_ ? body_->place_m(i) : path_m_[i][tick]);
+      if (body_) axis.hand_m.push_back(path_m_[i][tick]);
+      axis.counts.push_back(firmware_host::encoder_count(device_.axes[i], axis.place_m.back()));
+    }
+  }
+  void move_on(std::size_t tick, const std::vector<double>& force_n) {
+    if (body_) body_->step(force_n, path_at(tick), path_at(tick + 1));
+  }
+
+ private:
+  // After the end the hand stays.
+  std::vector<double> path_at(std::size_t tick) const {
+    std::vector<double> places_m;
+    for (const auto& path_m : path_m_) places_m.push_back(path_m[std::min(tick, path_m.size() - 1)]);
+    return places_m;
+  }
+  const Device& device_;
+  std::vector<std::vector<double>> path_m_;
+  std::optional<firmware_host::PlanarBody> body_;
+};
+
+void run_kernel(PlaneRendering& rendering, const PreparedScene& scene, const core::ForceSetup& setup,
+                const Device& device, Motion motion) {
+  core::SceneKernel kernel;
+  kernel.set(scene.view(), setup);
+  ExactScene exact(scene, device, rendering.rate_hz);
+  std::vector<std::int32_t> counts(device.axes.size());
+  std::vector<double> force_n(device.axes.size());
+  for (std::size_t tick = 0; tick < rendering.time_s.size(); ++tick) {
+    motion.read(tick, rendering);
+    for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = rendering.axes[i].counts[tick];
+    const core::ForceOutput output = kernel.tick(counts.data(), true);
+    const ExactScene::Output reference = exact.tick(counts);
+    count_limits(rendering, output.flags);
+    double square = 0;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      force_n[i] = output.force_n[i];
+      rendering.axes[i].force_n.push_back(output.force_n[i]);
+      square += force_n[i] * force_n[i];
+      rendering.largest_rounding_n =
+          std::max(rendering.largest_rounding_n, std::abs(force_n[i] - reference.force_n[i]));
+    }
+    rendering.largest_force_n = std::max(rendering.largest_force_n, std::sqrt(square));
+    motion.move_on(tick, force_n);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> plane_axes_of(const Device& device) {
+  std::vector<std::string> names;
+  for (const DeviceAxis& axis : device.axes)
+    if (axis.name != "z") names.push_back(axis.name);
+  return names;
+}
+
+Result<PlaneRendering> render_plane(const PreparedScene& scene, const Device& device,
+                                    std::optional<double> rate_hz, const std::vector<FingerPath>& paths,
+                                    const std::optional<schema::Hand>& hand) {
+  const auto setup = force_setup_of(device, rate_hz);
+  TACTO_TRY(setup);
+  PlaneRendering rendering;
+  rendering.rate_hz = rate_hz.value_or(device.rates_hz.back());
+  const double ticks = std::floor(paths.front().duration_s() * rendering.rate_hz + 1e-6) + 1;
+  if (ticks > kMostTicks)
+    return fail(ErrorKind::unsuitable,
+                fmt::format("the path has {:.3g} ticks at {:g} Hz", ticks, rendering.rate_hz), "path",
+                fmt::format("at most {:g} are rendered", kMostTicks));
+  for (double tick = 0; tick < ticks; ++tick)
+    rendering.time_s.push_back(paths.front().time_s.front() + tick / rendering.rate_hz);
+  std::vector<std::vector<double>> path_m;
+  auto path = paths.begin();
+  for (const DeviceAxis& axis : device.axes) {
+    auto places_m =
+        places_along(axis, axis.name == "z" ? nullptr : &*path++, rendering.rate_hz, rendering.time_s.size());
+    TACTO_TRY(places_m);
+    path_m.push_back(std::move(*places_m));
+    rendering.axes.push_back({axis.name, {}, {}, {}, {}});
+  }
+  run_kernel(rendering, scene, *setup, device, Motion(device, hand, rendering.rate_hz, std::move(path_m)));
+  return rendering;
+}
+
+}  // namespace tacto::playback

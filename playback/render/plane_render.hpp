@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The forces of a scene along the path of a hand, offline, by the kernel that also runs in real time.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/device/device.hpp"
+#include "data-schema/device/hand.hpp"
+#include "playback/model/finger_path.hpp"
+#include "playback/prepare/scene/prepared_scene.hpp"
+
+namespace tacto::playback {
+
+/// One axis of the device: counts and forces of all ticks.
+struct PlaneAxisRun {
+  std::string name;
+  std::vector<std::int32_t> counts;
+  std::vector<double> place_m;  ///< of the axis
+  std::vector<double> hand_m;   ///< to which the person moves the hand; empty if the path is imposed
+  std::vector<float> force_n;   ///< on the hand
+};
+
+struct PlaneRendering {
+  double rate_hz = 0;
+  std::vector<double> time_s;  ///< of the path, at each tick
+  std::vector<PlaneAxisRun> axes;
+  std::size_t peak_limited = 0, slew_limited = 0, rms_limited = 0;  ///< ticks
+  double largest_rounding_n = 0;  ///< greatest difference to the kernel in double precision
+  double largest_force_n = 0;     ///< of the vector
+};
+
+/// The names of the device's axes in the plane: those of which the path has a column.
+std::vector<std::string> plane_axes_of(const schema::Device& device);
+
+/// Each tick reads the counts (place / encoder step, rounded to the nearest) and gives the force, from the
+/// first tick on without a ramp. Without a hand the axes move along `paths` (one per axis of
+/// plane_axes_of()), whatever the force. With a hand, `paths` are the places to which the person moves it,
+/// linear between ticks, and the axes move by firmware_host::PlanarBody. Errors: by force_setup_of();
+/// unsuitable, if a path leaves the travel, or has over 2^26 ticks.
+schema::Result<PlaneRendering> render_plane(const PreparedScene& scene, const schema::Device& device,
+                                            std::optional<double> rate_hz,
+                                            const std::vector<FingerPath>& paths,
+                                            const std::optional<schema::Hand>& hand = std::nullopt);
+
+}  // namespace tacto::playback

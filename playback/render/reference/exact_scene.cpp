@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/render/reference/exact_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "firmware-host/core/scene/edge_speed.hpp"
+#include "firmware-host/core/scene/force_limiter.hpp"
+
+namespace tacto::playback {
+namespace {
+
+double norm(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+ExactScene::ExactScene(const PreparedScene& scene, const schema::Device& device, double rate_hz)
+    : scene_(scene),
+      view_(scene.view()),
+      device_(device),
+      rate_hz_(rate_hz),
+      rms_{device.continuous_force_n, 0, device.continuous_force_n},
+      last_n_(device.axes.size()) {
+  for (const schema::DeviceAxis& axis : device.axes)
+    axis_rms_.push_back({axis.continuous_force_n, 0, axis.continuous_force_n});
+}
+
+// `edges` begins with the oldest.
+double ExactScene::track(Speed& speed, std::int64_t count) {
+  auto& edges = speed.edges;
+  if (edges.empty()) {
+    edges.push_back({tick_, count});
+    speed.count = count;
+    return 0;
+  }
+  const std::int64_t moved = count - speed.count;
+  if (moved == 0) {
+    const double since = static_cast<double>(tick_ - edges.back().tick);
+    if (since >= core::kLongestSpeedTicks) {
+      edges = {{tick_ - core::kLongestSpeedTicks, count}};
+      speed.way = 0;
+      return speed.per_tick = 0;
+    }
+    return speed.per_tick = std::clamp(speed.per_tick, -1 / since, 1 / since);
+  }
+  const int way = moved > 0 ? 1 : -1;
+  const bool turned = way == -speed.way;
+  if (turned) edges = {{tick_ - 1, speed.count}};
+  speed.count = count;
+  speed.way = way;
+  if (turned && std::abs(moved) == 1) {
+    edges = {{tick_, count}};
+    return speed.per_tick = 0;
+  }
+  edges.push_back({tick_, count});
+  if (edges.size() > core::kSpeedEdges) edges.pop_front();
+  // The counts over time between these edges: each stays until the tick before the next.
+  std::vector<Edge> points;
+  speed.per_tick = static_cast<double>(count - edges[edges.size() - 2].count);
+  for (std::size_t i = edges.size() - 1; i-- > 0;) {
+    points.push_back({edges[i + 1].tick - 1, edges[i].count});
+    const std::int64_t ticks = tick_ - edges[i].tick, counts = count - edges[i].count;
+    const bool straight = std::ranges::all_of(points, [&](const Edge& point) {
+      return std::abs((count - point.count) * ticks - counts * (tick_ - point.tick)) <= ticks;
+    });
+    if (ticks > core::kLongestSpeedTicks || !straight) break;
+    speed.per_tick = static_cast<double>(counts) / static_cast<double>(ticks);
+    points.push_back(edges[i]);
+  }
+  return speed.per_tick;
+}
+
+ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vector speed) const {
+  Vector sum;
+  bool covered = false;
+  for (std::size_t i = 0; i < scene_.patches.size(); ++i) {
+    const schema::Patch& patch = scene_.patches[i];
+    const bool there = core::within_patch(view_.patches[i], core::place_in_patch(view_.patches[i], single));
+    const bool adds = patch.combine == schema::PatchCombine::add;
+    if (!there || (covered && !adds)) continue;
+    if (!adds) covered = true;
+    const double angle = patch.angle_deg * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+    for (const schema::ForceLayer& layer : patch.layers)
+      layer.visit(
+          [&](const schema::SpringLayer& spring) {
+            const double u = spring.centre_x_m.value, v = spring.centre_y_m.value;
+            const double k = spring.stiffness_n_per_m.value;
+            sum.x -= k * (place.x - (patch.x_m + c * u - s * v));
+            sum.y -= k * (place.y - (patch.y_m + s * u + c * v));
+          },
+          [&](const schema::DamperLayer& damper) {
+            sum.x -= damper.damping_n_s_per_m.value * speed.x;
+            sum.y -= damper.damping_n_s_per_m.value * speed.y;
+          },
+          [](const auto& /*not prepared*/) {});
+  }
+  return sum;
+}
+
+double ExactScene::rms_limited(Rms& rms, double force_n) const {
+  const double window = core::kContinuousWindowS * rate_hz_;
+  rms.mean_square += (force_n * force_n - rms.mean_square) / window;
+  const double square = std::max(rms.mean_square, rms.limit_n * rms.limit_n);
+  rms.root = 0.5 * (rms.root + square / rms.root);
+  return force_n * rms.limit_n / rms.root;
+}
+
+std::vector<double> ExactScene::limited(std::vector<double> force_n) {
+  for (std::size_t i = 0; i < force_n.size(); ++i)
+    force_n[i] = std::clamp(force_n[i], -device_.axes[i].peak_force_n, device_.axes[i].peak_force_n);
+  const double peak = std::min(1.0, device_.peak_force_n / std::max(norm(force_n), 1e-300));
+  for (double& force : force_n) force *= peak;
+  const double length = norm(force_n), limited = rms_limited(rms_, length);
+  const double share = length > 0 ? limited / length : 1;
+  for (std::size_t i = 0; i < force_n.size(); ++i) {
+    const double of_axis = rms_limited(axis_rms_[i], force_n[i]), of_vector = share * force_n[i];
+    force_n[i] = std::abs(of_axis) < std::abs(of_vector) ? of_axis : of_vector;
+  }
+  const double step_n = device_.slew_n_per_s / rate_hz_;
+  double farthest = 0;
+  for (std::size_t i = 0; i < force_n.size(); ++i)
+    farthest = std::max(farthest, std::abs(force_n[i] - last_n_[i]));
+  const double part = farthest > step_n ? step_n / farthest : 1;
+  for (std::size_t i = 0; i < force_n.size(); ++i) last_n_[i] += part * (force_n[i] - last_n_[i]);
+  return last_n_;
+}
+
+ExactScene::Output ExactScene::tick(const std::vector<std::int32_t>& counts) {
+  ++tick_;
+  Vector place_m, speed_mps;
+  core::PlaneVector single_m;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const schema::DeviceAxis& axis = device_.axes[i];
+    if (axis.name == "z") continue;
+    const bool x = axis.name == "x";
+    (x ? place_m.x : place_m.y) = counts[i] * axis.encoder_step_m;
+    (x ? single_m.x : single_m.y) = static_cast<float>(counts[i]) * static_cast<float>(axis.encoder_step_m);
+    (x ? speed_mps.x : speed_mps.y) = track(speeds_[x ? 0 : 1], counts[i]) * axis.encoder_step_m * rate_hz_;
+  }
+  const Vector sum = force(place_m, single_m, speed_mps);
+  Output output;
+  for (const schema::DeviceAxis& axis : device_.axes)
+    output.unlimited_n.push_back(axis.name == "x" ? sum.x : axis.name == "y" ? sum.y : 0);
+  output.force_n = limited(output.unlimited_n);
+  return output;
+}
+
+}  // namespace tacto::playback

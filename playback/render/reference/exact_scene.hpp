@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scene's kernel in double precision: the reference for the rounding error of single precision.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "data-schema/device/device.hpp"
+#include "playback/prepare/scene/prepared_scene.hpp"
+
+namespace tacto::playback {
+
+/// The formulas of core::SceneKernel, with the full force from the first tick, implemented from those
+/// formulas and not from its source: numbers as in the scene's file, every line of the speed's window tested
+/// against every count. What is a free choice of the kernel is the same here: to which patch a place within
+/// rounding of a border belongs, the window of the RMS and one Newton step per tick for its root. Slow; not
+/// for the tick.
+class ExactScene {
+ public:
+  /// Keeps references to both.
+  ExactScene(const PreparedScene& scene, const schema::Device& device, double rate_hz);
+
+  /// Forces of the device's axes, before and after the limits.
+  struct Output {
+    std::vector<double> unlimited_n, force_n;
+  };
+  Output tick(const std::vector<std::int32_t>& counts);
+
+ private:
+  struct Vector {
+    double x = 0, y = 0;
+  };
+  struct Edge {
+    std::int64_t tick, count;
+  };
+  struct Speed {
+    std::deque<Edge> edges;
+    std::int64_t count = 0;
+    int way = 0;
+    double per_tick = 0;
+  };
+  double track(Speed& speed, std::int64_t count);
+  Vector force(Vector place, core::PlaneVector single, Vector speed) const;
+  std::vector<double> limited(std::vector<double> force_n);
+  struct Rms {
+    double limit_n = 0, mean_square = 0, root = 0;
+  };
+  double rms_limited(Rms& rms, double force_n) const;
+
+  const PreparedScene& scene_;
+  core::SceneView view_;
+  const schema::Device& device_;
+  double rate_hz_;
+  std::int64_t tick_ = 0;
+  std::array<Speed, 2> speeds_;
+  std::vector<Rms> axis_rms_;
+  Rms rms_;
+  std::vector<double> last_n_;
+};
+
+}  // namespace tacto::playback

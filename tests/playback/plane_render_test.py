@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`render` and `explain` with --device on the command line: forces against NumPy and SciPy, what is refused, what is warned of."""
+import json
+import pathlib
+import sys
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.signal import cont2discrete
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "end-to-end"))
+import tacto
+from tacto import run, run_json
+
+USAGE, NOT_FOUND, MALFORMED, UNSUITABLE = 2, 3, 4, 5
+STEP_M, RATE_HZ = 1e-5, 4000  # of sandpaper-1990
+KNOTS = {"time_s": np.linspace(0, 2, 21)}
+KNOTS["x_m"] = 0.04 * np.sin(2 * np.pi * 0.7 * KNOTS["time_s"])
+KNOTS["y_m"] = 0.03 * np.cos(2 * np.pi * 0.5 * KNOTS["time_s"])
+
+
+def patch(name="a", x_m=0.0, y_m=0.0, width_m=0.2, height_m=0.2, layers=(), **members):
+    return {"name": name, "place": {"x_m": x_m, "y_m": y_m}, "size": {"width_m": width_m, "height_m": height_m}, "layers": list(layers), **members}
+
+
+def spring(stiffness, x_m=0.0, y_m=0.0):
+    return {"type": "spring", "stiffness_n_per_m": stiffness, "centre_x_m": x_m, "centre_y_m": y_m}
+
+
+def damper(damping):
+    return {"type": "damper", "damping_n_s_per_m": damping}
+
+
+def write_scene(name, *patches, **members):
+    pathlib.Path(f"{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.1", "patches": list(patches), **members}))
+
+
+def write_path(name, columns):
+    rows = np.column_stack(list(columns.values()))
+    np.savetxt(name, rows, delimiter=",", header=",".join(columns), comments="")
+
+
+def render(scene, *options, **how):
+    return run("render", scene, "--path", "path.csv", "--device", "sandpaper-1990", "-o", "f.csv", "--force", *options, **how)
+
+
+def forces():
+    table = np.genfromtxt("f.csv", delimiter=",", names=True)
+    assert table.dtype.names == ("time_s", "x_m", "y_m", "force_x_n", "force_y_n"), table.dtype.names
+    return table
+
+
+def counted(place):
+    return np.rint(place / STEP_M) * STEP_M
+
+
+def springs_are_numpys():
+    angle = np.deg2rad(30)
+    write_scene("bench", patch(x_m=0.01, angle_deg=30, layers=[spring(50, 0.02, -0.01), spring(15)]))
+    write_path("path.csv", KNOTS)
+    report = json.loads(render("bench.scene.json", "--json")[0])
+    table = forces()
+    assert len(table) == report["ticks"] == 2 * RATE_HZ + 1
+    for axis in "xy":
+        # The path between its knots is SciPy's PCHIP: 1e-12 is rounding of 0.05 m.
+        along = PchipInterpolator(KNOTS["time_s"], KNOTS[f"{axis}_m"])(table["time_s"])
+        assert np.abs(along - table[f"{axis}_m"]).max() < 1e-12
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    place = np.array([counted(table["x_m"]), counted(table["y_m"])])
+    local = turn.T @ (place - np.array([[0.01], [0]]))
+    force = turn @ (-50 * (local - np.array([[0.02], [-0.01]])) - 15 * local)
+    found = np.array([table["force_x_n"], table["force_y_n"]])
+    worst = np.abs(force - found).max()
+    print(f"  springs: within {worst:.2g} N of NumPy's, of {np.abs(force).max():.3g} N")
+    assert worst < 65 * 0.15 * 3e-7, worst  # of the sum of the absolute forces, as SceneKernel states
+    assert report["peak_limited_ticks"] == report["slew_limited_ticks"] == report["rms_limited_ticks"] == 0, report
+    assert report["largest_rounding_n"] < 65 * 0.15 * 3e-7, report
+
+
+def dampers_follow_the_path():
+    write_scene("soup", patch(layers=[damper(20)]))
+    write_path("path.csv", KNOTS)
+    render("soup.scene.json")
+    table = forces()
+    for axis in "xy":
+        speed = PchipInterpolator(KNOTS["time_s"], KNOTS[f"{axis}_m"]).derivative()(table["time_s"])
+        force = table[f"force_{axis}_n"][40:]
+        error = np.abs(force + 20 * speed[40:])
+        plain = np.abs(-20 * np.diff(counted(table[f"{axis}_m"])) * RATE_HZ + 20 * speed[1:])
+        # One count per tick is 0.04 m/s: 0.8 N. The window of 16 edges leaves a tenth of it.
+        print(f"  damper along {axis}: RMS error {np.sqrt(np.mean(error**2)):.2g} N, of a difference of two ticks {np.sqrt(np.mean(plain**2)):.2g} N")
+        assert np.sqrt(np.mean(error**2)) < 0.25 * np.sqrt(np.mean(plain**2))
+
+
+def what_a_device_cannot_do_is_warned_of():
+    write_path("path.csv", KNOTS)
+    write_scene("far", patch(x_m=0.1, width_m=0.1, layers=[damper(1)]))
+    assert "outside the travel" in render("far.scene.json")[1]
+    write_scene("stiff", patch(layers=[spring(5000)]))
+    out, err = render("stiff.scene.json")
+    assert "exceed the peak force" in err and "%" in err, err
+    table = forces()
+    assert np.hypot(table["force_x_n"], table["force_y_n"]).max() <= 20 * (1 + 1e-6)
+    write_scene("both", patch(layers=[damper(1)]), layers=[{"type": "texture", "texture": "oak", "at_m": 0, "gain_m_per_n": 0.001}])
+    assert "left out" in render("both.scene.json")[1]
+
+
+def wrong_uses_are_refused():
+    write_path("path.csv", KNOTS)
+    write_scene("bench", patch(layers=[spring(10)]))
+    write_scene("grooves", patch(layers=[spring(10), {"type": "grooves", "profile": "sine", "period_m": 0.001, "depth_m": 1e-4, "kappa_n": 1}]))
+    tray = {"kind": "scene", "version": "1.0", "layers": [{"type": "texture", "texture": "oak", "at_m": 0, "gain_m_per_n": 0.001}]}
+    pathlib.Path("tray.scene.json").write_text(json.dumps(tray))
+    arguments = {"scene": "bench.scene.json", "--path": "path.csv", "--device": "sandpaper-1990", "-o": "out.csv"}
+
+    def refused(code, *words, **changed):
+        given = {**arguments, **{("scene" if key == "scene" else f"--{key}"): value for key, value in changed.items()}}
+        options = [part for pair in list(given.items())[1:] if pair[1] is not None for part in pair]
+        _, err = run("render", given["scene"], *options, code=code)
+        assert all(word in err for word in words) and not pathlib.Path("out.csv").exists(), (words, err)
+
+    refused(UNSUITABLE, "grooves.scene.json#/patches/0/layers/1/type", "spring", "damper", scene="grooves.scene.json")
+    refused(UNSUITABLE, "no force patches", scene="tray.scene.json")
+    refused(UNSUITABLE, "texture", scene="oak")
+    refused(NOT_FOUND, "sandpaper-1990", device="nobody")
+    refused(UNSUITABLE, "--rate", "4000", rate="333Hz")
+    refused(USAGE, "--gain", gain="1mm/N")
+    refused(USAGE, "--transducer", transducer="wiertlewski2011")
+    refused(USAGE, "--transducer or --device", device=None)
+    refused(USAGE, "--hand", device=None, transducer="wiertlewski2011", hand="minsky-radial")
+    refused(NOT_FOUND, "minsky-radial", hand="nobody")
+    write_path("line.csv", {"time_s": KNOTS["time_s"], "x_m": KNOTS["x_m"]})
+    refused(MALFORMED, "y_m", path="line.csv")
+    write_path("wide.csv", {**KNOTS, "x_m": 10 * KNOTS["x_m"]})
+    refused(UNSUITABLE, "travel", path="wide.csv")
+    pathlib.Path("mine.csv").write_text("name,age\n")
+    run("render", "bench.scene.json", "--path", "path.csv", "--device", "sandpaper-1990", "-o", "mine.csv", "--force", code=USAGE)
+    assert pathlib.Path("mine.csv").read_text() == "name,age\n"
+
+
+def explain_lists_what_is_built():
+    write_scene("one", patch(layers=[spring(10)]))
+    one = run_json("explain", "one.scene.json", "--device", "sandpaper-1990")
+    assert one["fits"] is True and [row["type"] for row in one["layers"]] == ["spring"], one
+    assert one["block_bytes"] + one["kernel_bytes"] < 4096 and one["layers"][0]["peak_force_at_m"] == 2, one
+    assert [row["part"] for row in one["left_out"]] == ["speed of the hand"], one
+    write_scene("two", patch(layers=[spring(10), damper(4)]))
+    two = run_json("explain", "two.scene.json", "--device", "sandpaper-1990", "--rate", "250Hz")
+    assert two["rate_hz"] == 250 and "left_out" not in two and two["layers"][1]["peak_force_at_mps"] == 5, two
+    assert two["block_bytes"] == one["block_bytes"] + two["layers"][1]["bytes"], (one, two)
+    assert run_json("explain", "two.scene.json", "--device", "sandpaper-1990", "--device-memory", "10")["fits"] is False
+
+
+def a_device_of_one_axis_moves_on_a_line():
+    axis = {"name": "x", "mass_kg": 0.1, "viscous_n_s_per_m": 1, "coulomb_n": 0, "encoder_step_m": STEP_M, "travel_m": [-0.1, 0.1], "peak_force_n": 20, "continuous_force_n": 20}
+    made = {"kind": "device", "version": "1.0", "name": "line", "axes": [axis], "peak_force_n": 20, "continuous_force_n": 20, "slew_n_per_s": 20000,
+            "delay_s": 0, "rates_hz": [1000]}
+    pathlib.Path("line.device.json").write_text(json.dumps(made))
+    pathlib.Path("up.device.json").write_text(json.dumps({**made, "axes": [{**axis, "name": "z"}]}))
+    write_scene("bench", patch(angle_deg=45, layers=[spring(100, 0.01, 0)]))
+    write_path("line.csv", {"time_s": KNOTS["time_s"], "x_m": KNOTS["x_m"]})
+    _, err = run("render", "bench.scene.json", "--path", "line.csv", "--device", "line", "-o", "line_f.csv")
+    assert "no axis y" in err, err
+    table = np.genfromtxt("line_f.csv", delimiter=",", names=True)
+    assert table.dtype.names == ("time_s", "x_m", "force_x_n")
+    assert np.abs(table["force_x_n"] + 100 * (counted(table["x_m"]) - 0.01 * np.sqrt(0.5))).max() < 1e-5
+    _, err = run("render", "bench.scene.json", "--path", "line.csv", "--device", "up", "-o", "up.csv", code=UNSUITABLE)
+    assert "axis" in err, err
+
+
+def write_line(name, mass=0.1, viscous=1.17, coulomb=0.0, step=1e-9, rate=1000, delay=0.0):
+    """A device of one axis that no limit disturbs."""
+    axis = {"name": "x", "mass_kg": mass, "viscous_n_s_per_m": viscous, "coulomb_n": coulomb, "encoder_step_m": step, "travel_m": [-0.1, 0.1],
+            "peak_force_n": 200, "continuous_force_n": 200}
+    made = {"kind": "device", "version": "1.0", "name": name, "axes": [axis], "peak_force_n": 200, "continuous_force_n": 200, "slew_n_per_s": 1e6,
+            "delay_s": delay, "rates_hz": [rate]}
+    pathlib.Path(f"{name}.device.json").write_text(json.dumps(made))
+
+
+def write_hand(name, mass, damping, stiffness):
+    pathlib.Path(f"{name}.hand.json").write_text(json.dumps({"kind": "hand", "version": "1.0", "name": name, "mass_kg": mass, "damping_n_s_per_m": damping,
+                                                             "stiffness_n_per_m": stiffness, "source": "test"}))
+
+
+def sampled_loop(place, rate, mass, viscous, stiffness, spring_k, damper_b, late_ticks):
+    """The same loop by scipy.signal.cont2discrete: x, v and the hand's place, which moves evenly between ticks."""
+    # State x, v, p; inputs force and p'. Zero-order hold of both is exact.
+    a = np.array([[0, 1, 0], [-stiffness / mass, -viscous / mass, stiffness / mass], [0, 0, 0]])
+    b = np.array([[0, 0], [1 / mass, 0], [0, 1]])
+    ad, bd, *_ = cont2discrete((a, b, np.eye(3), np.zeros((3, 2))), 1 / rate, method="zoh")
+    state, before, found = np.array([place[0], 0, place[0]]), place[0], []
+    forces = [0.0] * late_ticks
+    for now, following in zip(place, np.append(place[1:], place[-1])):
+        x = state[0]
+        found.append(x)
+        forces.append(-spring_k * x - damper_b * (x - before) * rate)
+        before = x
+        state = ad @ state + bd @ np.array([forces[-1 - late_ticks], (following - now) * rate])
+    return np.array(found)
+
+
+def a_hand_on_a_spring_and_a_damper_is_scipys_loop():
+    rate, knots = 1000, {"time_s": np.linspace(0, 3, 13)}
+    knots["x_m"] = np.array([0.02, 0.02, -0.02, 0.02, -0.02, -0.02, 0.02, 0.01, -0.01, 0.02, 0.02, -0.02, 0.0])
+    write_path("swing.csv", knots)
+    write_hand("mine", 0.8, 3, 400)
+    write_scene("bench", patch(layers=[spring(300), damper(2)]))
+    for late_ticks in (0, 1):
+        write_line("line", delay=late_ticks / rate)
+        run("render", "bench.scene.json", "--path", "swing.csv", "--device", "line", "--hand", "mine", "-o", f"swing{late_ticks}.csv")
+        table = np.genfromtxt(f"swing{late_ticks}.csv", delimiter=",", names=True)
+        found = sampled_loop(table["hand_x_m"], rate, 0.9, 4.17, 400, 300, 2, late_ticks)
+        worst, swing = np.abs(found - table["x_m"]).max(), np.ptp(table["x_m"])
+        print(f"  a hand on a spring and a damper, {late_ticks} ticks late: within {worst:.2g} m of SciPy's loop, of a swing of {1e3 * swing:.3g} mm")
+        # 1e-6 of 20 mm: the encoder's step is 5e-8 of it, single precision 6e-8 of each force.
+        assert swing > 0.02 and worst < 1e-6 * 0.02, (worst, swing)
+
+
+def a_stiff_spring_is_stable_at_1_khz_and_not_at_100_hz():
+    # Minsky 1990: 2773 N/m with 1.17 + 5 N s/m. With the hand's own spring continuous, the greatest period is 4.50 ms.
+    write_path("still.csv", {"time_s": [0, 2, 4], "x_m": [0.001, 0.001, 0.001]})
+    write_hand("mine", 0.7, 5, 400)
+    write_scene("bench", patch(layers=[spring(2773)]))
+    swings = {}
+    for rate in (1000, 100):
+        write_line("line", step=1e-7, rate=rate)
+        run("render", "bench.scene.json", "--path", "still.csv", "--device", "line", "--hand", "mine", "-o", f"at{rate}.csv")
+        place = np.genfromtxt(f"at{rate}.csv", delimiter=",", names=True)["x_m"]
+        swings[rate] = np.ptp(place[len(place) // 2:])
+    # At 1 kHz 6.2 N s/m less K T / 2 are left on 0.8 kg: e^(-3 t), 2.5 um after 2 s.
+    assert swings[1000] < 1e-5 and swings[100] > 0.01, swings
+
+
+def coulomb_friction_holds_the_hand():
+    write_path("pull.csv", {"time_s": [0, 1, 2], "x_m": [0, 0, 0.01]})
+    write_hand("mine", 0.5, 3, 400)
+    write_scene("bench", patch(layers=[damper(1)]))
+    write_line("rough", coulomb=2, step=1e-6)
+    run("render", "bench.scene.json", "--path", "pull.csv", "--device", "rough", "--hand", "mine", "-o", "pull.csv.out")
+    table = np.genfromtxt("pull.csv.out", delimiter=",", names=True)
+    # 400 N/m and 2 N: it moves when the hand is 5 mm away, and never comes nearer than that on the way.
+    assert np.all(table["x_m"][table["hand_x_m"] < 0.00499] == 0) and table["x_m"][-1] > 0.002
+
+
+if __name__ == "__main__":
+    for test in (springs_are_numpys, dampers_follow_the_path, what_a_device_cannot_do_is_warned_of, wrong_uses_are_refused, explain_lists_what_is_built,
+                 a_device_of_one_axis_moves_on_a_line, a_hand_on_a_spring_and_a_damper_is_scipys_loop, a_stiff_spring_is_stable_at_1_khz_and_not_at_100_hz,
+                 coulomb_friction_holds_the_hand):
+        tacto.in_folder(test)

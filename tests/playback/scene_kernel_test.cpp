@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The kernel of force scenes: against closed forms and double precision, its limits, its speed, and blocks
+// that were cut, changed or made to harm.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "firmware-host/core/scene/scene_kernel.hpp"
+#include "playback/prepare/scene/scene_device.hpp"
+#include "playback/render/plane_render.hpp"
+#include "playback/render/reference/exact_scene.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::Patch;
+using schema::PatchCombine;
+
+static_assert(noexcept(std::declval<core::SceneKernel&>().tick(nullptr, true)));
+static_assert(noexcept(core::read_scene_block(nullptr, 0, std::declval<core::SceneView&>())));
+
+schema::Device sandpaper() {
+  return *schema::read_device("sandpaper-1990");
+}
+
+// Limits so high that none is active.
+schema::Device unlimited(double encoder_step_m = 1e-5) {
+  schema::Device device = sandpaper();
+  for (schema::DeviceAxis& axis : device.axes) {
+    axis.peak_force_n = axis.continuous_force_n = 1e9;
+    axis.encoder_step_m = encoder_step_m;
+  }
+  device.peak_force_n = device.continuous_force_n = device.slew_n_per_s = 1e9;
+  device.slew_n_per_s = 1e15;
+  return device;
+}
+
+schema::ForceLayer spring(double stiffness_n_per_m, double centre_x_m = 0, double centre_y_m = 0) {
+  return schema::SpringLayer{{stiffness_n_per_m}, {centre_x_m}, {centre_y_m}, ""};
+}
+
+schema::ForceLayer damper(double damping_n_s_per_m) {
+  return schema::DamperLayer{{damping_n_s_per_m}, ""};
+}
+
+Patch patch(const std::string& name, std::vector<schema::ForceLayer> layers) {
+  Patch made;
+  made.name = name;
+  made.width_m = made.height_m = 0.2;
+  made.layers = std::move(layers);
+  return made;
+}
+
+PreparedScene prepared(std::vector<Patch> patches) {
+  schema::Scene scene;
+  scene.patches = std::move(patches);
+  auto made = prepare_scene(scene, "s.scene.json");
+  EXPECT_TRUE(made) << message(made.error());
+  return made ? *made : PreparedScene{};
+}
+
+struct OnDevice {
+  schema::Device device;
+  PreparedScene scene;
+  core::SceneKernel kernel;
+
+  OnDevice(const schema::Device& on, std::vector<Patch> patches)
+      : device(on), scene(prepared(std::move(patches))) {
+    kernel.set(scene.view(), *force_setup_of(device, 1000));
+  }
+  core::ForceOutput at(double x_m, double y_m) {
+    const std::int32_t counts[2] = {
+        static_cast<std::int32_t>(std::lround(x_m / device.axes[0].encoder_step_m)),
+        static_cast<std::int32_t>(std::lround(y_m / device.axes[1].encoder_step_m))};
+    return kernel.tick(counts, true);
+  }
+};
+
+TEST(SceneKernel, ASpringPullsToItsCentreInTheAxesOfThePatch) {
+  Patch turned = patch("turned", {spring(100, 0.01, 0)});
+  turned.x_m = 0.02;
+  turned.angle_deg = 90;  // its x axis is the plane's y axis
+  OnDevice on(unlimited(), {turned});
+  const core::ForceOutput output = on.at(0.03, 0.02);
+  EXPECT_NEAR(output.force_n[0], -100 * 0.01, 1e-6);  // the centre is at (0.02, 0.01)
+  EXPECT_NEAR(output.force_n[1], -100 * 0.01, 1e-6);
+}
+
+TEST(SceneKernel, TheTopmostPatchActsAndThoseThatAdd) {
+  Patch low = patch("low", {spring(1)}), high = patch("high", {spring(10)}),
+        more = patch("more", {spring(100)});
+  low.order = 1;
+  high.order = 2;
+  high.width_m = 0.1;
+  more.combine = PatchCombine::add;
+  for (const double order : {0.0, 3.0}) {
+    more.order = order;  // above or below: it acts
+    OnDevice on(unlimited(), {high, more, low});
+    EXPECT_NEAR(on.at(0.04, 0).force_n[0], -110 * 0.04, 1e-5);
+    EXPECT_NEAR(on.at(0.08, 0).force_n[0], -101 * 0.08, 1e-5);
+    EXPECT_EQ(on.at(0.11, 0).force_n[0], 0);
+  }
+  low.order = 2;  // of equal orders the later patch
+  OnDevice later(unlimited(), {high, low});
+  EXPECT_NEAR(later.at(0.04, 0).force_n[0], -0.04, 1e-7);
+  OnDevice other(unlimited(), {low, high});
+  EXPECT_NEAR(other.at(0.04, 0).force_n[0], -0.4, 1e-6);
+}
+
+TEST(SceneKernel, OnlyADamperNeedsTheSpeed) {
+  EXPECT_FALSE(prepared({patch("a", {spring(1)})}).view().needs_speed);
+  EXPECT_TRUE(prepared({patch("a", {spring(1), damper(1)})}).view().needs_speed);
+}
+
+// Layers, patches and numbers at random, a hand that wanders, rests and jumps: the differences are those of
+// single precision. The bound is relative to the sum of the absolute forces of one layer of each patch.
+TEST(SceneKernel, SinglePrecisionIsTheReference) {
+  std::mt19937_64 random(1990);
+  const auto draw = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  double worst = 0;
+  for (int scene = 0; scene < 30; ++scene) {
+    std::vector<Patch> patches;
+    double scale = 0;
+    for (int i = 0; i < 4; ++i) {
+      const double k = draw(0, 3000), b = draw(0, 10);
+      patches.push_back(
+          patch("p" + std::to_string(i), {spring(k, draw(-0.05, 0.05), draw(-0.05, 0.05)), damper(b)}));
+      patches.back().x_m = draw(-0.05, 0.05);
+      patches.back().angle_deg = draw(-360, 360);
+      patches.back().order = draw(-1, 1);
+      patches.back().combine = i % 2 == 0 ? PatchCombine::add : PatchCombine::topmost;
+      scale += k * 0.2 + b * 1;  // at most 0.2 m and about 1 m/s
+    }
+    OnDevice on(unlimited(), patches);
+    ExactScene exact(on.scene, on.device, 1000);
+    std::vector<std::int32_t> counts(2);
+    double speed[2] = {};
+    for (int tick = 0; tick < 3000; ++tick) {
+      for (int i = 0; i < 2; ++i) {
+        speed[i] = 0.99 * speed[i] + (tick % 1000 < 700 ? draw(-3, 3) : 0);  // counts per tick
+        counts[i] = std::clamp(counts[i] + static_cast<int>(speed[i]), -10000, 10000);
+      }
+      const core::ForceOutput output = on.kernel.tick(counts.data(), true);
+      const ExactScene::Output reference = exact.tick(counts);
+      for (std::size_t i = 0; i < 2; ++i)
+        worst = std::max(worst, std::abs(output.force_n[i] - reference.force_n[i]) / scale);
+    }
+  }
+  std::printf("  scene kernel: within %.2g of the sum of the forces of all layers\n", worst);
+  EXPECT_LT(worst, 3e-7);
+}
+
+TEST(SceneKernel, TheLimitsOfTheReferenceAreTheKernels) {
+  OnDevice on(sandpaper(), {patch("stiff", {spring(3000), damper(20)})});
+  ExactScene exact(on.scene, on.device, 1000);
+  std::uint32_t flags = 0;
+  double worst = 0;
+  for (int tick = 0; tick < 4000; ++tick) {
+    const std::vector<std::int32_t> counts = {
+        static_cast<std::int32_t>(std::lround(1000 * std::sin(0.01 * tick))),
+        static_cast<std::int32_t>(std::lround(700 * std::sin(0.37 * tick)))};
+    const core::ForceOutput output = on.kernel.tick(counts.data(), true);
+    const auto reference = exact.tick(counts);
+    flags |= output.flags;
+    for (std::size_t i = 0; i < 2; ++i)
+      worst = std::max(worst, std::abs(output.force_n[i] - reference.force_n[i]));
+  }
+  EXPECT_EQ(flags, wire::kTickAmplitudeLimited | wire::kTickSlewLimited | wire::kTickEnergyLimited);
+  std::printf("  with all limits active: within %.2g N\n", worst);
+  EXPECT_LT(worst, 2e-4);  // of 20 N: rounding in the mean square over 1000 ticks
+}
+
+// Whatever the hand and the scene do: each axis, the vector, the change, and after 2 s the RMS.
+TEST(SceneKernel, NoForceIsBeyondALimit) {
+  schema::Device device = sandpaper();
+  device.axes[1].peak_force_n = 12;
+  device.peak_force_n = 16;
+  device.slew_n_per_s = 3000;
+  std::mt19937_64 random(3);
+  std::uniform_int_distribution<std::int32_t> anywhere(-10000, 10000);
+  OnDevice on(device, {patch("a", {spring(1e6), damper(1e4)})});
+  float last[2] = {};
+  for (int tick = 0; tick < 20000; ++tick) {
+    const std::int32_t hold = tick % 20;
+    static std::int32_t counts[2];
+    if (hold == 0)
+      for (std::int32_t& count : counts) count = anywhere(random);
+    const core::ForceOutput output = on.kernel.tick(counts, tick % 5000 < 4900);
+    for (int i = 0; i < 2; ++i) {
+      ASSERT_LE(std::abs(output.force_n[i]), i == 0 ? 20 : 12);
+      ASSERT_LE(std::abs(output.force_n[i] - last[i]),
+                3 * (1 + 1e-5));  // rounding of 20 N in single precision
+      last[i] = output.force_n[i];
+    }
+    ASSERT_LE(std::hypot(output.force_n[0], output.force_n[1]), 16 * (1 + 0x1p-22));
+  }
+}
+
+TEST(SceneKernel, TheRmsIsTheContinuousForceAfterItsWindow) {
+  OnDevice on(sandpaper(), {patch("a", {spring(1000)})});
+  double square = 0;
+  for (int tick = 0; tick < 5000; ++tick) {
+    const core::ForceOutput output = on.at(0.015, 0.01);  // 15 and 10 N; continuous 5 N
+    if (tick >= 4000) square += std::pow(std::hypot(output.force_n[0], output.force_n[1]), 2) / 1000;
+  }
+  EXPECT_NEAR(std::sqrt(square), 5, 0.1);  // 2 %, as of EnergyLimiter
+}
+
+TEST(SceneKernel, WithoutRaiseTheForceFallsToZeroAndRests) {
+  schema::Device device = unlimited();
+  OnDevice on(device, {patch("a", {spring(100)})});
+  core::ForceSetup setup = *force_setup_of(device, 1000);
+  setup.onset_s = setup.release_s = 0.01F;
+  on.kernel.set(on.scene.view(), setup);
+  const std::int32_t counts[2] = {1000, 0};
+  float last = 0;
+  for (int tick = 0; tick < 12; ++tick) {
+    const float force_n = on.kernel.tick(counts, true).force_n[0];
+    EXPECT_LE(force_n, last);
+    last = force_n;
+  }
+  EXPECT_NEAR(last, -1, 1e-6);
+  EXPECT_FALSE(on.kernel.at_rest());
+  for (int tick = 0; tick < 11; ++tick) last = on.kernel.tick(counts, false).force_n[0];
+  EXPECT_EQ(last, 0);
+  EXPECT_TRUE(on.kernel.at_rest());
+}
+
+// The speed of a hand at constant speed: its error is below 1 count / (ticks of 15 edges), as stated.
+TEST(EdgeSpeed, AtConstantSpeedTheGrainIsBelowItsBound) {
+  for (const double per_tick : {0.013, 0.11, 0.37, 0.7, 1.3, 2.61, 7.7, 200.123}) {
+    core::EdgeSpeed speed;
+    speed.rest();
+    const double bound = std::min(1.0, per_tick) / 15;
+    double worst = 0;
+    for (int tick = 0; tick < 20000; ++tick) {
+      const float found = speed.track(static_cast<std::int32_t>(std::floor(per_tick * tick)));
+      if (per_tick * tick > 40 && tick > 40) worst = std::max(worst, std::abs(found - per_tick));
+    }
+    EXPECT_LE(worst, bound * (1 + 1e-6)) << per_tick;
+  }
+}
+
+TEST(EdgeSpeed, ABorderThatIsCrossedTwiceIsNoMotion) {
+  core::EdgeSpeed speed;
+  speed.rest();
+  for (int tick = 0; tick < 100; ++tick) {
+    const float found = speed.track(tick / 3 % 2);
+    if (tick > 5) EXPECT_EQ(found, 0) << tick;
+  }
+}
+
+// From rest and back to it: the old time of rest does not count, and without edges the speed falls as 1 / t.
+TEST(EdgeSpeed, AMotionThatBeginsAndEnds) {
+  core::EdgeSpeed speed;
+  speed.rest();
+  for (int tick = 0; tick < 1000; ++tick) EXPECT_EQ(speed.track(7), 0);
+  EXPECT_EQ(speed.track(12), 5);
+  EXPECT_EQ(speed.track(17), 5);
+  for (int since = 1; since < 50; ++since) EXPECT_LE(speed.track(17), 1.0F / static_cast<float>(since));
+  EXPECT_GT(speed.track(17), 0);
+}
+
+// A hand that accelerates: the mean of the window lags by half of it, and the window shortens.
+TEST(EdgeSpeed, AnAccelerationShortensTheWindow) {
+  core::EdgeSpeed speed;
+  speed.rest();
+  const double a = 2;  // counts per tick^2: a line over n ticks differs by a n^2 / 8, so n is 2 at most
+  for (int tick = 0; tick < 500; ++tick) {
+    const float found = speed.track(static_cast<std::int32_t>(std::floor(a / 2 * tick * tick)));
+    if (tick > 10) EXPECT_NEAR(found, a * tick, a * 1.5 + 1);
+  }
+}
+
+TEST(SceneBlock, ACutOrChangedBlockIsRefused) {
+  const PreparedScene scene = prepared({patch("a", {spring(5, 0.01), damper(2)}), patch("b", {damper(1)})});
+  core::SceneView view;
+  const auto bytes = static_cast<std::uint32_t>(scene.bytes());
+  EXPECT_EQ(core::read_scene_block(scene.words.data(), bytes, view), core::SceneFault::none);
+  EXPECT_EQ(view.patch_count, 2U);
+  EXPECT_EQ(view.layer_count, 3U);
+  for (std::uint32_t size = 0; size < bytes; ++size)
+    EXPECT_NE(core::read_scene_block(scene.words.data(), size, view), core::SceneFault::none) << size;
+  for (std::uint32_t bit = 0; bit < 8 * bytes; ++bit) {
+    auto words = scene.words;
+    words[bit / 32] ^= UINT32_C(1) << (bit % 32);
+    EXPECT_NE(core::read_scene_block(words.data(), bytes, view), core::SceneFault::none) << bit;
+  }
+}
+
+// With a right check: each 32-bit word replaced by values that harm. What is accepted gives finite forces
+// within the limits.
+TEST(SceneBlock, AHarmfulBlockIsRefusedOrLimited) {
+  const PreparedScene scene = prepared({patch("a", {spring(5, 0.01), damper(2)}), patch("b", {damper(1)})});
+  const auto bytes = static_cast<std::uint32_t>(scene.bytes());
+  const core::ForceSetup setup = *force_setup_of(sandpaper(), 1000);
+  std::size_t refused = 0, accepted = 0;
+  for (std::size_t word = 0; word < scene.words.size(); ++word)
+    for (const std::uint32_t value : {0x7FC00000U, 0x7F800000U, 0xFF7FFFFFU, 0x7F7FFFFFU, 0xFFFFFFFFU,
+                                      0x00010001U, 0U, 1U, 0x00020000U, 0x3F800000U, 0x49742400U}) {
+      auto words = scene.words;
+      words[word] = value;
+      words[3] = core::scene_check(words.data(), bytes);
+      core::SceneView view;
+      if (core::read_scene_block(words.data(), bytes, view) != core::SceneFault::none) {
+        ++refused;
+        continue;
+      }
+      ++accepted;
+      core::SceneKernel kernel;
+      kernel.set(view, setup);
+      for (const std::int32_t count : {0, INT32_MAX, INT32_MIN, 1000, -1000}) {
+        const std::int32_t counts[2] = {count, -(count / 2)};
+        const core::ForceOutput output = kernel.tick(counts, true);
+        EXPECT_TRUE(output.sound);
+        EXPECT_LE(std::hypot(output.force_n[0], output.force_n[1]), 20 * (1 + 0x1p-22));
+      }
+    }
+  EXPECT_GT(refused, 100U);
+  EXPECT_GT(accepted, 10U);
+}
+
+TEST(PreparedScene, AnUnknownTypeAndASceneOfATrayAreRefused) {
+  schema::Scene scene;
+  EXPECT_EQ(prepare_scene(scene, "s").error().kind, schema::ErrorKind::unsuitable);
+  scene.patches = {patch("a", {spring(1), schema::MassLayer{{1}, ""}})};
+  const auto refused = prepare_scene(scene, "s.scene.json");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(refused.error().where, "s.scene.json#/patches/0/layers/1/type");
+}
+
+TEST(SceneOnDevice, WhatTheDeviceCannotGiveIsSaid) {
+  schema::Device device = sandpaper();
+  const auto notes = [&](const Patch& of) { return limits_of_device(prepared({of}), device); };
+  EXPECT_TRUE(notes(patch("a", {spring(100)})).empty());
+  Patch half = patch("a", {damper(1)});
+  half.x_m = 0.1;  // from 0 to 0.2 m; the travel ends at 0.1 m
+  ASSERT_EQ(notes(half).size(), 1U);
+  EXPECT_NE(notes(half)[0].find(" 49.5 %"), std::string::npos) << notes(half)[0];  // 50 of 101 columns
+  half.x_m = 1;
+  ASSERT_EQ(notes(half).size(), 1U);
+  // |force| > 20 N outside a circle of 0.1 m: 1 - pi / 4 of the square, 21.46 %.
+  const auto stiff = notes(patch("a", {spring(200)}));
+  ASSERT_EQ(stiff.size(), 1U);
+  EXPECT_NE(stiff[0].find(" 21.4 %"), std::string::npos) << stiff[0];
+  device.axes.pop_back();
+  EXPECT_EQ(notes(patch("a", {spring(100)})).size(), 1U);  // no axis y
+  device.axes[0].name = "z";
+  EXPECT_EQ(force_setup_of(device, std::nullopt).error().kind, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(force_setup_of(sandpaper(), 333.0).error().where, "--rate");
+}
+
+TEST(PlaneRender, ForcesAlongAPathOfOneAxis) {
+  schema::Device device = unlimited();
+  device.axes.pop_back();
+  const PreparedScene scene = prepared({patch("a", {spring(100), damper(2)})});
+  const FingerPath path{{0, 1}, {-0.05, 0.05}};  // 0.1 m/s: 10 counts per tick of 1 ms
+  const auto run = render_plane(scene, device, 1000, {path});
+  ASSERT_TRUE(run) << message(run.error());
+  ASSERT_EQ(run->time_s.size(), 1001U);
+  for (std::size_t i = 20; i < run->time_s.size(); ++i)
+    EXPECT_NEAR(run->axes[0].force_n[i], -100 * (-0.05 + 1e-4 * static_cast<double>(i)) - 2 * 0.1, 1e-4) << i;
+  EXPECT_LT(run->largest_rounding_n, 1e-5);
+  const auto beyond = render_plane(scene, device, 1000, {FingerPath{{0, 1}, {0, 0.2}}});
+  ASSERT_FALSE(beyond);
+  EXPECT_EQ(beyond.error().where, "x_m");
+}
+
+}  // namespace
+}  // namespace tacto::playback
