@@ -24,7 +24,7 @@ const UsualOptions kUsualOptions[] = {
      {"output", "window", "resolution", "min-frequency", "max-frequency", "formants", "dynamic-range"}},
     {"sheet",
      {"output", "title", "columns", "formants", "window", "min-frequency", "max-frequency", "dynamic-range"}},
-    {"render", {"path", "output", "transducer", "gain", "rate", "at", "ends", "displacement"}},
+    {"render", {"finger-path", "output", "transducer", "gain", "rate", "at", "ends", "displacement"}},
     {"explain",
      {"speed", "transducer", "rate", "ends", "quality", "device-memory", "interpolation", "inverse"}},
     {"play", {"device", "output", "transducer", "time", "gain", "at", "ends", "finger-path"}},

@@ -12,11 +12,13 @@
 #include "playback/choose/choices.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/ends_option.hpp"
+#include "playback/cli/finger_path_option.hpp"
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/loop_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/model/drive_files.hpp"
 #include "playback/player/placed_textures.hpp"
+#include "playback/player/silent_play.hpp"
 #include "playback/render/kept_error.hpp"
 #include "playback/render/render.hpp"
 
@@ -36,22 +38,22 @@ struct NamedChoices {
 
 struct RenderVerbOptions {
   ProgramRequest what;
-  std::string path, transducer, drive, displacement, target;
+  FingerPathOption path;
+  std::string transducer, drive, displacement, target;
   schema::Existing existing = schema::Existing::keep;
   RenderOptions render;
   AskedBudget budget;
   CLI::Option* engine = nullptr;
   NamedChoices named;
   std::optional<schema::PlaybackGain> kept_gain;
-  double signed_gain = 0;  ///< as reported; the weights of the textures have the signs
+  std::optional<std::string> off_note;
+  double signed_gain = 0, default_gain = 0;  ///< as reported; the weights of the textures have the signs
 };
 
 void add_files(CLI::App& app, RenderVerbOptions& o) {
   app.add_option("what", o.what.file, "Texture or scene: its stem, NAME.texture.json, NAME.scene.json ...")
       ->required();
-  app.add_option("--path", o.path,
-                 "Finger path: CSV with the columns time_s,position_m; interpolated by monotone cubics")
-      ->required();
+  declare_finger_path(app, o.path, "Path of the finger, interpolated by monotone cubics: ")->required();
   app.add_option(
          "--transducer", o.transducer,
          fmt::format("A preset ({}) or NAME.transducer.json", fmt::join(schema::preset_names(), ", ")))
@@ -70,8 +72,7 @@ void add_files(CLI::App& app, RenderVerbOptions& o) {
 void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
   RenderOptions& o = verb.render;
   cli::add_quantity(app, "--rate", o.rate_hz, Dimension::frequency, "Sample rate of the drive");
-  cli::add_quantity(app, "--gain", verb.what.gain_m_per_n, Dimension::compliance,
-                    "Of a texture: displacement for force; default: the gain in its file, or 1mm/N");
+  cli::add_gain(app, verb.what.gain, "Gain: ", kDefaultGain);
   cli::add_quantity(app, "--at", verb.what.at_m, Dimension::length,
                     "Of a texture: path position of its position 0; for a path in bench positions give the "
                     "source_origin_m that `info TEXTURE` prints");
@@ -183,7 +184,7 @@ Report report_of(const RenderVerbOptions& o, const schema::Transducer& transduce
   Report report;
   report.add("drive", o.drive).add("transducer", transducer.name).add("duration_s", r.drive_v.duration_s());
   report.add("rate_hz", r.drive_v.sample_rate_hz);
-  add_gain(report, o.signed_gain);
+  add_gain(report, o.signed_gain, o.default_gain);
   add_kept_gain(report, o.kept_gain);
   report.add("drive_rms_v", schema::statistics_of(r.drive_v.values).rms())
       .add("target_rms_m", schema::statistics_of(r.target_m.values).rms());
@@ -197,8 +198,9 @@ Report report_of(const RenderVerbOptions& o, const schema::Transducer& transduce
   return report;
 }
 
-void warn_of(const Rendering& r) {
+void warn_of(const RenderVerbOptions& o, const Rendering& r) {
   for (const std::string& warning : r.warnings) cli::warn(warning);
+  if (o.off_note) cli::warn(*o.off_note);
   if (!r.clipping) return;
   cli::warn(
       fmt::format("the limits clipped {} samples: the peak is {:.1f} dB lower, the removed part is {:.1f} dB "
@@ -254,12 +256,20 @@ Result<Rendering> rendered(RenderVerbOptions& o, const schema::Transducer& trans
   o.kept_gain = laid->kept_gain();
   o.render.gain_m_per_n = laid->gain();
   o.signed_gain = laid->signed_gain();
+  o.default_gain = laid->default_gain();
+  o.render.default_gain_m_per_n = std::abs(o.default_gain);
   o.render.ends = laid->ends();
-  const auto path = read_finger_path(o.path);
+  const auto path = o.path.read();
   TACTO_TRY(path);
   cli::Progress progress("rendering");
-  return render(laid->placed(), *path, transducer, o.render,
-                [&](double fraction) { progress.update(fraction); });
+  auto rendering = render(laid->placed(), *path, transducer, o.render,
+                          [&](double fraction) { progress.update(fraction); });
+  if (!rendering) return rendering;
+  const auto [least, most] = std::ranges::minmax(path->position_m);
+  const auto samples = static_cast<double>(rendering->drive_v.values.size());
+  o.off_note = note_off_textures(static_cast<double>(rendering->samples_outside) / samples, least, most,
+                                 {laid->start_m(), laid->end_m()});
+  return rendering;
 }
 
 Result<Report> run_render(RenderVerbOptions o) {
@@ -277,7 +287,7 @@ Result<Report> run_render(RenderVerbOptions o) {
   const auto rendering = rendered(o, *transducer);
   TACTO_TRY(rendering);
   TACTO_TRY(write_signal_files(files_of(o, *rendering), o.existing));
-  warn_of(*rendering);
+  warn_of(o, *rendering);
   return report_of(o, *transducer, *rendering);
 }
 
@@ -294,9 +304,10 @@ cli::Action declare_render(CLI::App& app) {
 
 const cli::Verb kRenderVerb{
     "render", "Play a texture or scene along a finger path, offline: the drive for the transducer",
-    "tactograph render oak --path path.csv --transducer wiertlewski2011 -o drive.wav --displacement "
+    "tactograph render oak --finger-path path.csv --transducer wiertlewski2011 -o drive.wav --displacement "
     "tray.wav\n"
-    "  tactograph render bench.scene.json --path path.csv --transducer wiertlewski2011 --engine kernel -o "
+    "  tactograph render bench.scene.json --finger-path path.csv --transducer wiertlewski2011 --engine "
+    "kernel -o "
     "drive.wav",
     declare_render};
 

@@ -9,35 +9,37 @@
 #include <optional>
 #include <string_view>
 
+#include "data-schema/base/column_unit.hpp"
 #include "data-schema/files/files.hpp"
 #include "playback/model/finger_path.hpp"
 
 namespace tacto::playback {
 
+using schema::Dimension;
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kColumns = {"time_s", "position_m", "normal_force_n"};
+struct Quantity {
+  std::string_view name;
+  Dimension dimension;
+};
+constexpr std::array<Quantity, 3> kColumns = {
+    {{"time", Dimension::time}, {"position", Dimension::length}, {"normal_force", Dimension::force}}};
 constexpr std::size_t kNeeded = 2, kForce = 2;
-constexpr std::string_view kRemedy = "write a header line 'time_s,position_m', then one row per knot";
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
+constexpr std::string_view kRemedy =
+    "write a header line with units, such as 'time_s,position_mm', then one row per knot";
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   auto end = text.find(separator);
   for (; end != std::string_view::npos; end = text.find(separator)) {
-    parts.push_back(trimmed(text.substr(0, end)));
+    parts.push_back(schema::without_blanks(text.substr(0, end)));
     text.remove_prefix(end + 1);
   }
-  parts.push_back(trimmed(text));
+  parts.push_back(schema::without_blanks(text));
   return parts;
 }
 
@@ -70,29 +72,47 @@ struct Table {
   char separator;
   std::vector<std::string_view> header;
   std::array<std::size_t, kColumns.size()> column{};  // their indices in the header
+  std::array<double, kColumns.size()> si{};           // values of their units
   bool has_force = false;
 
   std::string place(std::size_t line, std::size_t which) const {
-    return fmt::format("{}, line {}, column {} ({})", name, line, column[which] + 1, kColumns[which]);
+    return fmt::format("{}, line {}, column {} ({})", name, line, column[which] + 1, header[column[which]]);
   }
 };
+
+// The column of a quantity and its unit: "position_mm", "position (mm)" or "position / mm".
+Result<void> find_column(Table& table, std::size_t which) {
+  const auto [quantity, dimension] = kColumns[which];
+  const auto is_it = [&](std::string_view name) { return schema::split_unit(name).name == quantity; };
+  const auto found = std::ranges::find_if(table.header, is_it);
+  const std::string line = table.name + ", line 1";
+  if (which == kForce) table.has_force = found != table.header.end();
+  if (found == table.header.end() && which >= kNeeded) return {};
+  if (found == table.header.end())
+    return fail(ErrorKind::malformed,
+                fmt::format("there is no column '{}', only {}", quantity, fmt::join(table.header, ", ")),
+                line, std::string(kRemedy));
+  if (std::ranges::count_if(table.header, is_it) > 1)
+    return fail(ErrorKind::malformed, fmt::format("there are several columns '{}'", quantity), line,
+                "remove all but one");
+  const auto unit = schema::known_unit(schema::split_unit(*found).unit, dimension);
+  if (!unit || unit->dimension != dimension)
+    return fail(ErrorKind::malformed, fmt::format("the column '{}' has no unit of {}", *found, quantity),
+                line,
+                fmt::format("write {}_{}; the units are {}", quantity, schema::si_symbol(dimension),
+                            schema::units_of(dimension)));
+  table.column[which] = static_cast<std::size_t>(found - table.header.begin());
+  table.si[which] = unit->si;
+  return {};
+}
 
 Result<Table> read_header(std::string_view line, const std::string& name) {
   if (std::ranges::any_of(line, [](char c) { return c >= 0 && c < ' ' && c != '\t'; }))
     return fail(ErrorKind::malformed, "this is not a table: its first line contains binary data", name,
-                "a path is a CSV with the columns time_s,position_m");
+                std::string(kRemedy));
   const char separator = separator_of(line);
-  Table table{name, separator, split(line, separator), {}, false};
-  for (std::size_t which = 0; which < kColumns.size(); ++which) {
-    const auto found = std::ranges::find(table.header, kColumns[which]);
-    if (which == kForce) table.has_force = found != table.header.end();
-    if (which < kNeeded && found == table.header.end())
-      return fail(
-          ErrorKind::malformed,
-          fmt::format("there is no column '{}', only {}", kColumns[which], fmt::join(table.header, ", ")),
-          name + ", line 1", std::string(kRemedy));
-    table.column[which] = static_cast<std::size_t>(found - table.header.begin());
-  }
+  Table table{name, separator, split(line, separator), {}, {}, false};
+  for (std::size_t which = 0; which < kColumns.size(); ++which) TACTO_TRY(find_column(table, which));
   return table;
 }
 
@@ -104,7 +124,7 @@ Result<double> cell(const Table& table, const std::vector<std::string_view>& fie
     return fail(ErrorKind::malformed, fmt::format("'{}' is not a number", text), table.place(line, which));
   if (!std::isfinite(*value))
     return fail(ErrorKind::malformed, fmt::format("'{}' is not finite", text), table.place(line, which));
-  return *value;
+  return *value * table.si[which];
 }
 
 Result<void> add_row(FingerPath& path, const Table& table, std::string_view text, std::size_t line) {
