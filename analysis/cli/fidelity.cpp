@@ -150,8 +150,7 @@ cli::Action declare_fidelity(CLI::App& app) {
   app.add_option("--speed", options->speeds,
                  "Speed of an emulated finger: one, or several separated by commas");
   cli::add_quantity(app, "--time", play.time_s, Dimension::time, "Duration on a real device [10 s]");
-  cli::add_quantity(app, "--gain", play.program.gain_m_per_n, Dimension::compliance,
-                    "Displacement for force; default: 1mm/N");
+  cli::add_gain(app, play.program.gain, "Gain: ", "; default: the gain in the texture's file, or 1mm/N");
   cli::declare_unfit_transducer(app, play.program.unfit_transducer);
   cli::add_quantity(app, "--rate", play.prepare.rate_hz, Dimension::frequency, "Tick rate of the drive");
   app.add_option("-o,--output,--page", options->outputs,

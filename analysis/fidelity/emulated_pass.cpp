@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "analysis/fidelity/scratch_folder.hpp"
-#include "data-schema/files/files.hpp"
 #include "playback/model/finger_path.hpp"
 
 namespace tacto::analysis {
@@ -22,15 +21,6 @@ FingerPath straight_path(const schema::Texture& texture, double at_m, double spe
   const double way_m = texture.signal.length_m() + 2 * kBesideS * speed_mps;
   const double from_m = at_m - kBesideS * speed_mps;
   return {{0, way_m / speed_mps}, {from_m, from_m + way_m}};
-}
-
-Result<void> write_path(const std::string& file, const FingerPath& path) {
-  std::string text = "time_s,position_m\n";
-  for (std::size_t i = 0; i < path.time_s.size(); ++i)
-    text += fmt::format("{},{}\n", path.time_s[i], path.position_m[i]);
-  schema::PendingFiles files;
-  if (auto written = files.write(file, text); !written) return written;
-  return files.commit();
 }
 
 // Tick i is (i + 1) periods after arming. The emulated finger starts at arming.
@@ -65,10 +55,9 @@ Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::Pla
   const auto scratch = ScratchFolder::make();
   TACTO_TRY(scratch);
   const FingerPath path = straight_path(texture, options.program.at_m.value_or(0), speed_mps);
-  options.finger_path = *scratch / "path.csv";
+  options.finger_path = path;
   options.session = *scratch / "pass.session";
   options.program.any_displacement = options.device_uri.starts_with("sim:");
-  TACTO_TRY(write_path(options.finger_path, path));
   auto outcome = playback::play_once(options, stop_asked, progress);
   TACTO_TRY(outcome);
   if (stop_asked()) return schema::fail(ErrorKind::usage, "stopped before the end", "fidelity");

@@ -28,17 +28,12 @@ using schema::Texture;
 
 constexpr double kLeftOutS = 0.05, kFadeM = 1e-3;  // left out at either end of the texture
 constexpr double kFarthestShiftM = 50e-6;
-constexpr double kUsualFidelityGain = 1e-3;
 constexpr double kFastestMps = 10, kLeastKeptPercent = 1;
 // Samples of the emulated tray. Each needs 100 bytes during the comparison (measured), so this is 1 GB.
 constexpr double kMostTraySamples = 1e7;
 constexpr double kAroundS = 2;            // s before and behind the texture, and for the drive's ramps
 constexpr double kPlayedShare = 0.4;      // share of the time of one speed; the trays take the rest
 constexpr double kOtherUnitRatio = 31.6;  // times the displacement limit: 30 dB
-
-double gain_of(const FidelityOptions& options) {
-  return options.play.program.gain_m_per_n.value_or(kUsualFidelityGain);
-}
 
 // A stretch of samples over time, with the positions of the finger.
 struct Stretch {
@@ -146,6 +141,7 @@ FidelitySpeed speed_of(const EmulatedPass& pass, const Texture& texture, double 
   speed.delay_left_s = pass.outcome.delay_left_s;
   speed.inverse_error_db = pass.outcome.inverse_error_db;
   speed.notes = pass.outcome.notes;
+  speed.gain_m_per_n = pass.outcome.gain_m_per_n;
   if (speed.band_kept_percent < kLeastKeptPercent)
     speed.notes.push_back(
         fmt::format("at {:g} mm/s only {:.2g} % of the texture's power is in {:g}-{:g} Hz: the figures "
@@ -187,7 +183,7 @@ Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Textu
   const double at_m = options.play.program.at_m.value_or(0);
   const auto stretch = judged_stretch(*pass, texture, at_m, speed_mps);
   TACTO_TRY(stretch);
-  const auto target_m = target_displacement_m(*pass, texture, at_m, gain_of(options), band);
+  const auto target_m = target_displacement_m(*pass, texture, at_m, pass->outcome.gain_m_per_n, band);
   note_unit(speed, target_m, pass->columns.header.transducer.displacement_limit_m);
   const auto target = along_stretch(target_m, *stretch, band);
   TACTO_TRY(target);
@@ -247,6 +243,7 @@ Result<Fidelity> modelled_fidelity(const FidelityOptions& options, const Texture
   speed.delay_left_s = outcome->delay_left_s;
   speed.inverse_error_db = outcome->inverse_error_db;
   speed.notes = outcome->notes;
+  speed.gain_m_per_n = outcome->gain_m_per_n;
   speed.rows.push_back(std::move(*row));
   Fidelity whole;
   whole.simulated = outcome->simulated;
@@ -297,7 +294,7 @@ Result<Fidelity> fidelity(const FidelityOptions& options, const std::function<vo
   if (!whole) return whole;
   whole->texture = options.play.program.file;
   whole->device = options.play.device_uri;
-  whole->gain_m_per_n = gain_of(options);
+  whole->gain_m_per_n = whole->speeds.front().gain_m_per_n;
   whole->rate_hz = options.play.prepare.rate_hz;
   return whole;
 }

@@ -37,6 +37,7 @@ struct FidelitySpeed {
   double speed_mps = 0;
   double low_hz = 0, high_hz = 0;  ///< the band of the comparison
   double band_kept_percent = 100;  ///< share of the texture's power (spatial/features/band_kept.hpp)
+  double gain_m_per_n = 0;
   double drive_peak_v = 0, drive_limit_v = 0;
   std::uint64_t ticks = 0, amplitude_limited = 0, slew_limited = 0;
   std::optional<double> removed_db;  ///< removed by the limits, re the unlimited drive; empty if unknown

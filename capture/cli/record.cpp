@@ -15,6 +15,7 @@
 #include "capture/record/take_name.hpp"
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/command/stop_signals.hpp"
+#include "data-schema/report/pace.hpp"
 #include "data-schema/report/progress.hpp"
 #include "data-schema/report/report.hpp"
 #include "data-schema/report/terminal.hpp"
@@ -49,7 +50,7 @@ void declare_options(CLI::App& app, RecordOptions& options) {
       ->excludes(name);
   cli::add_quantity(app, "--time", request.time_s, Dimension::time,
                     "Duration; default: until --strokes are made, or Ctrl-C");
-  app.add_option("--strokes", request.strokes, "End after this number of strokes of at least 5 mm")
+  app.add_option("--strokes", request.strokes, "End after this number of strokes")
       ->check(cli::from_one());
   app.add_flag("--allow-gaps", options.allow_gaps, "Exit code 0 even if frames are lost");
   app.add_option("--calibration", options.calibration,
@@ -103,20 +104,14 @@ Result<void> check_end(const firmware_host::DeviceToRecord& opened, const Record
                       options.device, "use fewer --strokes, let the device make more, or add --time 2s");
 }
 
-// Reports a device that does not run in real time.
-void add_pace(cli::Report& report, const firmware_host::Device& device) {
-  if (device.is_real_time()) return;
-  report.add("pace", fmt::format("as fast as this computer allows, faster than real time; {}", kRealTime));
-}
-
-cli::Report report_on(const Recorded& recorded, const firmware_host::Device& device) {
+cli::Report report_on(const Recorded& recorded, const firmware_host::Device& device, const cli::Pace& pace) {
   const schema::RecordingHeader& header = recorded.recording.header;
   const std::string& stem = recorded.recording.stem;
   cli::Report report;
   report.add("device", header.device).add("simulated", header.simulated).add("surface", header.surface);
   report.add("frames", header.frames).add("sample_rate_hz", header.sample_rate_hz);
   report.add("duration_s", schema::duration_s(header));
-  add_pace(report, device);
+  if (!device.is_real_time()) pace.add_to(report, schema::duration_s(header));
   report.add("clipped_samples", recorded.counts.clipped).add("lost_frames", recorded.counts.lost_frames);
   report.add("gaps", header.gaps.size()).add("marks", header.marks.size());
   report.add("channels", rows_of(recorded));
@@ -193,13 +188,14 @@ Result<cli::Report> run_record(const RecordOptions& options) {
     TACTO_TRY(calibration);
     request.calibration = std::move(*calibration);
   }
+  const cli::Pace pace;
   const Result<Recorded> recorded = [&] {
     Console console;
     return record(*device, request, console.hooks());
   }();
   TACTO_TRY(recorded);
   cli::warn_grouped(recorded->recording.header.warnings);
-  cli::Report report = report_on(*recorded, *device);
+  cli::Report report = report_on(*recorded, *device, pace);
   const bool gaps = !recorded->recording.header.gaps.empty() || recorded->counts.lost_frames > 0;
   if (gaps && !options.allow_gaps) report.ends_with(schema::ErrorKind::device);
   if (recorded->ended_by && recorded->recording.header.ended.empty())
@@ -213,6 +209,7 @@ cli::Action declare_record(CLI::App& app) {
   auto options = std::make_shared<RecordOptions>();
   declare_options(app, *options);
   app.footer(app.get_footer() + "\n" + footer_text());
+  cli::explain_strokes(app);
   return [options] { return run_record(*options); };
 }
 

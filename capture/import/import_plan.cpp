@@ -10,7 +10,7 @@
 #include <limits>
 #include <set>
 
-#include "capture/table/column_unit.hpp"
+#include "data-schema/base/column_unit.hpp"
 #include "data-schema/files/files.hpp"
 
 namespace tacto::capture {
@@ -62,7 +62,7 @@ Result<void> check_clock(const ImportRequest& request, const Source& source) {
 // The first column with a unit of force, which needs no unit in the option; otherwise the first column.
 std::string force_example(const Source& source) {
   for (std::size_t i = 0; i < source.units.size(); ++i) {
-    const auto unit = known_unit(source.units[i], schema::Dimension::force);
+    const auto unit = schema::known_unit(source.units[i], schema::Dimension::force);
     if (unit && unit->dimension == schema::Dimension::force) return "tangential_force=" + typed(source, i);
   }
   return fmt::format("tangential_force={}*1N", typed(source, 0));

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <optional>
 
-#include "capture/table/column_unit.hpp"
 #include "capture/table/csv_number.hpp"
 #include "capture/table/source.hpp"
+#include "data-schema/base/column_unit.hpp"
 #include "data-schema/recording/recording.hpp"
 
 namespace tacto::capture {
@@ -34,7 +34,7 @@ bool may_follow_column(std::string_view rest) {
 
 std::vector<std::string> names_without_units(const std::vector<std::string>& names) {
   std::vector<std::string> all;
-  for (const std::string& name : names) all.push_back(split_unit(name).name);
+  for (const std::string& name : names) all.push_back(schema::split_unit(name).name);
   return all;
 }
 
@@ -116,7 +116,7 @@ std::string fitting(Dimension dimension) {
 Result<double> worth_of_columns_unit(const std::string& column_unit, Dimension dimension) {
   const std::string example = ", as in '*1" + std::string(schema::si_symbol(dimension)) + "'";
   if (column_unit.empty()) return fail(ErrorKind::usage, "has no unit", {}, fitting(dimension) + example);
-  const auto known = known_unit(column_unit, dimension);
+  const auto known = schema::known_unit(column_unit, dimension);
   if (known && known->dimension == dimension) return known->si;
   return fail(ErrorKind::usage,
               fmt::format("has no unit, and that of the column, '{}', {}", column_unit,

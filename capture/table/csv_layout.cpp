@@ -8,10 +8,10 @@
 #include <optional>
 #include <span>
 
-#include "capture/table/column_unit.hpp"
 #include "capture/table/csv_fields.hpp"
 #include "capture/table/csv_number.hpp"
 #include "capture/table/table_start.hpp"
+#include "data-schema/base/column_unit.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -115,7 +115,8 @@ void take_header(CsvLayout& layout, const TableLine& line, std::vector<std::stri
 // A separate row of units follows the header and has priority over the units in the names.
 void take_units(CsvLayout& layout, const std::vector<std::string>& row) {
   for (std::size_t i = 0; i < layout.columns.size(); ++i)
-    layout.units.push_back(i < row.size() && !row[i].empty() ? row[i] : split_unit(layout.columns[i]).unit);
+    layout.units.push_back(i < row.size() && !row[i].empty() ? row[i]
+                                                             : schema::split_unit(layout.columns[i]).unit);
 }
 
 // Whether the lines after the first are rows of the same width, with text in the same columns; a row without

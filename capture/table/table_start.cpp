@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "capture/table/column_unit.hpp"
 #include "capture/table/csv_fields.hpp"
 #include "capture/table/csv_number.hpp"
 #include "capture/table/text_encoding.hpp"
+#include "data-schema/base/column_unit.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -49,8 +49,8 @@ bool is_names_alone(const Fields& fields) {
 // The unit of a plain number is "1", which is also a number.
 bool is_units_row(const Fields& fields) {
   const auto no_unit = [](const std::string& field) { return is_numeric(field) && field != "1"; };
-  return std::ranges::none_of(fields, no_unit) && std::ranges::any_of(fields, is_known_unit) &&
-         std::ranges::count_if(fields, may_be_unit) * 2 > std::ranges::ssize(fields);
+  return std::ranges::none_of(fields, no_unit) && std::ranges::any_of(fields, schema::is_known_unit) &&
+         std::ranges::count_if(fields, schema::may_be_unit) * 2 > std::ranges::ssize(fields);
 }
 
 // The number of rows of the same form from line `first` on, at most kRowsToTrust.

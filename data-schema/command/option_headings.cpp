@@ -24,7 +24,7 @@ const UsualOptions kUsualOptions[] = {
      {"output", "window", "resolution", "min-frequency", "max-frequency", "formants", "dynamic-range"}},
     {"sheet",
      {"output", "title", "columns", "formants", "window", "min-frequency", "max-frequency", "dynamic-range"}},
-    {"render", {"path", "output", "transducer", "device", "gain", "rate", "at", "ends"}},
+    {"render", {"finger-path", "output", "transducer", "device", "gain", "rate", "at", "ends"}},
     {"explain",
      {"speed", "transducer", "device", "rate", "ends", "quality", "device-memory", "interpolation"}},
     {"play", {"device", "output", "transducer", "time", "gain", "at", "ends", "finger-path"}},

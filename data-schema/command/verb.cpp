@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "data-schema/base/nearest_word.hpp"
+#include "data-schema/base/stroke_rule.hpp"
 #include "data-schema/report/warnings.hpp"
 
 namespace tacto::cli {
@@ -43,6 +44,19 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& name, std::optional<
   return app.add_option_function<std::string>(name, read, help)->type_name(type_name(dimension));
 }
 
+CLI::Option* add_gain(CLI::App& app, std::optional<schema::Gain>& gain, const std::string& before,
+                      const std::string& default_words) {
+  auto read = [&gain](const std::string& text) {
+    const auto value = schema::parse_gain(text);
+    if (!value) throw CLI::ValidationError("--gain", schema::message(value.error()));
+    gain = *value;
+  };
+  return app
+      .add_option_function<std::string>("--gain", read,
+                                        fmt::format("{}{}{}", before, schema::kGainForms, default_words))
+      ->type_name(fmt::format("NUMBER+UNIT(x, %, {})", schema::units_of(schema::Dimension::compliance)));
+}
+
 std::string words_of(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, "|"));
 }
@@ -55,6 +69,10 @@ std::size_t choose(const std::string& option, const std::string& word,
                                fmt::format("'{}' is not a possible value{}: use one of {}", word,
                                            schema::did_you_mean(word, words), fmt::join(words, ", ")));
   return static_cast<std::size_t>(found - words.begin());
+}
+
+void explain_strokes(CLI::App& app) {
+  app.footer(app.get_footer() + fmt::format("\nA stroke is {}.", schema::kStrokeRule));
 }
 
 // CLI11's own message prints a range with 309 digits.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/gain.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/report/report.hpp"
 
@@ -35,6 +36,11 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value_
                           schema::Dimension dimension, const std::string& help);
 CLI::Option* add_quantity(CLI::App& app, const std::string& name, std::optional<double>& value_si,
                           schema::Dimension dimension, const std::string& help);
+
+/// --gain, with the same forms in every verb (kGainForms). `before` stands before its help, `default_words`
+/// after it.
+CLI::Option* add_gain(CLI::App& app, std::optional<schema::Gain>& gain, const std::string& before,
+                      const std::string& default_words);
 
 /// The words of an option and their meanings; the first with the current value is shown as default.
 template <class Choice>
@@ -63,6 +69,9 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Choice& value, c
       ->type_name(words_of(words))
       ->default_str(standard);
 }
+
+/// Adds the definition of a stroke below the help of a verb.
+void explain_strokes(CLI::App& app);
 
 /// For an option that is a count: a whole number from 1.
 const CLI::Validator& from_one();

@@ -15,7 +15,7 @@
 
 namespace tacto::schema {
 
-inline constexpr std::string_view kControlVersion = "1.2";
+inline constexpr std::string_view kControlVersion = "1.3";
 inline constexpr std::size_t kMostControlLine = 16384;  ///< bytes, newline included
 
 enum class ControlVerb { hello, load, arm, play, stop, disarm, gain, status, watch };
@@ -26,13 +26,14 @@ struct ControlRequest {
   std::string version;  ///< hello
   std::string token;    ///< hello over TCP
   std::string file;     ///< load
-  std::optional<double> at_m, gain_m_per_n;
-  std::optional<double> fade_s;  ///< load while armed
+  std::optional<double> at_m;
+  std::optional<double> gain_m_per_n, times_default;  ///< load, gain: displacement for force, or a factor
+  std::optional<double> fade_s;                       ///< load while armed
   std::optional<TextureEnds> ends;
   PlaybackChoices playback;          ///< load
   bool while_connected = false;      ///< arm
   std::optional<double> dead_man_s;  ///< arm
-  std::optional<double> gain;
+  std::optional<double> gain;        ///< gain: a factor of the loaded gain
   bool save = false;
   /// Filled in by the socket; not in the line.
   std::string asked_by;  ///< the user, for a saved gain

@@ -62,20 +62,25 @@ Result<void> check_members(const ControlRequest& request) {
     return bad_member("version", "hello contains no version", R"(add "version":"1.0")");
   if (request.verb == ControlVerb::load && request.file.empty())
     return bad_member("file", "load contains no file", "add the file name of a texture or scene");
-  if (request.verb == ControlVerb::gain && !request.gain)
-    return bad_member("gain", "gain contains no factor", R"(add a factor, as in "gain":0.5)");
+  const int gains =
+      request.gain.has_value() + request.gain_m_per_n.has_value() + request.times_default.has_value();
+  if (request.verb == ControlVerb::gain && gains == 0)
+    return bad_member("gain", "gain contains no gain",
+                      R"(add a factor, as in "times_default":0.5, or "gain_m_per_n":0.0005)");
+  if (gains > 1)
+    return bad_member("gain", "the request contains several gains",
+                      "send one of gain, gain_m_per_n and times_default");
   if (request.verb == ControlVerb::hello) return check_version_of(request.version);
   return {};
 }
 
 // A member of another request was meant for that request: it must not be ignored, because it may be a limit.
 Result<void> check_taken(const Json& body, ControlVerb verb) {
-  constexpr std::array<std::pair<const char*, ControlVerb>, 12> kTakenBy = {
+  constexpr std::array<std::pair<const char*, ControlVerb>, 11> kTakenBy = {
       {{"version", ControlVerb::hello},
        {"token", ControlVerb::hello},
        {"file", ControlVerb::load},
        {"at_m", ControlVerb::load},
-       {"gain_m_per_n", ControlVerb::load},
        {"ends", ControlVerb::load},
        {"fade_s", ControlVerb::load},
        {"playback", ControlVerb::load},
@@ -88,6 +93,10 @@ Result<void> check_taken(const Json& body, ControlVerb verb) {
     if (body.contains(name) && verb != taker)
       return bad_member(name, fmt::format("'{}' does not accept '{}'", word(verb), name),
                         fmt::format("send it with '{}'", word(taker)));
+  for (const char* name : {"gain_m_per_n", "times_default"})
+    if (body.contains(name) && verb != ControlVerb::load && verb != ControlVerb::gain)
+      return bad_member(name, fmt::format("'{}' does not accept '{}'", word(verb), name),
+                        "send it with 'load' or 'gain'");
   return {};
 }
 
@@ -105,6 +114,7 @@ ControlRequest request_of(const Json& body) {
   request.file = text_or(body, "file");
   request.at_m = asked_number(body, "at_m");
   request.gain_m_per_n = asked_number(body, "gain_m_per_n");
+  request.times_default = asked_number(body, "times_default");
   request.fade_s = asked_number(body, "fade_s");
   request.playback = playback_choices_in(body);
   request.while_connected = body.value("while_connected", false);
@@ -192,6 +202,7 @@ std::string control_request_line(const ControlRequest& request) {
   put_text(body, "file", request.file);
   if (request.at_m) body["at_m"] = *request.at_m;
   if (request.gain_m_per_n) body["gain_m_per_n"] = *request.gain_m_per_n;
+  if (request.times_default) body["times_default"] = *request.times_default;
   if (request.ends) body["ends"] = to_string(*request.ends);
   if (request.fade_s) body["fade_s"] = *request.fade_s;
   if (Json playback = playback_choices_body(request.playback); !playback.empty()) body["playback"] = playback;

@@ -15,6 +15,7 @@
 #include "data-schema/report/terminal.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
+#include "playback/cli/gain_report.hpp"
 #include "playback/cli/top_screen.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/cli/watched_play.hpp"
@@ -39,7 +40,8 @@ constexpr std::array<std::string_view, 10> kCtlActions = {"hello",  "load", "arm
 struct CtlOptions {
   std::string socket = kUsualSocket, action, what;
   std::optional<schema::TextureEnds> ends;
-  std::optional<double> at_m, gain_m_per_n, fade_s;
+  std::optional<double> at_m, fade_s;
+  std::optional<schema::Gain> gain;
   std::optional<double> time_s;
   bool save = false, watch = false;
   schema::PlaybackChoices choices;
@@ -67,11 +69,8 @@ std::string full_name(const std::string& file) {
   return file;
 }
 
-Result<double> gain_in(const std::string& text) {
-  const auto gain = schema::parse_quantity(text, Dimension::none);
-  if (gain) return *gain;
-  return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is not a gain", text), "gain",
-                      "a factor, as in 0.5");
+void put_gain(ControlRequest& request, const schema::Gain& gain) {
+  (gain.times_default ? request.times_default : request.gain_m_per_n) = gain.value;
 }
 
 Result<void> check_taken(const CtlOptions& o) {
@@ -82,7 +81,7 @@ Result<void> check_taken(const CtlOptions& o) {
   const bool load = o.action == "load", gain = o.action == "gain";
   if (!o.what.empty() && !load && !gain) return refuse(o.what, "only load and gain have an argument");
   for (const auto& [option, given] : {std::pair{"--at", o.at_m.has_value()},
-                                      {"--gain", o.gain_m_per_n.has_value()},
+                                      {"--gain", o.gain.has_value()},
                                       {"--ends", o.ends.has_value()},
                                       {"--fade", o.fade_s.has_value()}})
     if (given && !load) return refuse(option, "only load accepts it");
@@ -104,15 +103,15 @@ Result<ControlRequest> request_of(const CtlOptions& o) {
   request.verb = o.action == "top" ? ControlVerb::watch : static_cast<ControlVerb>(index);
   request.file = request.verb == ControlVerb::load ? full_name(o.what) : "";
   request.at_m = o.at_m;
-  request.gain_m_per_n = o.gain_m_per_n;
+  if (o.gain) put_gain(request, *o.gain);
   request.fade_s = o.fade_s;
   request.playback = o.choices;
   request.ends = o.ends;
   request.save = o.save;
   if (request.verb != ControlVerb::gain) return request;
-  const auto gain = gain_in(o.what);
+  const auto gain = schema::parse_gain(o.what);
   TACTO_TRY(gain);
-  request.gain = *gain;
+  put_gain(request, *gain);
   return request;
 }
 
@@ -208,12 +207,11 @@ cli::Action declare_ctl(CLI::App& app) {
          "load, arm, play, stop, disarm, gain, status; watch: events as lines of JSON; top: live figures")
       ->type_name(cli::words_of({kCtlActions.begin(), kCtlActions.end()}))
       ->required();
-  app.add_option("what", o.what, "load: a texture or scene; gain: a factor");
+  app.add_option("what", o.what, "load: a texture or scene; gain: as --gain");
   app.add_option("--socket", o.socket, "Socket of the daemon")->capture_default_str();
   cli::add_quantity(app, "--at", o.at_m, Dimension::length,
                     "load of a texture: encoder position of its position 0");
-  cli::add_quantity(app, "--gain", o.gain_m_per_n, Dimension::compliance,
-                    "load of a texture: displacement for force");
+  cli::add_gain(app, o.gain, "load: ", kDefaultGain);
   declare_ends(app, o.ends, "load: ");
   cli::add_quantity(app, "--fade", o.fade_s, Dimension::time,
                     "load during playback: duration of the change of texture; default: 50ms");
@@ -233,7 +231,7 @@ const cli::Verb kCtlVerb{"ctl", "Control the daemon: load, arm, play, stop, gain
                          "tactograph ctl load oak --at 10mm\n"
                          "  tactograph ctl play --watch\n"
                          "  tactograph ctl arm && tactograph ctl play\n"
-                         "  tactograph ctl gain 0.5\n"
+                         "  tactograph ctl gain 50%\n"
                          "  tactograph ctl load cork --fade 200ms",
                          declare_ctl};
 

@@ -41,7 +41,7 @@ std::vector<Report> rows_of_textures(const Program& program) {
   for (const schema::SessionTexture& texture : program.session.textures) {
     Report row;
     row.add("texture", texture.file).add("at_m", texture.at_m);
-    add_gain(row, texture.gain_m_per_n);
+    add_gain(row, texture.gain_m_per_n, texture.gain_m_per_n);
     rows.push_back(std::move(row.add("ends", std::string(schema::to_string(texture.ends)))));
   }
   return rows;
@@ -158,7 +158,7 @@ Result<Report> explained_at_speed(const Program& program, double speed_mps) {
   else
     report.add("largest_speed", "none from 1 mm/s to 2 m/s");
   report.add("texture", program.name()).add("transducer", transducer.name);
-  add_gain(report, program.gain_m_per_n);
+  add_gain(report, program.gain_m_per_n, program.default_gain_m_per_n);
   report.add("tightest_limit", answer->tightest.name).add("of_limit_percent", 100 * answer->tightest.used());
   return report.add("power_kept_percent", answer->power_kept_percent)
       .add("low_hz", render.band.low_hz)

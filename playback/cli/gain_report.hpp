@@ -10,9 +10,15 @@
 
 namespace tacto::playback {
 
-/// Adds `gain_m_per_n`, and `inverts_texture` if it is below 0.
-inline void add_gain(cli::Report& report, double gain_m_per_n) {
+/// How the help of --gain ends.
+inline constexpr const char* kDefaultGain = "; default: the gain in the texture's file, or 1mm/N";
+
+/// Adds `gain_m_per_n`; `gain_times_default` if it is another than the default; `inverts_texture` if it
+/// is below 0.
+inline void add_gain(cli::Report& report, double gain_m_per_n, double default_m_per_n) {
   report.add("gain_m_per_n", gain_m_per_n);
+  if (gain_m_per_n != default_m_per_n && default_m_per_n != 0)
+    report.add("gain_times_default", gain_m_per_n / default_m_per_n);
   tell_inversion(gain_m_per_n, [&](const char* key, bool value) { report.add(key, value); });
 }
 

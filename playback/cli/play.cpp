@@ -9,11 +9,13 @@
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/command/stop_signals.hpp"
 #include "data-schema/report/choices_report.hpp"
+#include "data-schema/report/pace.hpp"
 #include "data-schema/report/progress.hpp"
 #include "data-schema/report/warnings.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
+#include "playback/cli/finger_path_option.hpp"
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/limits_report.hpp"
 #include "playback/cli/loop_report.hpp"
@@ -30,6 +32,7 @@ namespace {
 
 struct PlayVerbOptions {
   PlayOptions play;
+  FingerPathOption path;
   std::optional<std::string> session;
   AskedBudget budget;
 };
@@ -42,9 +45,6 @@ void declare_what(CLI::App& app, PlayOptions& o) {
   cli::refuse_force(app);
   app.add_flag("--implausible", o.program.implausible,
                "Accept a transducer file with impossible numbers, for example a mass of 1e-12 kg");
-  app.add_option("--finger-path", o.finger_path,
-                 "Path of an emulated device's finger: CSV with the columns time_s,position_m and optionally "
-                 "normal_force_n");
   cli::add_quantity(app, "--time", o.time_s, Dimension::time,
                     "Duration; default: that of the finger's path, or 10 s");
 }
@@ -52,8 +52,7 @@ void declare_what(CLI::App& app, PlayOptions& o) {
 void declare_texture(CLI::App& app, PlayOptions& o) {
   cli::add_quantity(app, "--at", o.program.at_m, Dimension::length,
                     "Of a texture: encoder position of its position 0");
-  cli::add_quantity(app, "--gain", o.program.gain_m_per_n, Dimension::compliance,
-                    "Of a texture: displacement for force; default: the gain in its file, or 1mm/N");
+  cli::add_gain(app, o.program.gain, "Gain: ", kDefaultGain);
   declare_ends(app, o.program.ends);
 }
 
@@ -89,17 +88,20 @@ void add_played(Report& report, const PlayOutcome& outcome) {
   cli::add_choices(report, outcome.choices);
 }
 
-Report play_report(const PlayOptions& o, const PlayOutcome& outcome, bool explain) {
+Report play_report(const PlayOptions& o, const PlayOutcome& outcome, const cli::Pace& pace, bool explain) {
   Report report;
   report.add("session", o.session).add("device", outcome.device);
   if (!outcome.simulated.empty()) report.add("simulated", outcome.simulated);
-  add_gain(report, outcome.gain_m_per_n);
+  add_gain(report, outcome.gain_m_per_n, outcome.default_gain_m_per_n);
   add_kept_gain(report, outcome.kept_gain);
   report.add("played_s", outcome.status.ticks.playing_s());
+  if (!outcome.real_time) pace.add_to(report, outcome.status.ticks.span_s());
+  report.add("off_texture_percent", 100 * outcome.status.ticks.off_textures());
   add_loop(report, outcome.loop_period_m, outcome.loop_seam_m);
   add_played(report, outcome);
   if (outcome.decision) add_decision(report, *outcome.decision, explain);
   cli::warn_grouped(outcome.notes);
+  if (outcome.off_note) cli::warn(*outcome.off_note);
   if (!outcome.recorder.failure.empty()) {
     cli::warn(fmt::format("the session is incomplete, {} ticks are not in it: {}", outcome.recorder.lost(),
                           outcome.recorder.failure));
@@ -117,18 +119,25 @@ Result<Report> run_play(const PlayVerbOptions& asked) {
   PlayOptions o = asked.play;
   o.program.budget = *budget;
   o.session = schema::session_path(asked.session.value_or(session_named_after(o.program.file)));
+  if (!asked.path.file.empty()) {
+    auto path = asked.path.read();
+    TACTO_TRY(path);
+    o.finger_path = std::move(*path);
+  }
   const cli::StopSignals signals;
+  const cli::Pace pace;
   cli::Progress progress("playing");
   const auto outcome = play_once(
       o, [&] { return signals.stop_asked(); }, [&](double part) { progress.update(part); });
   TACTO_TRY(outcome);
-  return play_report(o, *outcome, asked.budget.options.explain);
+  return play_report(o, *outcome, pace, asked.budget.options.explain);
 }
 
 cli::Action declare_play(CLI::App& app) {
   auto options = std::make_shared<PlayVerbOptions>();
   options->play.prepare.onset_s = 0.02;
   declare_what(app, options->play);
+  declare_finger_path(app, options->path, "Path of an emulated device's finger: ");
   app.add_option(
       "-o,--output", options->session,
       "The session: NAME.session; default: the texture's name and the time of day, in this folder");
@@ -136,6 +145,12 @@ cli::Action declare_play(CLI::App& app) {
   declare_loop(app, options->play);
   declare_choices(app, options->play.program.choices);
   declare_tick_budget(app, options->budget);
+  app.footer(
+      app.get_footer() +
+      "\nCtrl-C ends the playback before its time: the drive falls to zero within 10 ms without a step, "
+      "the session is complete,\nand the report is that of any other end (exit code 0). A second "
+      "Ctrl-C ends the program at once; then the device ramps\nto zero by itself, and 'session' and "
+      "'replay' read the session up to its last ticks.");
   return [options] { return run_play(*options); };
 }
 

@@ -13,12 +13,14 @@
 #include "playback/choose/choices.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/ends_option.hpp"
+#include "playback/cli/finger_path_option.hpp"
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/loop_report.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/model/drive_files.hpp"
 #include "playback/player/placed_textures.hpp"
+#include "playback/player/silent_play.hpp"
 #include "playback/render/kept_error.hpp"
 #include "playback/render/render.hpp"
 
@@ -38,22 +40,24 @@ struct NamedChoices {
 
 struct RenderVerbOptions {
   ProgramRequest what;
-  std::string path, transducer, device, hand, drive, displacement, target;
+  FingerPathOption path;
+  std::string transducer, device, hand, drive, displacement, target;
   schema::Existing existing = schema::Existing::keep;
   RenderOptions render;
   AskedBudget budget;
   CLI::Option *engine = nullptr, *rate = nullptr;
   NamedChoices named;
   std::optional<schema::PlaybackGain> kept_gain;
-  double signed_gain = 0;  ///< as reported; the weights of the textures have the signs
+  std::optional<std::string> off_note;
+  double signed_gain = 0, default_gain = 0;  ///< as reported; the weights of the textures have the signs
 };
 
 void add_files(CLI::App& app, RenderVerbOptions& o) {
   app.add_option("what", o.what.file, "Texture or scene: its stem, NAME.texture.json, NAME.scene.json ...")
       ->required();
-  app.add_option("--path", o.path,
-                 "Finger path: CSV with the columns time_s,position_m (with --device: time_s,x_m,y_m); "
-                 "interpolated by monotone cubics")
+  declare_finger_path(app, o.path,
+                      "Path of the finger, interpolated by monotone cubics (with --device: of the hand, with "
+                      "a column for each axis, as in time_s,x_mm,y_mm): ")
       ->required();
   app.add_option("--transducer", o.transducer,
                  fmt::format("Of a texture or a scene of a tray: a preset ({}) or NAME.transducer.json",
@@ -77,8 +81,7 @@ void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
   RenderOptions& o = verb.render;
   verb.rate = cli::add_quantity(app, "--rate", o.rate_hz, Dimension::frequency,
                                 "Sample rate of the drive; with --device: tick rate, default its largest");
-  cli::add_quantity(app, "--gain", verb.what.gain_m_per_n, Dimension::compliance,
-                    "Of a texture: displacement for force; default: the gain in its file, or 1mm/N");
+  cli::add_gain(app, verb.what.gain, "Gain of a texture: ", kDefaultGain);
   cli::add_quantity(app, "--at", verb.what.at_m, Dimension::length,
                     "Of a texture: path position of its position 0; for a path in bench positions give the "
                     "source_origin_m that `info TEXTURE` prints");
@@ -190,7 +193,7 @@ Report report_of(const RenderVerbOptions& o, const schema::Transducer& transduce
   Report report;
   report.add("drive", o.drive).add("transducer", transducer.name).add("duration_s", r.drive_v.duration_s());
   report.add("rate_hz", r.drive_v.sample_rate_hz);
-  add_gain(report, o.signed_gain);
+  add_gain(report, o.signed_gain, o.default_gain);
   add_kept_gain(report, o.kept_gain);
   report.add("drive_rms_v", schema::statistics_of(r.drive_v.values).rms())
       .add("target_rms_m", schema::statistics_of(r.target_m.values).rms());
@@ -204,8 +207,9 @@ Report report_of(const RenderVerbOptions& o, const schema::Transducer& transduce
   return report;
 }
 
-void warn_of(const Rendering& r) {
+void warn_of(const RenderVerbOptions& o, const Rendering& r) {
   for (const std::string& warning : r.warnings) cli::warn(warning);
+  if (o.off_note) cli::warn(*o.off_note);
   if (!r.clipping) return;
   cli::warn(
       fmt::format("the limits clipped {} samples: the peak is {:.1f} dB lower, the removed part is {:.1f} dB "
@@ -261,12 +265,20 @@ Result<Rendering> rendered(RenderVerbOptions& o, const schema::Transducer& trans
   o.kept_gain = laid->kept_gain();
   o.render.gain_m_per_n = laid->gain();
   o.signed_gain = laid->signed_gain();
+  o.default_gain = laid->default_gain();
+  o.render.default_gain_m_per_n = std::abs(o.default_gain);
   o.render.ends = laid->ends();
-  const auto path = read_finger_path(o.path);
+  const auto path = o.path.read();
   TACTO_TRY(path);
   cli::Progress progress("rendering");
-  return render(laid->placed(), *path, transducer, o.render,
-                [&](double fraction) { progress.update(fraction); });
+  auto rendering = render(laid->placed(), *path, transducer, o.render,
+                          [&](double fraction) { progress.update(fraction); });
+  if (!rendering) return rendering;
+  const auto [least, most] = std::ranges::minmax(path->position_m);
+  const auto samples = static_cast<double>(rendering->drive_v.values.size());
+  o.off_note = note_off_textures(static_cast<double>(rendering->samples_outside) / samples, least, most,
+                                 {laid->start_m(), laid->end_m()});
+  return rendering;
 }
 
 // One of --transducer and --device.
@@ -292,7 +304,7 @@ Result<Report> run_render(RenderVerbOptions o) {
   const auto rendering = rendered(o, *transducer);
   TACTO_TRY(rendering);
   TACTO_TRY(write_signal_files(files_of(o, *rendering), o.existing));
-  warn_of(*rendering);
+  warn_of(o, *rendering);
   return report_of(o, *transducer, *rendering);
 }
 
@@ -307,9 +319,9 @@ cli::Action declare_render(CLI::App& app) {
     if (o.device.empty() && !o.hand.empty())
       return schema::fail(schema::ErrorKind::usage, "--hand requires --device");
     if (o.device.empty()) return run_render(o);
-    TACTO_TRY(check_force_options(app, {"path", "device", "hand", "output", "rate", "force"}));
+    TACTO_TRY(check_force_options(app, {"finger-path", "device", "hand", "output", "rate", "force"}));
     const auto rate_hz = o.rate->count() > 0 ? std::optional(o.render.rate_hz) : std::nullopt;
-    return render_forces({o.what.file, o.device, o.path, o.drive, o.hand, rate_hz, o.existing});
+    return render_forces({o.what.file, o.device, o.path.file, o.drive, o.hand, rate_hz, o.existing});
   };
 }
 
@@ -318,11 +330,11 @@ cli::Action declare_render(CLI::App& app) {
 const cli::Verb kRenderVerb{
     "render",
     "Play a texture or scene along a path, offline: the drive of a transducer or the forces of a device",
-    "tactograph render oak --path path.csv --transducer wiertlewski2011 -o drive.wav --displacement "
+    "tactograph render oak --finger-path path.csv --transducer wiertlewski2011 -o drive.wav --displacement "
     "tray.wav\n"
-    "  tactograph render bench.scene.json --path path.csv --transducer wiertlewski2011 --engine kernel -o "
-    "drive.wav\n"
-    "  tactograph render plane.scene.json --path hand.csv --device sandpaper-1990 -o forces.csv",
+    "  tactograph render bench.scene.json --finger-path path.csv --transducer wiertlewski2011 --engine "
+    "kernel -o drive.wav\n"
+    "  tactograph render plane.scene.json --finger-path hand.csv --device sandpaper-1990 -o forces.csv",
     declare_render};
 
 }  // namespace tacto::playback

@@ -64,6 +64,12 @@ std::string limits_line(const ControlFields& fields) {
   return fmt::format("limits   removed {}   by stroke: {}\n", words_of_taken(fields), tells);
 }
 
+// Empty before a load.
+std::string gain_words(const ControlFields& fields) {
+  if (schema::control_text(fields, "loaded").empty()) return {};
+  return fmt::format("   gain {:.4g} mm/N", 1e3 * schema::control_number(fields, "gain_m_per_n"));
+}
+
 }  // namespace
 
 std::string top_screen(const ControlFields& fields) {
@@ -78,8 +84,8 @@ std::string top_screen(const ControlFields& fields) {
                  1e6 * number("period_s"), 1e3 * number("round_trip_s"), number("passes_to_hz"));
   fmt::format_to(out, "finger   {:8.2f} mm   {:8.1f} mm/s\n", 1e3 * number("position_m"),
                  1e3 * number("speed_mps"));
-  fmt::format_to(out, "drive    {:8.3f} V    rms {:.3f} V   peak {:.3f} V   gain {:g}\n", number("drive_v"),
-                 number("drive_rms_v"), number("drive_peak_v"), number("gain"));
+  fmt::format_to(out, "drive    {:8.3f} V    rms {:.3f} V   peak {:.3f} V{}\n", number("drive_v"),
+                 number("drive_rms_v"), number("drive_peak_v"), gain_words(fields));
   fmt::format_to(out, "ticks    {:8.0f}      late {:.0f}   lost {:.0f}   limited {:.0f}   energy {:.0f}",
                  number("ticks"), number("late_ticks"), number("lost_ticks"), number("limited_ticks"),
                  number("energy_limited_ticks"));

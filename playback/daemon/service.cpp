@@ -67,6 +67,11 @@ void add_inversion(ControlFields& fields, double gain) {
   tell_inversion(gain, [&](const char* key, bool value) { fields.emplace_back(key, value); });
 }
 
+std::optional<schema::Gain> gain_of(const ControlRequest& request) {
+  if (request.times_default) return schema::Gain{*request.times_default, true};
+  return request.gain_m_per_n ? std::optional(schema::Gain{*request.gain_m_per_n, false}) : std::nullopt;
+}
+
 ControlFields fields_of(const std::string& file, const Program& program) {
   const Prepared& made = program.prepared;
   ControlFields fields{{"file", file},
@@ -77,6 +82,7 @@ ControlFields fields_of(const std::string& file, const Program& program) {
                        {"delay_s", made.delay_s},
                        {"delay_left_s", made.delay_left_s},
                        {"inverse_error_db", made.inverse_error_db}};
+  fields.emplace_back("default_gain_m_per_n", program.default_gain_m_per_n);
   add_inversion(fields, program.gain_m_per_n);
   add_loop(fields, made.loop_period_m, made.loop_seam_m);
   if (program.kept_gain) {
@@ -110,7 +116,7 @@ Result<void> Service::connect() {
   here_.client.reset();
   here_.loop.reset();
   device_ = {};
-  const auto script = read_finger_script(config_.finger_path, true);
+  const auto script = read_finger_script(config_.finger_path);
   TACTO_TRY(script);
   auto device = open_player_device(paced(config_.device), *script);
   TACTO_TRY(device);
@@ -174,7 +180,7 @@ Result<void> Service::begin_load(const ControlRequest& request) {
     if (const auto connected = connect(); !connected) return connected;
   if (const auto may = player_->may_load(); !may) return may;
   load_request_ = request;
-  ProgramRequest target{resolved(request.file), request.at_m, request.gain_m_per_n, request.ends};
+  ProgramRequest target{resolved(request.file), request.at_m, request.ends, gain_of(request)};
   target.only_in = request.by_tcp ? std::optional(config_.files) : std::nullopt;
   if (request.by_tcp) target.file = request.file;
   target.budget = budget();
@@ -198,7 +204,8 @@ Result<ControlFields> Service::load(Program program) {
   const std::string& file = load_request_.file;
   ControlFields fields = fields_of(file, program);
   const std::string scene_path = program.scene_path;
-  const double passes_to_hz = program.prepared.passes_to_hz, gain_m_per_n = program.gain_m_per_n;
+  const double passes_to_hz = program.prepared.passes_to_hz;
+  const double gain_m_per_n = program.gain_m_per_n, default_m_per_n = program.default_gain_m_per_n;
   const double period_m = program.prepared.loop_period_m, seam_m = program.prepared.loop_seam_m;
   const schema::SessionTexture alone = program.session.textures.front();
   const auto filter = program.decision ? std::optional(program.decision->chosen.inverse) : std::nullopt;
@@ -206,12 +213,13 @@ Result<ControlFields> Service::load(Program program) {
   const double fade_s = load_request_.fade_s.value_or(kUsualFadeS);
   TACTO_TRY(player_->load(std::move(program), fade_s));
   loaded_ = file;
-  passes_to_hz_ = passes_to_hz, loaded_gain_m_per_n_ = gain_m_per_n;
+  passes_to_hz_ = passes_to_hz;
+  loaded_gain_m_per_n_ = gain_m_per_n, default_gain_m_per_n_ = default_m_per_n;
   loop_period_m_ = period_m, loop_seam_m_ = seam_m;
   scene_path_ = scene_path;
   alone_ = alone;
   filter_ = filter;
-  saved_gain_ = 1;
+  saved_gain_ = default_m_per_n / gain_m_per_n;
   fields.emplace_back("changed", changes);
   if (changes) fields.emplace_back("fade_s", fade_s);
   if (changes) return fields;
@@ -293,16 +301,35 @@ Result<void> Service::save_scene_gain(double factor, const std::string& who) {
   return written;
 }
 
+// The requested gain as a factor of the loaded one.
+Result<double> Service::factor_of(const ControlRequest& request) const {
+  if (request.gain) return *request.gain;
+  if (loaded_.empty())
+    return fail(ErrorKind::usage, "no texture or scene is loaded to which the gain could belong", {},
+                "load one first");
+  if (request.gain_m_per_n && !scene_path_.empty())
+    return fail(ErrorKind::usage, "a scene defines the gains of its textures", loaded_,
+                "give a factor, as in 2x");
+  return gain_of(request)->m_per_n(default_gain_m_per_n_) / loaded_gain_m_per_n_;
+}
+
 // A gain that is refused changes neither the file nor the playback.
 Result<ControlFields> Service::gain(const ControlRequest& request) {
-  TACTO_TRY(player_->may_gain(*request.gain));
-  if (request.save) TACTO_TRY(save_gain(*request.gain, request.asked_by));
-  TACTO_TRY(player_->gain(*request.gain));
+  const auto factor = factor_of(request);
+  TACTO_TRY(factor);
+  TACTO_TRY(player_->may_gain(*factor));
+  if (request.save) TACTO_TRY(save_gain(*factor, request.asked_by));
+  TACTO_TRY(player_->gain(*factor));
   const double device_s = 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns);
-  publish_("gain", {{"gain", *request.gain}, {"device_s", device_s}});
-  ControlFields fields{{"gain", *request.gain}, {"saved", request.save}};
-  add_inversion(fields, *request.gain * loaded_gain_m_per_n_);
+  publish_("gain", {{"gain", *factor}, {"device_s", device_s}});
+  ControlFields fields{{"gain", *factor}, {"saved", request.save}};
+  add_present_gain(fields, *factor);
   return fields;
+}
+
+void Service::add_present_gain(ControlFields& fields, double factor) const {
+  if (!loaded_.empty()) fields.emplace_back("gain_m_per_n", factor * loaded_gain_m_per_n_);
+  add_inversion(fields, factor * loaded_gain_m_per_n_);
 }
 
 // The answer gives the new state, once the device's ticks report it.
@@ -332,7 +359,7 @@ ControlFields Service::hello() const {
 ControlFields Service::status() const {
   const PlayerStatus status = player_->status();
   ControlFields fields{{"state", std::string(to_string(status.state))}, {"gain", status.gain}};
-  add_inversion(fields, status.gain * loaded_gain_m_per_n_);
+  add_present_gain(fields, status.gain);
   if (!status.fault.empty()) fields.emplace_back("fault", status.fault);
   if (!why_.empty()) fields.emplace_back("why", why_);
   if (status.state != PlayerState::idle) add_stay(fields, stay_.rules());

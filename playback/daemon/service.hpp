@@ -61,6 +61,8 @@ class Service {
   schema::Result<schema::ControlFields> done(const schema::Result<void>& result, PlayerState target);
   schema::ControlFields hello() const;
   schema::ControlFields status() const;
+  schema::Result<double> factor_of(const schema::ControlRequest& request) const;
+  void add_present_gain(schema::ControlFields& fields, double factor) const;
   std::string resolved(const std::string& file) const;
   std::string next_session() const;
   PrepareOptions options();
@@ -79,10 +81,11 @@ class Service {
   std::string loaded_, scene_path_;
   std::optional<InverseChoice> filter_;  // chosen by a budget for the loaded texture; a change keeps it
   double passes_to_hz_ = 0;              // of the loaded texture
-  double loaded_gain_m_per_n_ = 1;  // with its sign; 1 before a load, so that the factor alone has the sign
+  // With their signs; 1 before a load, so that the factor alone has the sign.
+  double loaded_gain_m_per_n_ = 1, default_gain_m_per_n_ = 1;
   double loop_period_m_ = 0, loop_seam_m_ = 0;
   schema::SessionTexture alone_;  // the loaded texture, if it is not a scene
-  double saved_gain_ = 1;         // factor that is stored in the scene's file, of the gains that were loaded
+  double saved_gain_ = 1;         // the gain in the scene's file, as a factor of the loaded gain
   double next_status_s_ = 0;
   std::optional<std::uint64_t> reported_lost_;  // of the session; none if nothing was lost
 };

@@ -12,6 +12,7 @@ namespace tacto::playback {
 
 using schema::ErrorKind;
 using schema::fail;
+using schema::Result;
 
 namespace {
 
@@ -27,6 +28,36 @@ double greatest_slope(const spatial::HermiteSegment& segment) {
 }
 
 }  // namespace
+
+bool ends_where_it_began(const FingerPath& path) {
+  constexpr double kMeetM = 1e-6;
+  return std::abs(path.position_m.back() - path.position_m.front()) < kMeetM;
+}
+
+// The last knot of a pass is the first one of the next.
+Result<FingerPath> repeated(const FingerPath& path, std::size_t times) {
+  constexpr std::size_t kMostKnots = 1 << 24;
+  const std::size_t knots = path.time_s.size(), spans = knots - 1;
+  if (times > 1 && times > kMostKnots / knots)
+    return fail(ErrorKind::usage,
+                fmt::format("{} knots, repeated {} times, are more than {}", knots, times, kMostKnots),
+                "--repeat", "repeat the path less often, or give it fewer knots");
+  const bool returns = !ends_where_it_began(path);
+  FingerPath all = path;
+  for (std::size_t pass = 1; pass < times; ++pass) {
+    const double from_s = path.time_s.front() + static_cast<double>(pass) * path.duration_s();
+    const bool back = returns && pass % 2 == 1;
+    for (std::size_t i = 1; i <= spans; ++i) {
+      const std::size_t knot = back ? spans - i : i;
+      const double since_s =
+          back ? path.time_s.back() - path.time_s[knot] : path.time_s[knot] - path.time_s.front();
+      all.time_s.push_back(from_s + since_s);
+      all.position_m.push_back(path.position_m[knot]);
+      if (!path.normal_force_n.empty()) all.normal_force_n.push_back(path.normal_force_n[knot]);
+    }
+  }
+  return all;
+}
 
 FingerPath finger_path_of(const schema::TimeSignal& position) {
   FingerPath path{{}, position.values};

@@ -23,20 +23,28 @@ struct FingerPath {
   double duration_s() const { return time_s.back() - time_s.front(); }
 };
 
-/// Reads the columns `time_s`, `position_m` and, if there is one, `normal_force_n` of a table whose first
-/// line names the columns; others are ignored. Columns are separated by commas, or by semicolons or tabs:
-/// then numbers may have decimal commas. Errors: not_found; malformed, with line and column, for a missing
-/// column (with those that exist), a row of another length, text, NaN, infinity, time that does not increase,
-/// fewer than 2 rows.
+/// Reads the columns `time`, `position` and, if there is one, `normal_force` of a table whose first line
+/// names the columns with their units (split_unit: `time_s,position_mm`); others are ignored. Columns are
+/// separated by commas, or by semicolons or tabs: then numbers may have decimal commas. Errors: not_found;
+/// malformed, with line and column, for a missing column (with those that exist), one without a fitting unit,
+/// a row of another length, text, NaN, infinity, time that does not increase, fewer than 2 rows.
 schema::Result<FingerPath> read_finger_path(const std::string& file);
 
 /// The same for a text in memory; errors give `name` as the file.
 schema::Result<FingerPath> parse_finger_path(std::string_view text, const std::string& name);
 
-/// Reads the path of a hand on a device: the columns `time_s` and NAME_m for each axis, one path per axis,
+/// Reads the path of a hand on a device: the columns `time` and one of each axis's name, one path per axis,
 /// all with the same times. Format and errors as above.
 schema::Result<std::vector<FingerPath>> read_axis_paths(const std::string& file,
                                                         const std::vector<std::string>& axes);
+
+/// Whether the path can begin again at its end: that meets its beginning within 1 um, which is below the step
+/// of encoders.
+bool ends_where_it_began(const FingerPath& path);
+
+/// The path `times` times: each time from its beginning if it ends where it began, else back and forth.
+/// Errors: usage, for more than 2^24 knots. Precondition: times > 0.
+schema::Result<FingerPath> repeated(const FingerPath& path, std::size_t times);
 
 /// One knot per sample. Precondition: at least 2 samples of position in m.
 FingerPath finger_path_of(const schema::TimeSignal& position);

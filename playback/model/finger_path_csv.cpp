@@ -8,42 +8,45 @@
 #include <optional>
 #include <string_view>
 
+#include "data-schema/base/column_unit.hpp"
 #include "data-schema/files/files.hpp"
 #include "playback/model/finger_path.hpp"
 
 namespace tacto::playback {
 
+using schema::Dimension;
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
 namespace {
 
-// The first one is the time.
-struct Columns {
-  std::vector<std::string> names;
-  std::size_t needed;  // of them; the others may be absent
-
-  std::string header() const {
-    return fmt::format("{}", fmt::join(names.begin(), names.begin() + needed, ","));
-  }
-  std::string remedy() const { return "write a header line '" + header() + "', then one row per knot"; }
+struct Column {
+  std::string quantity;
+  Dimension dimension;
 };
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
+// The first one is the time.
+struct Columns {
+  std::vector<Column> all;
+  std::size_t needed;  // of them; the others may be absent
+
+  std::string remedy() const {
+    std::string header;
+    for (std::size_t i = 0; i < needed; ++i)
+      header += (i == 0 ? "" : ",") + all[i].quantity + (i == 0 ? "_s" : "_mm");
+    return "write a header line with units, such as '" + header + "', then one row per knot";
+  }
+};
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   auto end = text.find(separator);
   for (; end != std::string_view::npos; end = text.find(separator)) {
-    parts.push_back(trimmed(text.substr(0, end)));
+    parts.push_back(schema::without_blanks(text.substr(0, end)));
     text.remove_prefix(end + 1);
   }
-  parts.push_back(trimmed(text));
+  parts.push_back(schema::without_blanks(text));
   return parts;
 }
 
@@ -76,29 +79,48 @@ struct Table {
   const Columns& columns;
   char separator;
   std::vector<std::string_view> header;
-  std::vector<std::optional<std::size_t>> column = {};  // where each of the columns is in the header
+  std::vector<std::optional<std::size_t>> column = {};  // their indices in the header
+  std::vector<double> si = {};                          // values of their units
 
   std::string place(std::size_t line, std::size_t which) const {
-    return fmt::format("{}, line {}, column {} ({})", name, line, *column[which] + 1, columns.names[which]);
+    return fmt::format("{}, line {}, column {} ({})", name, line, *column[which] + 1, header[*column[which]]);
   }
 };
+
+// The column of a quantity and its unit: "position_mm", "position (mm)" or "position / mm".
+Result<void> find_column(Table& table, std::size_t which) {
+  const auto& [quantity, dimension] = table.columns.all[which];
+  const auto is_it = [&](std::string_view name) { return schema::split_unit(name).name == quantity; };
+  const auto found = std::ranges::find_if(table.header, is_it);
+  const std::string line = table.name + ", line 1";
+  table.column.emplace_back();
+  table.si.push_back(1);
+  if (found == table.header.end() && which >= table.columns.needed) return {};
+  if (found == table.header.end())
+    return fail(ErrorKind::malformed,
+                fmt::format("there is no column '{}', only {}", quantity, fmt::join(table.header, ", ")),
+                line, table.columns.remedy());
+  if (std::ranges::count_if(table.header, is_it) > 1)
+    return fail(ErrorKind::malformed, fmt::format("there are several columns '{}'", quantity), line,
+                "remove all but one");
+  const auto unit = schema::known_unit(schema::split_unit(*found).unit, dimension);
+  if (!unit || unit->dimension != dimension)
+    return fail(ErrorKind::malformed, fmt::format("the column '{}' has no unit of {}", *found, quantity),
+                line,
+                fmt::format("write {}_{}; the units are {}", quantity, schema::si_symbol(dimension),
+                            schema::units_of(dimension)));
+  table.column.back() = found - table.header.begin();
+  table.si.back() = unit->si;
+  return {};
+}
 
 Result<Table> read_header(std::string_view line, const std::string& name, const Columns& columns) {
   if (std::ranges::any_of(line, [](char c) { return c >= 0 && c < ' ' && c != '\t'; }))
     return fail(ErrorKind::malformed, "this is not a table: its first line contains binary data", name,
-                "a path is a CSV with the columns " + columns.header());
+                columns.remedy());
   const char separator = separator_of(line);
   Table table{name, columns, separator, split(line, separator)};
-  for (std::size_t which = 0; which < columns.names.size(); ++which) {
-    const auto found = std::ranges::find(table.header, columns.names[which]);
-    const bool there = found != table.header.end();
-    if (which < columns.needed && !there)
-      return fail(ErrorKind::malformed,
-                  fmt::format("there is no column '{}', only {}", columns.names[which],
-                              fmt::join(table.header, ", ")),
-                  name + ", line 1", columns.remedy());
-    table.column.push_back(there ? std::optional(found - table.header.begin()) : std::nullopt);
-  }
+  for (std::size_t which = 0; which < columns.all.size(); ++which) TACTO_TRY(find_column(table, which));
   return table;
 }
 
@@ -110,7 +132,7 @@ Result<double> cell(const Table& table, const std::vector<std::string_view>& fie
     return fail(ErrorKind::malformed, fmt::format("'{}' is not a number", text), table.place(line, which));
   if (!std::isfinite(*value))
     return fail(ErrorKind::malformed, fmt::format("'{}' is not finite", text), table.place(line, which));
-  return *value;
+  return *value * table.si[which];
 }
 
 // The numbers of each column; without one that is absent.
@@ -141,7 +163,7 @@ Result<Numbers> parse_columns(std::string_view text, const std::string& name, co
   if (lines.empty()) return fail(ErrorKind::malformed, "the file is empty", name, columns.remedy());
   const auto table = read_header(lines.front(), name, columns);
   TACTO_TRY(table);
-  Numbers numbers(columns.names.size());
+  Numbers numbers(columns.all.size());
   for (std::size_t i = 1; i < lines.size(); ++i) TACTO_TRY(add_row(numbers, *table, lines[i], i + 1));
   if (numbers.front().size() < 2)
     return fail(ErrorKind::malformed,
@@ -153,7 +175,9 @@ Result<Numbers> parse_columns(std::string_view text, const std::string& name, co
 }  // namespace
 
 Result<FingerPath> parse_finger_path(std::string_view text, const std::string& name) {
-  auto numbers = parse_columns(text, name, {{"time_s", "position_m", "normal_force_n"}, 2});
+  auto numbers = parse_columns(
+      text, name,
+      {{{"time", Dimension::time}, {"position", Dimension::length}, {"normal_force", Dimension::force}}, 2});
   TACTO_TRY(numbers);
   return FingerPath{std::move((*numbers)[0]), std::move((*numbers)[1]), std::move((*numbers)[2])};
 }
@@ -166,8 +190,8 @@ Result<FingerPath> read_finger_path(const std::string& file) {
 
 Result<std::vector<FingerPath>> read_axis_paths(const std::string& file,
                                                 const std::vector<std::string>& axes) {
-  Columns columns{{"time_s"}, axes.size() + 1};
-  for (const std::string& axis : axes) columns.names.push_back(axis + "_m");
+  Columns columns{{{"time", Dimension::time}}, axes.size() + 1};
+  for (const std::string& axis : axes) columns.all.push_back({axis, Dimension::length});
   const auto text = schema::read_file(file);
   TACTO_TRY(text);
   const auto numbers = parse_columns(*text, file, columns);

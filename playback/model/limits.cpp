@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data-schema/base/gain.hpp"
+
 namespace tacto::playback {
 namespace {
 
@@ -13,13 +15,6 @@ void raise(Peak& peak, double value, double time_s) {
   if (std::abs(value) <= peak.value) return;
   peak.value = std::abs(value);
   peak.time_s = time_s;
-}
-
-// Rounded down in the fourth digit, so that the gain in a message does fit.
-double rounded_down(double value) {
-  if (!(value > 0)) return 0;
-  const double digit = std::pow(10, std::floor(std::log10(value)) - 3);
-  return std::floor(value / digit) * digit;
 }
 
 }  // namespace
@@ -49,13 +44,15 @@ Peaks peaks_of(std::span<const double> drive_v, std::span<const double> displace
 }
 
 double proportional_fit(const Peaks& peaks, double gain_m_per_n) {
-  return rounded_down(gain_m_per_n / peaks.tightest().used());
+  return schema::rounded_down(gain_m_per_n / peaks.tightest().used());
 }
 
-tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_per_n, bool may_clip) {
+tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_per_n,
+                                           double default_gain_m_per_n, bool may_clip) {
   const std::string fits =
-      fitting_m_per_n > 0 ? fmt::format("the largest gain that fits is {:.4g}mm/N", 1e3 * fitting_m_per_n)
-                          : "use a smaller --gain";
+      fitting_m_per_n > 0
+          ? "the largest gain that fits is " + schema::gain_in_words(fitting_m_per_n, default_gain_m_per_n)
+          : "use a smaller --gain";
   return schema::fail(schema::ErrorKind::unsuitable,
                       fmt::format("the {} reaches {:.4g} {}, its limit is {:.4g} {}", peak.name, peak.value,
                                   peak.unit, peak.limit, peak.unit),
@@ -63,9 +60,9 @@ tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_pe
                       fits + (may_clip ? "; --over-limit clip plays it clipped" : ""));
 }
 
-schema::Result<void> check_limits(const Peaks& peaks, double gain_m_per_n) {
+schema::Result<void> check_limits(const Peaks& peaks, double gain_m_per_n, double default_gain_m_per_n) {
   if (peaks.fit()) return {};
-  return limit_passed(peaks.tightest(), proportional_fit(peaks, gain_m_per_n), true);
+  return limit_passed(peaks.tightest(), proportional_fit(peaks, gain_m_per_n), default_gain_m_per_n, true);
 }
 
 std::size_t clip_drive(std::vector<double>& drive_v, double rate_hz, const schema::Transducer& transducer) {

@@ -38,15 +38,16 @@ Peaks peaks_of(std::span<const double> drive_v, std::span<const double> displace
                const schema::Transducer& transducer, AfterDrive after = AfterDrive::rest);
 
 /// Errors: unsuitable, if a limit is exceeded: which peak, at what time, and the largest gain that fits.
-schema::Result<void> check_limits(const Peaks& peaks, double gain_m_per_n);
+schema::Result<void> check_limits(const Peaks& peaks, double gain_m_per_n, double default_gain_m_per_n);
 
 /// The gain at which the tightest peak just fits if all peaks are proportional to it: gain / used, rounded
 /// down in the fourth digit.
 double proportional_fit(const Peaks& peaks, double gain_m_per_n);
 
-/// The error of check_limits() for one peak, with the gain that fits (0: none is known); `may_clip` adds the
-/// hint to clip.
-tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_per_n, bool may_clip);
+/// The error of check_limits() for one peak, with the gain that fits (0: none is known) and as a factor of
+/// the default; `may_clip` adds the hint to clip.
+tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_per_n,
+                                           double default_gain_m_per_n, bool may_clip);
 
 /// Clips each sample to drive_limit_v, then each step, beginning from rest, to slew_limit_v_per_s. Returns
 /// the number of samples changed.

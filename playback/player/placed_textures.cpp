@@ -27,28 +27,37 @@ namespace {
 constexpr double kUsualGain = 1e-3;           // default; a fingertip has about 1e3 N/m
 constexpr double kMostPathSamples = 1 << 24;  // 168 m at 10 um; the limit of all levels together
 
-// The requested gain, else that of the texture, else the default.
+// The texture with its default gain: that in its file, or kUsualGain.
 Result<schema::Scene> scene_of_texture(const ProgramRequest& request,
                                        std::optional<schema::PlaybackGain>& kept_gain) {
-  if (!request.gain_m_per_n) {
-    auto kept = schema::read_playback_gain(request.file);
-    TACTO_TRY(kept);
-    kept_gain = std::move(*kept);
-  }
-  const double usual = kept_gain ? kept_gain->gain_m_per_n : kUsualGain;
+  auto kept = schema::read_playback_gain(request.file);
+  TACTO_TRY(kept);
+  const double usual = *kept ? (*kept)->gain_m_per_n : kUsualGain;
+  if (!request.gain) kept_gain = std::move(*kept);
   schema::Scene alone;
-  alone.layers = {TextureLayer{request.file, request.at_m.value_or(0), request.gain_m_per_n.value_or(usual),
-                               "", "", request.ends.value_or(schema::TextureEnds::stop), ""}};
+  alone.layers = {TextureLayer{request.file, request.at_m.value_or(0), usual, "", "",
+                               request.ends.value_or(schema::TextureEnds::stop), ""}};
   return alone;
 }
 
 Result<schema::Scene> scene_of(const ProgramRequest& request,
                                std::optional<schema::PlaybackGain>& kept_gain) {
   if (!names_a_scene(request.file)) return scene_of_texture(request, kept_gain);
-  if (request.at_m || request.gain_m_per_n || request.ends)
+  if (request.at_m || request.ends || (request.gain && !request.gain->times_default))
     return fail(ErrorKind::usage, "a scene defines the places, gains and ends of its textures", request.file,
-                "change the scene, or name a texture");
+                "change the scene, or name a texture; a gain may be a factor, as in 2x");
   return schema::read_scene(request.file);
+}
+
+// Applies the requested gain. Returns the largest gain before, with its sign.
+double apply_gain(schema::Scene& scene, const std::optional<schema::Gain>& gain) {
+  double usual = 0;
+  for (schema::Layer& layer : scene.layers)
+    layer.visit([&](TextureLayer& texture) {
+      if (std::abs(texture.gain_m_per_n) > std::abs(usual)) usual = texture.gain_m_per_n;
+      if (gain) texture.gain_m_per_n = gain->m_per_n(texture.gain_m_per_n);
+    });
+  return usual;
 }
 
 // A limit of a newer version must not be ignored.
@@ -128,7 +137,10 @@ class TextureReader {
                   "set a gain of at least one layer");
     return {};
   }
-  void keep_gain(std::optional<schema::PlaybackGain> gain) { laid_.kept_gain_ = std::move(gain); }
+  void keep_gain(std::optional<schema::PlaybackGain> gain, double usual) {
+    laid_.kept_gain_ = std::move(gain);
+    laid_.default_gain_ = usual;
+  }
   void name_scene(const std::string& path) { laid_.scene_path_ = path; }
 
  private:
@@ -184,11 +196,12 @@ Result<PlacedTextures> place_textures(const ProgramRequest& asked) {
     request.file = std::move(*served);
   }
   std::optional<schema::PlaybackGain> kept_gain;
-  const auto scene = scene_of(request, kept_gain);
+  auto scene = scene_of(request, kept_gain);
   TACTO_TRY(scene);
+  const double usual = apply_gain(*scene, request.gain);
   PlacedTextures laid;
   TextureReader reader(laid);
-  reader.keep_gain(std::move(kept_gain));
+  reader.keep_gain(std::move(kept_gain), usual);
   if (names_a_scene(request.file)) reader.name_scene(schema::scene_path(request.file));
   TACTO_TRY(reader.read(*scene));
   return laid;

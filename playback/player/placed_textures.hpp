@@ -21,6 +21,8 @@ class PlacedTextures {
   double gain() const;
   /// The same, with its sign.
   double signed_gain() const;
+  /// signed_gain() without the gain of the request: what a factor of 1 stands for.
+  double default_gain() const { return default_gain_; }
   Ends ends() const;
   double start_m() const;
   double end_m() const;
@@ -48,6 +50,7 @@ class PlacedTextures {
   std::vector<std::string> stems_;
   std::string scene_path_;
   std::optional<schema::PlaybackGain> kept_gain_;
+  double default_gain_ = 0;
   schema::PlaybackChoices choices_;
   std::vector<std::string> notes_;
 };
@@ -58,9 +61,9 @@ std::string full_path(const std::string& path);
 /// Whether a name is that of a scene; otherwise it is a texture.
 bool names_a_scene(const std::string& file);
 
-/// Errors: as read_texture, read_scene, served_file; usage: a place, gain or ends for a scene; unsuitable: a
-/// scene of several textures whose ends are not `stop`, that reach over 2^24 samples, without any gain, or
-/// with force patches.
+/// Errors: as read_texture, read_scene, served_file; usage: a place, ends, or a gain in m/N for a scene;
+/// unsuitable: a scene of several textures whose ends are not `stop`, that reach over 2^24 samples, without
+/// any gain, or with force patches.
 schema::Result<PlacedTextures> place_textures(const ProgramRequest& request);
 
 }  // namespace tacto::playback

@@ -24,9 +24,9 @@ using schema::Result;
 constexpr int kUsualPriority = 50;  // as in the daemon
 constexpr double kUsualS = 10, kPlayStepS = 0.01, kReleaseWaitS = 0.05;
 
-double time_of(const PlayOptions& options, const std::optional<FingerScript>& script) {
+double time_of(const PlayOptions& options) {
   if (options.time_s) return *options.time_s;
-  return script ? script->path.duration_s() : kUsualS;
+  return options.finger_path ? options.finger_path->duration_s() : kUsualS;
 }
 
 Result<void> check_play_options(const PlayOptions& options) {
@@ -99,6 +99,7 @@ PlayOutcome outcome_of(const Program& program) {
   outcome.loop_period_m = made.loop_period_m, outcome.loop_seam_m = made.loop_seam_m;
   outcome.notes = made.notes;
   outcome.gain_m_per_n = program.gain_m_per_n;
+  outcome.default_gain_m_per_n = program.default_gain_m_per_n;
   outcome.kept_gain = program.kept_gain;
   outcome.choices = choices_in(program.options);
   return outcome;
@@ -153,12 +154,11 @@ HostLoopFigures looped_by(const HostLoop& loop) {
 Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
                               const std::function<void(double)>& progress) {
   TACTO_TRY(check_play_options(options));
-  auto script = read_finger_script(options.finger_path, false);
-  TACTO_TRY(script);
+  std::optional<FingerScript> script;
   // The emulated finger moves from the stream's beginning on. With this computer's loop that is before the
   // loop's delay is measured, so the finger waits.
-  if (*script) (*script)->waits = options.loop_here;
-  auto device = open_player_device(options.device_uri, *script);
+  if (options.finger_path) script = FingerScript{*options.finger_path, false, options.loop_here};
+  auto device = open_player_device(options.device_uri, script);
   TACTO_TRY(device);
   PlayerOptions player_options;
   // Emulated time can wait, so nothing may be lost.
@@ -172,8 +172,9 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   PlayOutcome outcome = outcome_of(*program);
   const PlayableRange what = playable_range(*program);
   outcome.device = device->uri;
+  outcome.real_time = device->device->is_real_time();
   outcome.simulated = firmware_host::simulated_device(device->client->description());
-  outcome.asked_s = time_of(options, *script);
+  outcome.asked_s = time_of(options);
   TACTO_TRY((*player)->load(std::move(*program)));
   if (*here) lock_memory();
   const auto played = play_through({*device, *here, **player}, options, stop_asked, progress, outcome);
@@ -183,6 +184,8 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   tell_limits(options.session, outcome);
   if (auto silence = note_of_silence(outcome.status.ticks, what))
     outcome.notes.push_back(std::move(*silence));
+  else
+    outcome.off_note = note_off_textures(outcome.status.ticks, what);
   return outcome;
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "playback/host-loop/host_loop.hpp"
+#include "playback/model/finger_path.hpp"
 #include "playback/model/limit_tally.hpp"
 #include "playback/player/player.hpp"
 #include "playback/player/program.hpp"
@@ -14,9 +15,9 @@ namespace tacto::playback {
 struct PlayOptions {
   ProgramRequest program;
   std::string device_uri;
-  std::string transducer;        ///< empty: the device's own
-  std::string finger_path;       ///< CSV, for an emulated device; empty: its own finger
-  std::optional<double> time_s;  ///< default: as long as the finger's path, or 10 s
+  std::string transducer;                 ///< empty: the device's own
+  std::optional<FingerPath> finger_path;  ///< of an emulated device; none: its own finger
+  std::optional<double> time_s;           ///< default: as long as the finger's path, or 10 s
   double gain = 1;
   bool loop_here = false;  ///< closed by this computer, on a device that keeps time
   PrepareOptions prepare;  ///< rate, inverse, delay ...; gain, ends, encoder and limits are set later
@@ -34,6 +35,8 @@ struct PlayOutcome {
   PlayerStatus status;  ///< before the device was disarmed
   RecorderCounts recorder;
   std::string device, simulated;
+  bool real_time = true;                ///< whether the device keeps time
+  std::optional<std::string> off_note;  ///< if the finger was off the textures for over a tenth of the time
   double asked_s = 0;
   double passes_to_hz = 0, delay_s = 0, delay_left_s = 0, inverse_error_db = 0;
   double loop_period_m = 0, loop_seam_m = 0;  ///< of a looped texture
@@ -41,6 +44,7 @@ struct PlayOutcome {
   std::optional<TickDecision> decision;           ///< of the program's budget
   schema::PlaybackChoices choices;                ///< the choices used
   double gain_m_per_n = 0;                        ///< the largest of the textures' gains
+  double default_gain_m_per_n = 0;                ///< the same without the gain of the request
   std::optional<schema::PlaybackGain> kept_gain;  ///< the gain stored with the texture, if that was used
   std::optional<LimitTally> limits;               ///< of the session; none: unknown, `notes` say why
   std::optional<HostLoopFigures> looped;

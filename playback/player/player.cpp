@@ -58,7 +58,8 @@ schema::Error naming(schema::Error error, const Program& program) {
 // Checks the displacement at a factor on the program's gains.
 Result<void> within_reach(const Program& program, double peak_m, double factor) {
   const schema::Transducer& transducer = program.session.transducer;
-  auto near = check_displacement(peak_m, factor, program.prepared.gain_m_per_n, transducer);
+  auto near = check_displacement(peak_m, factor, program.prepared.gain_m_per_n, program.default_gain_m_per_n,
+                                 transducer);
   if (!near) near.error().remedy += rate_as_cause(program.prepared, transducer, program.options);
   return near;
 }
@@ -148,9 +149,16 @@ Result<void> Player::change(Program program, double fade_s) {
   if (!done) return done;
   leaving_peak_m_ = program_->tray_peak_m;
   program_ = std::move(program);
+  view_textures();
   faded_at_ = view_.expected() + static_cast<std::uint64_t>((fade_s + kBehindS) * program_->prepared.rate_hz);
   recorder_->event({view_.expected(), steady_ns(), "texture changed to " + program_->name()});
   return {};
+}
+
+void Player::view_textures() {
+  const bool stops = program_->options.ends == Ends::stop;
+  view_.textures_from(stops ? program_->start_m : -INFINITY,
+                      stops ? program_->start_m + program_->length_m : INFINITY);
 }
 
 schema::SessionHeader Player::session_header() const {
@@ -192,6 +200,7 @@ Result<void> Player::arm(const std::string& session_path) {
   fault_.clear();
   stopped_because_.clear();
   view_.begin(program_->prepared.rate_hz, metres_per_count_);
+  view_textures();
   device_gain_m_per_n_ = program_->prepared.gain_m_per_n;
   faded_at_ = 0;
   const wire::Arm arm{wire::DriveSource::profile, firmware_host::millihertz(program_->prepared.rate_hz)};

@@ -113,6 +113,7 @@ class Player {
   schema::Result<void> steer(const Message& message);
   void keep(std::span<const std::uint8_t> frame);
   wire::Gain device_gain() const;
+  void view_textures();  // tells view_ where the program has textures
   schema::Result<void> wait_for_idle();
   schema::Result<void> beat();
   schema::Result<void> require(bool allowed, const char* what, const char* remedy) const;

@@ -36,13 +36,6 @@ std::string lock_path(const std::string& device_name) {
   return (usual ? "/run/lock/tactograph-" : "/tmp/tactograph-") + name.substr(0, 100) + ".lock";
 }
 
-// Below the step of encoders.
-constexpr double kMeetM = 1e-6;
-
-bool ends_where_it_began(const FingerPath& path) {
-  return std::abs(path.position_m.back() - path.position_m.front()) < kMeetM;
-}
-
 // Positions along a path at any time; only the knots are stored, because a path may last for hours.
 class Script {
  public:
@@ -140,11 +133,11 @@ Result<DeviceLock> DeviceLock::take(const std::string& device_name) {
               "stop it: tactographd, or tactograph play");
 }
 
-Result<std::optional<FingerScript>> read_finger_script(const std::string& file, bool repeated) {
+Result<std::optional<FingerScript>> read_finger_script(const std::string& file) {
   if (file.empty()) return std::optional<FingerScript>();
   auto path = read_finger_path(file);
   TACTO_TRY(path);
-  return std::optional(FingerScript{std::move(*path), repeated});
+  return std::optional(FingerScript{std::move(*path), true});
 }
 
 Result<PlayerDevice> open_player_device(const std::string& uri, const std::optional<FingerScript>& script) {

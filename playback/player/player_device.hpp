@@ -37,8 +37,9 @@ struct FingerScript {
   bool waits = false;  ///< wait at the beginning until PlayerDevice::begin_path()
 };
 
-/// The script of a finger path's CSV; none if no file is named. Errors: as read_finger_path.
-schema::Result<std::optional<FingerScript>> read_finger_script(const std::string& file, bool repeated);
+/// The script of a finger path's CSV, repeated without end; none if no file is named. Errors: as
+/// read_finger_path.
+schema::Result<std::optional<FingerScript>> read_finger_script(const std::string& file);
 
 struct PlayerDevice {
   std::unique_ptr<firmware_host::Device> device;

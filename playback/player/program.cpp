@@ -132,6 +132,7 @@ Result<void> prepare_placed(Program& program, const PlacedTextures& laid, const 
   program.prepared.built.texture_files = laid.file_count();
   program.tray_peak_m = tray_peak_m(program.prepared, transducer, options);
   program.gain_m_per_n = laid.signed_gain();
+  program.default_gain_m_per_n = laid.default_gain();
   program.start_m = laid.start_m();
   program.length_m = laid.end_m() - laid.start_m();
   return {};

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "data-schema/base/gain.hpp"
 #include "data-schema/session/session.hpp"
 #include "playback/choose/budget.hpp"
 #include "playback/choose/choices.hpp"
@@ -12,11 +13,13 @@
 
 namespace tacto::playback {
 
-/// A request. A texture may be given a position; a scene has its own.
+/// A request. A texture may be given a position, ends and a gain; a scene has its own, and accepts a factor
+/// on its gains.
 struct ProgramRequest {
   std::string file;  ///< stem or file of a texture or scene
-  std::optional<double> at_m, gain_m_per_n;
+  std::optional<double> at_m;
   std::optional<schema::TextureEnds> ends;
+  std::optional<schema::Gain> gain;
   bool implausible = false;       ///< accept a transducer with implausible numbers
   bool unfit_transducer = false;  ///< accept a transducer whose file states that its model does not fit
   TickBudget budget = {};         ///< chooses interpolation and inverse, if requested
@@ -36,6 +39,7 @@ struct Program {
   std::string scene_path;   ///< empty for a single texture
   double tray_peak_m = 0;   ///< largest displacement of the tray, at a factor of 1 (displacement_limit.hpp)
   double gain_m_per_n = 0;  ///< the largest of the textures' gains, with its sign
+  double default_gain_m_per_n = 0;                ///< the same without the gain of the request
   std::optional<schema::PlaybackGain> kept_gain;  ///< the gain stored with the texture, if that is used
   double start_m = 0;                             ///< of the first texture
   double length_m = 0;                            ///< from the first texture's start to the last one's end

@@ -42,4 +42,17 @@ std::optional<std::string> note_of_silence(const TickView& ticks, const Playable
   return "nothing was played, the drive stayed at 0 V: " + reason(ticks, what);
 }
 
+std::optional<std::string> note_off_textures(double share, double finger_from_m, double finger_to_m,
+                                             const PlayableRange& what) {
+  if (share <= kMostOffTextures) return std::nullopt;
+  return fmt::format(
+      "the finger was off the texture for {:.0f} % of the time: the finger moved {}, the texture is {}; move "
+      "the texture (--at, or at_m in the scene), continue it (--ends mirror or loop), or change the path",
+      100 * share, from_to(finger_from_m, finger_to_m), from_to(what.start_m, what.end_m));
+}
+
+std::optional<std::string> note_off_textures(const TickView& ticks, const PlayableRange& what) {
+  return note_off_textures(ticks.off_textures(), ticks.least_position_m(), ticks.greatest_position_m(), what);
+}
+
 }  // namespace tacto::playback

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reason why a playback had no drive.
+// The reason why a playback had no drive, or none for a part of the time.
 #pragma once
 
 #include <cmath>
@@ -24,5 +24,14 @@ PlayableRange playable_range(const Program& program);
 /// A sentence if ticks were played and all had a drive of zero: because of the gate, of the finger's path, or
 /// for another reason; none if there was a drive.
 std::optional<std::string> note_of_silence(const TickView& ticks, const PlayableRange& what);
+
+/// A share of the time above which the finger was off the textures for too long.
+inline constexpr double kMostOffTextures = 0.1;
+
+/// A sentence with the share, the places, and what to do, if `share` is above kMostOffTextures; positions in
+/// m.
+std::optional<std::string> note_off_textures(double share, double finger_from_m, double finger_to_m,
+                                             const PlayableRange& what);
+std::optional<std::string> note_off_textures(const TickView& ticks, const PlayableRange& what);
 
 }  // namespace tacto::playback

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "data-schema/base/gain.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "playback/model/chain.hpp"
 
@@ -54,12 +55,6 @@ Peak tray_response(const Prepared& prepared, const schema::Transducer& transduce
       highest_hz, [&](double f) { return std::abs(chain_response(chain, f)) * taps_response(prepared, f); });
 }
 
-// Rounded down in the fourth digit, so that the value in a message does fit.
-double fitting(double value) {
-  const double digit = std::pow(10, std::floor(std::log10(value)) - 3);
-  return std::floor(value / digit) * digit;
-}
-
 }  // namespace
 
 double tray_peak_m(const Prepared& prepared, const schema::Transducer& transducer,
@@ -81,17 +76,17 @@ std::string rate_as_cause(const Prepared& prepared, const schema::Transducer& tr
 }
 
 schema::Result<void> check_displacement(double peak_m, double factor, double gain_m_per_n,
-                                        const schema::Transducer& transducer) {
+                                        double default_gain_m_per_n, const schema::Transducer& transducer) {
   const double limit_m = transducer.displacement_limit_m, reached_m = std::abs(factor) * peak_m;
   if (!(reached_m > kSinglePrecision * limit_m)) return {};
-  const double most = fitting(limit_m / peak_m);
-  return schema::fail(schema::ErrorKind::unsuitable,
-                      fmt::format("the tray's displacement could reach {}, its limit is {}",
-                                  schema::for_people(reached_m, schema::Dimension::length),
-                                  schema::for_people(limit_m, schema::Dimension::length)),
-                      transducer.name,
-                      fmt::format("the largest gain that fits is {:.4g}mm/N, or a factor of {:.4g}",
-                                  1e3 * most * std::abs(gain_m_per_n), most));
+  return schema::fail(
+      schema::ErrorKind::unsuitable,
+      fmt::format("the tray's displacement could reach {}, its limit is {}",
+                  schema::for_people(reached_m, schema::Dimension::length),
+                  schema::for_people(limit_m, schema::Dimension::length)),
+      transducer.name,
+      "the largest gain that fits is " +
+          schema::gain_in_words(std::abs(gain_m_per_n) * limit_m / peak_m, std::abs(default_gain_m_per_n)));
 }
 
 }  // namespace tacto::playback

@@ -17,9 +17,9 @@ double tray_peak_m(const Prepared& prepared, const schema::Transducer& transduce
                    const PrepareOptions& options);
 
 /// Checks that the tray stays within the transducer's displacement_limit_m at `factor` times the program's
-/// own gain. Errors: unsuitable, with the largest factor and gain that fit.
+/// own gain. Errors: unsuitable, with the largest gain that fits, also as a factor of the default gain.
 schema::Result<void> check_displacement(double peak_m, double factor, double gain_m_per_n,
-                                        const schema::Transducer& transducer);
+                                        double default_gain_m_per_n, const schema::Transducer& transducer);
 
 /// An addition to the remedy if the rate cuts the band and the largest displacement is above its end, where
 /// the inverse is not constrained: a resonance may be there. Otherwise empty.

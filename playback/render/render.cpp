@@ -106,7 +106,7 @@ Clipping clipping_of(const std::vector<double>& wished, const std::vector<double
 Result<ExactDrive> limited_drive(Rendering& rendering, const PaddedSpectrum& target, const Chain& chain,
                                  const RenderOptions& options) {
   auto drive = exact_drive(target, options.band, chain, options.inverse);
-  const auto within = check_limits(drive.peaks, options.gain_m_per_n);
+  const auto within = check_limits(drive.peaks, options.gain_m_per_n, options.default_gain_m_per_n);
   if (within) return drive;
   if (options.over_limit == OverLimit::refuse) return schema::forward_error(within);
   auto held = clipped_drive(target, options.band, chain, options.inverse);

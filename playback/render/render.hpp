@@ -32,11 +32,12 @@ enum class Engine { reference, kernel };
 inline constexpr double kReferenceOnsetS = 0.005, kKernelOnsetS = 0.02;
 
 struct RenderOptions {
-  double rate_hz = 10e3;       ///< of the drive; Wiertlewski 2011 records at 10 kHz
-  double gain_m_per_n = 1e-3;  ///< G_psi: displacement for force. A fingertip has about 1e3 N/m
-  double at_m = 0;             ///< of a single texture: place of its position 0 on the path's axis
-  Ends ends = Ends::stop;      ///< beyond a single texture
-  spatial::Band band;          ///< of the displacement
+  double rate_hz = 10e3;               ///< of the drive; Wiertlewski 2011 records at 10 kHz
+  double gain_m_per_n = 1e-3;          ///< G_psi: displacement for force. A fingertip has about 1e3 N/m
+  double default_gain_m_per_n = 1e-3;  ///< for messages: what a factor of 1 stands for
+  double at_m = 0;                     ///< of a single texture: place of its position 0 on the path's axis
+  Ends ends = Ends::stop;              ///< beyond a single texture
+  spatial::Band band;                  ///< of the displacement
   Inverse inverse = Inverse::full;
   Reconstruction reconstruction = Reconstruction::none;
   double reconstruction_cutoff_hz = 600;

@@ -82,12 +82,13 @@ double fitting_gain(const KernelRun& run, Peaks peaks) {
 
 tl::unexpected<schema::Error> refuse_cut(const KernelRun& run, bool may_clip) {
   const Peaks asked = run.asked_at(run.job.options.gain_m_per_n);
-  return limit_passed(asked.tightest(), fitting_gain(run, asked), may_clip);
+  return limit_passed(asked.tightest(), fitting_gain(run, asked), run.job.options.default_gain_m_per_n,
+                      may_clip);
 }
 
 tl::unexpected<schema::Error> refuse_displacement(const KernelRun& run, const Peak& displacement_m) {
   const Peaks asked = run.asked_at(run.job.options.gain_m_per_n);
-  return limit_passed(displacement_m, fitting_gain(run, asked), false);
+  return limit_passed(displacement_m, fitting_gain(run, asked), run.job.options.default_gain_m_per_n, false);
 }
 
 // Reports what was clipped; a displacement beyond its limit is refused, because nothing clips it.
@@ -120,7 +121,7 @@ Result<void> check_read(const Prepared& prepared, const FingerPath& path, const 
       fmt::format(
           "the path reaches {:.4g} m, the kernel reads the texture up to {:.4g} m from the encoder's zero",
           farthest_m, reach_m),
-      "--path", "place path and texture (--at) nearer to it, or render with --engine reference");
+      "--finger-path", "place path and texture (--at) nearer to it, or render with --engine reference");
 }
 
 }  // namespace

@@ -33,7 +33,9 @@ void TickView::take(const schema::SessionTick& tick) {
   greatest_ = std::max(greatest_, count_);
   ++ticks_;
   late_ += (tick.flags & wire::kTickLate) != 0;
-  playing_ += (tick.flags & kPlaysOrFails) == wire::kTickPlaying;
+  const bool playing = (tick.flags & kPlaysOrFails) == wire::kTickPlaying;
+  playing_ += playing;
+  off_ += playing && (position_m() < from_m_ || position_m() > to_m_);
   blind_ += (tick.flags & wire::kTickBlind) != 0;
   limited_ += (tick.flags & kAnyLimit) != 0;
   energy_limited_ += (tick.flags & wire::kTickEnergyLimited) != 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "data-schema/session/session.hpp"
@@ -14,6 +15,8 @@ class TickView {
  public:
   /// Resets all figures.
   void begin(double rate_hz, double metres_per_count);
+  /// The range of positions in which the following ticks have a texture; before, all positions have one.
+  void textures_from(double from_m, double to_m) { from_m_ = from_m, to_m_ = to_m; }
   /// Call in the order of the ticks.
   void take(const schema::SessionTick& tick);
   void take_loss(std::uint64_t count) { lost_ += count; }
@@ -35,6 +38,10 @@ class TickView {
   const schema::SessionTick& last() const { return last_; }
   /// Time in play; lost ticks count as not played.
   double playing_s() const { return static_cast<double>(playing_) / rate_hz_; }
+  /// The share of the time in play in which the finger was off the textures; 0 before play.
+  double off_textures() const {
+    return playing_ == 0 ? 0 : static_cast<double>(off_) / static_cast<double>(playing_);
+  }
   double span_s() const { return static_cast<double>(expected_) / rate_hz_; }
   double position_m() const { return metres_per_count_ * static_cast<double>(count_); }
   /// The smallest and the greatest position so far.
@@ -50,7 +57,8 @@ class TickView {
   static constexpr std::size_t kPlaces = 512;  // 25 ms at 20 kHz
   double rate_hz_ = 1, metres_per_count_ = 0;
   std::uint64_t expected_ = 0, ticks_ = 0, lost_ = 0, late_ = 0, limited_ = 0, blind_ = 0;
-  std::uint64_t energy_limited_ = 0, gated_ = 0, playing_ = 0;
+  std::uint64_t energy_limited_ = 0, gated_ = 0, playing_ = 0, off_ = 0;
+  double from_m_ = -INFINITY, to_m_ = INFINITY;
   std::uint64_t second_from_ = 0, late_before_ = 0;
   double late_part_ = 0, mean_square_ = 0, share_ = 0, peak_v_ = 0;
   std::int64_t count_ = 0, least_ = INT64_MAX, greatest_ = INT64_MIN;  // continue beyond 2^31

@@ -75,7 +75,7 @@ TEST_F(FidelityOfATexture, RowsAreInTheOrderOfWhatTheTrayHasBesideTheModel) {
 
 TEST_F(FidelityOfATexture, TellsWhatTheLimitsTookAway) {
   options_.play.device_uri = "sim:seed=4711,hysteresis=0.1";
-  options_.play.program.gain_m_per_n = 0.05;  // 150 um RMS: beyond the transducer's 5 V
+  options_.play.program.gain = {0.05, false};  // 150 um RMS: beyond the transducer's 5 V
   const Fidelity found = measured();
   ASSERT_EQ(found.speeds.front().rows.size(), 1U) << "the URI says which tray it is";
   EXPECT_GT(found.speeds.front().amplitude_limited, 100U);
@@ -88,7 +88,7 @@ TEST_F(FidelityOfATexture, TellsWhatTheLimitsTookAway) {
 TEST_F(FidelityOfATexture, AsksAboutTheUnitWhereThirtyTimesTheLimitIsWanted) {
   options_.play.device_uri = "sim:seed=4711,hysteresis=0.1";
   for (const double gain_m_per_n : {1.0, 0.05}) {
-    options_.play.program.gain_m_per_n = gain_m_per_n;
+    options_.play.program.gain = {gain_m_per_n, false};
     std::string notes;
     const Fidelity found = measured();
     for (const std::string& note : found.speeds.front().notes) notes += note;

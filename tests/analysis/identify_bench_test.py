@@ -50,7 +50,7 @@ def a_bench_is_identified_alone_and_played():
     said = tacto.run_json("identify", "-d", LOADED, "--second-mode", "-o", "said")
     assert said["verdict"] == "fits" and "added later" in said["load"], said
     assert abs(said["loop_opening_percent"] - 16) < 0.3, said
-    tacto.run("render", "c-01", "--path", path_of_a_finger(), "--transducer", "joint", "-o", "drive.wav", "--over-limit", "clip")
+    tacto.run("render", "c-01", "--finger-path", path_of_a_finger(), "--transducer", "joint", "-o", "drive.wav", "--over-limit", "clip")
 
 
 def without_limits():

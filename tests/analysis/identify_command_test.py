@@ -140,7 +140,7 @@ def a_misfit_is_refused_unless_forced():
     tacto.run("spatial", "c", "-o", "c")
     texture = sorted(pathlib.Path(".").glob("c*.texture.json"))[0]
     pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.005\n0.5,0.02\n")
-    render = ["render", texture, "--path", "path.csv", "--transducer", "wrong", "-o", "drive.wav", "--over-limit", "clip"]
+    render = ["render", texture, "--finger-path", "path.csv", "--transducer", "wrong", "-o", "drive.wav", "--over-limit", "clip"]
     out, err = tacto.run(*render, code=5)
     assert "does not fit" in err and "--unfit-transducer" in err, err
     tacto.run(*render, "--unfit-transducer")

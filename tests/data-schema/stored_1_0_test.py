@@ -58,7 +58,7 @@ def session_replays_to_the_bit(folder):
 
 
 def scene_renders_the_drive(folder):
-    run("render", "pair", "--path", "path.csv", "--transducer", "bender.transducer.json", "--rate", "5kHz",
+    run("render", "pair", "--finger-path", "path.csv", "--transducer", "bender.transducer.json", "--rate", "5kHz",
         "-o", "again.wav", cwd=folder)
     stored, _ = soundfile.read(folder / "drive.wav")
     again, _ = soundfile.read(folder / "again.wav")

@@ -146,11 +146,11 @@ def from_load_to_a_session_that_replays():
         assert armed["played_s"] == 0 < armed["armed_s"], armed
         assert "playing" in ctl("play")[0]
         time.sleep(1)
-        ctl("gain", "0.5")
+        ctl("gain", "25%")
         time.sleep(0.5)
         status = json.loads(ctl("status", "--json")[0])
         assert status["state"] == "playing" and status["drive_peak_v"] > 0.01 and status["lost_ticks"] == 0, status
-        assert abs(status["speed_mps"]) < 0.2 and status["gain"] == 0.5
+        assert abs(status["speed_mps"]) < 0.2 and status["gain"] == 0.5 and status["gain_m_per_n"] == 2.5e-4
         assert "armed" in ctl("stop")[0]
         assert "idle" in ctl("disarm")[0]
         session = json.loads(ctl("status", "--json")[0])["session"]
@@ -547,6 +547,39 @@ def gain_saved_in_the_scene():
     assert saved["gain_set_by"] == pwd.getpwuid(os.geteuid()).pw_name, saved
 
 
+def gains_are_factors_of_the_default_or_displacement_for_force():
+    """ctl load and ctl gain accept the same forms as play and render. A factor refers to the default of the texture or
+    scene, also after a load with another gain; `gain` of the protocol refers to the loaded gain."""
+    prepare_files()
+    layers = [{"type": "texture", "texture": "oak", "at_m": at_m, "gain_m_per_n": gain} for at_m, gain in ((0, 4e-4), (0.05, -2e-4))]
+    pathlib.Path("s.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "layers": layers}))
+    ctl = lambda *arguments: json.loads(tacto.run("ctl", *arguments, "--socket", "control", "--json")[0])
+    refused = lambda *arguments: json.loads(tacto.run("ctl", *arguments, "--socket", "control", "--json", code=2)[1])
+    with daemon():
+        client = Client()
+        error = client.ask(request="gain", times_default=0.5)["error"]
+        assert error["fault"] == 1 and error["remedy"] == "load one first", error
+        loaded = ctl("load", "oak", "--gain", "50%")
+        assert (loaded["gain_m_per_n"], loaded["default_gain_m_per_n"]) == (5e-4, 1e-3), loaded
+        for text, gain_m_per_n in (("0.25x", 2.5e-4), ("100%", 1e-3), ("0.1mm/N", 1e-4), ("-20%", -2e-4)):
+            answer = ctl("gain", text)
+            assert np.isclose(answer["gain_m_per_n"], gain_m_per_n, rtol=1e-12) and answer.get("inverts_texture", False) == (gain_m_per_n < 0), answer
+            assert client.must(request="status")["gain_m_per_n"] == answer["gain_m_per_n"], text
+        assert np.isclose(client.must(request="gain", gain=0.5)["gain_m_per_n"], 2.5e-4, rtol=1e-12)
+        for bare in ("0.5", "0.5N", "x", ""):
+            assert "mm/N" in refused("gain", bare)["remedy"], bare
+        for request in ({"request": "load", "file": "oak", "gain_m_per_n": 1e-4, "times_default": 1}, {"request": "gain", "gain": 1, "times_default": 1},
+                        {"request": "gain", "save": True}, {"request": "arm", "times_default": 1}):
+            assert client.ask(**request)["error"]["fault"] == 3, request
+        assert refused("load", "s", "--gain", "1mm/N")["remedy"].endswith("as in 2x")
+        assert ctl("load", "s", "--gain", "50%")["gain_m_per_n"] == 2e-4
+        assert refused("gain", "1mm/N")["remedy"].endswith("as in 2x")
+        ctl("gain", "2x", "--save")
+        assert [layer["gain_m_per_n"] for layer in json.loads(pathlib.Path("s.scene.json").read_text())["layers"]] == [8e-4, -4e-4]
+        assert np.isclose(ctl("gain", "0.5x", "--save")["gain_m_per_n"], 2e-4, rtol=1e-12)  # of the default when it was loaded
+        assert np.allclose([layer["gain_m_per_n"] for layer in json.loads(pathlib.Path("s.scene.json").read_text())["layers"]], [2e-4, -1e-4], rtol=1e-12)
+
+
 def gain_kept_with_the_texture():
     """One client saves a gain; the next load has it, with author and time; the rest of the sidecar and the WAV do not
     change."""
@@ -600,7 +633,7 @@ def gain_kept_with_the_texture():
     assert tacto.run_json("play", "oak", "-d", "sim:", "--time", "0.2s", "--gain", "0.1mm/N", "-o", "named")["gain_m_per_n"] == 1e-4
     assert tacto.run_json("explain", "oak")["gain_set_by"] == "token"
     pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.002\n0.5,0.02\n")
-    rendered = tacto.run_json("render", "oak", "--path", "path.csv", "--transducer", "wiertlewski2011", "-o", "drive.wav")
+    rendered = tacto.run_json("render", "oak", "--finger-path", "path.csv", "--transducer", "wiertlewski2011", "-o", "drive.wav")
     assert abs(rendered["gain_m_per_n"] - 4e-4) < 1e-12 and rendered["gain_set_by"] == "token", rendered
 
 
@@ -682,7 +715,7 @@ def a_path_that_ends_where_it_began_is_a_loop():
         shown = tacto.run("ctl", "top", "--time", "0.2s", "--socket", "control")[0]
         assert "idle" in shown and "finger" in shown and "\033" not in shown, shown
         assert terminal_shows(5, 20, "ctl", "top", "--time", "0.2s", "--socket", "control"), "a small terminal"
-        for ignored in (["arm", "--gain", "1mm/N"], ["play", "--at", "3mm"], ["gain", "0.5", "--inverse", "gain"], ["stop", "--save"],
+        for ignored in (["arm", "--gain", "1mm/N"], ["play", "--at", "3mm"], ["gain", "50%", "--inverse", "gain"], ["stop", "--save"],
                         ["status", "--time", "1s"], ["top", "--time", "-1s"]):
             assert "does not accept" in tacto.run("ctl", *ignored, "--socket", "control", code=2)[1], ignored
         client = Client()
@@ -1037,7 +1070,8 @@ def what_clients_over_tcp_load():
 TESTS = [from_load_to_a_session_that_replays, what_the_limits_took_is_found, kill_9_in_mid_play, sigstop_of_200_ms, encoder_jump_of_10_mm, a_texture_with_nan,
          garbage_and_endless_lines, many_requests_at_once, a_thousand_clients, second_daemon, permissions, full_disk_for_the_log,
          the_loop_closed_on_the_host, the_service_manager_is_told, a_band_that_the_rate_cuts_is_told,
-         late_ticks_beyond_a_limit_are_a_fault, gain_saved_in_the_scene, gain_kept_with_the_texture, a_texture_changed_in_mid_play,
+         late_ticks_beyond_a_limit_are_a_fault, gain_saved_in_the_scene, gains_are_factors_of_the_default_or_displacement_for_force, gain_kept_with_the_texture,
+         a_texture_changed_in_mid_play,
          a_path_that_ends_where_it_began_is_a_loop, what_was_chosen_is_told, a_promise_in_the_configuration, a_load_holds_up_nobody, the_terminal_goes_away,
          files_that_nobody_can_play, by_tcp_with_a_token, silent_clients_do_not_keep_stop_out,
          whoever_armed_goes_away, whoever_armed_is_silent, play_that_is_watched, what_clients_over_tcp_load]

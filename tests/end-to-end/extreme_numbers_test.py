@@ -42,7 +42,7 @@ def refuse_constant(text):
 
 def commands_with(name):
     """The commands, each with the file that it writes, if any."""
-    return [(["render", "oak", "--path", "path.csv", "--transducer", name, "--over-limit", "clip", "-o", f"{name}.wav", "--displacement",
+    return [(["render", "oak", "--finger-path", "path.csv", "--transducer", name, "--over-limit", "clip", "-o", f"{name}.wav", "--displacement",
               f"{name}-tray.wav", "--json"], [f"{name}.wav", f"{name}-tray.wav"]),
             (["explain", "oak", "--transducer", name, "--json"], []),
             (["play", "oak", "-d", "sim:", "--transducer", name, "--time", "0.05s", "-o", f"{name}-played", "--json"], [])]
@@ -88,7 +88,7 @@ def what_was_found():
     daemon_test.prepare_files()
     for member, value in (("actuator_scale", 1e308), ("actuator_scale", 1e-300), ("mass_kg", 1e-12), ("flexure_stiffness_n_per_m", 2.0**31)):
         write_transducer("odd", (member,), value)
-        refused = run("render", "oak", "--path", "path.csv", "--transducer", "odd", "-o", "drive.wav")
+        refused = run("render", "oak", "--finger-path", "path.csv", "--transducer", "odd", "-o", "drive.wav")
         assert refused.returncode == 5 and f"#/{member}: {member} is {value:g}" in refused.stderr, refused
         assert "a plausible value is from" in refused.stderr and "--implausible" in refused.stderr, refused
         assert not pathlib.Path("drive.wav").exists()

@@ -33,7 +33,7 @@ def refused_then_forced(outputs, *command):
 
 def every_verb_keeps_what_is_there():
     make_inputs()
-    render = ["render", "oak", "--path", "path.csv", "--transducer", "wiertlewski2011", "-o"]
+    render = ["render", "oak", "--finger-path", "path.csv", "--transducer", "wiertlewski2011", "-o"]
     refused_then_forced(["oak.nc", "oak.png", "oak.csv"], "spectrogram", "oak", "-o", "oak.nc", "-o", "oak.png", "-o", "oak.csv")
     refused_then_forced(["d.csv"], "describe", "oak", "-o", "d.csv")
     refused_then_forced(["d.descriptions.json"], "describe", "oak", "-o", "d")
@@ -58,7 +58,7 @@ def recordings_are_never_replaced():
     pathlib.Path("broken-off.events.jsonl").write_text("{}\n")
     pathlib.Path("rec.wav").write_bytes(whole)
     tacto.run("play", "oak", "-d", "sim:", "--finger-path", "path.csv", "-o", "live")
-    render = ["render", "oak", "--path", "path.csv", "--transducer", "wiertlewski2011", "--force", "-o"]
+    render = ["render", "oak", "--finger-path", "path.csv", "--transducer", "wiertlewski2011", "--force", "-o"]
     for name in ("rec.wav", "broken-off.wav", "oak.texture.wav"):
         before = pathlib.Path(name).read_bytes()
         for command in (render + [name], ["session", "live", "--force", "-o", name]):
@@ -80,7 +80,7 @@ def missing_folders_are_made_and_none_is_left_empty():
             (["{}.wav", "{}.json"], ("record", *sim, "--time", "0.2s")), (["{}.texture.json"], ("spatial", "rec", "--stroke", "1")),
             (["{}.nc", "{}.png", "{}.csv"], ("spectrogram", "oak")), (["{}.png"], ("sheet", "oak")), (["{}.csv"], ("formants", "oak")),
             (["{}.csv"], ("describe", "oak")), (["{}.results.json"], ("compare", "oak", "oak")), (["{}.html"], ("report", ".")),
-            (["{}.wav"], ("render", "oak", "--path", "path.csv", "--transducer", "wiertlewski2011")),
+            (["{}.wav"], ("render", "oak", "--finger-path", "path.csv", "--transducer", "wiertlewski2011")),
             (["{}.session"], ("play", "oak", "-d", "sim:", "--finger-path", "path.csv")),
             (["{}.wav", "{}.json"], ("import", "path.csv", "--channel", "tangential_force=position_m*1N", "--rate", "10Hz"))):
         stem = f"new/{command[0]}/name"
@@ -114,7 +114,7 @@ def one_file_by_two_spellings_is_named_twice():
     for other in ("x/../x/a.nc", "link/a.nc", "./x/a.nc", f"{os.getcwd()}/x/a.nc"):
         _, said = tacto.run("spectrogram", "oak", "-o", "x/a.nc", "-o", other, code=USAGE)
         assert "is named twice" in said and not os.path.exists("x/a.nc"), said
-    _, said = tacto.run("render", "oak", "--path", "path.csv", "--transducer", "wiertlewski2011", "-o", "x/a.wav",
+    _, said = tacto.run("render", "oak", "--finger-path", "path.csv", "--transducer", "wiertlewski2011", "-o", "x/a.wav",
                         "--displacement", "link/a.wav", code=USAGE)
     assert "two outputs" in said, said
     _, said = tacto.run("compare", "oak", "oak", "-o", "x/c.html", "-o", "link/c.html", code=USAGE)

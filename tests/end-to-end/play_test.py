@@ -74,7 +74,7 @@ def the_sign_of_a_gain_is_told():
     assert "inverts_texture" not in upright, upright
     write_strokes(1)
     for gain, inverts in (("-0.5mm/N", True), ("0.5mm/N", False)):
-        rendered = tacto.run_json("render", "oak", "--path", "path.csv", "--transducer", "wiertlewski2011", f"--gain={gain}", "-o", "drive.wav", "--force")
+        rendered = tacto.run_json("render", "oak", "--finger-path", "path.csv", "--transducer", "wiertlewski2011", f"--gain={gain}", "-o", "drive.wav", "--force")
         assert rendered["gain_m_per_n"] == float(gain[:-4]) * 1e-3 and ("inverts_texture" in rendered) == inverts, rendered
     # While a texture plays the emulated surface is not used, so neither the report nor the session names it. A
     # recording does.
@@ -128,7 +128,7 @@ def rendered_is_what_is_played():
         step_m = np.ptp(table["position_m"]) / np.ptp(table["encoder_count"])
         table = table[int(np.flatnonzero(table["playing"])[0]):int(np.flatnonzero(table["playing"])[-1]) + 1]
         write_counts_path("counts.csv", table)
-        said = tacto.run_json("render", "--force", *what, "--path", "counts.csv", "--transducer", "wiertlewski2011", "--engine", "kernel",
+        said = tacto.run_json("render", "--force", *what, "--finger-path", "counts.csv", "--transducer", "wiertlewski2011", "--engine", "kernel",
                               "--rate", "2kHz", "--hold", "zero-order", "--onset", "20ms", "--encoder-step", f"{step_m * 1e9:.6g}nm",
                               "-o", f"{name}.wav")
         drive, rate = soundfile.read(f"{name}.wav", dtype="float32")
@@ -150,7 +150,7 @@ def a_loop_is_the_sine_that_it_is():
     pathlib.Path("even.csv").write_text("time_s,position_m\n" + "".join(f"{a!r},{b!r}\n" for a, b in zip(t.tolist(), place.tolist())))
     errors = {}
     for engine, step in (("reference", ()), ("kernel", ("--encoder-step", "10nm"))):
-        said = tacto.run_json("render", "--force", "short", "--ends", "loop", "--gain", "0.5mm/N", "--path", "even.csv", "--transducer", "wiertlewski2011",
+        said = tacto.run_json("render", "--force", "short", "--ends", "loop", "--gain", "0.5mm/N", "--finger-path", "even.csv", "--transducer", "wiertlewski2011",
                               "--engine", engine, "--rate", "10kHz", *step, "-o", f"{engine}.wav",
                               "--target", "wanted.wav", "--displacement", f"{engine}-tray.wav")
         wanted, rate = soundfile.read("wanted.wav", dtype="float64")
@@ -174,7 +174,7 @@ def a_loop_is_the_sine_that_it_is():
         {"type": "texture", "texture": "short", "at_m": 0, "gain_m_per_n": 5e-4, "ends": "loop"}]}))
     explained = tacto.run_json("explain", "short.scene.json")
     assert abs(explained["loop_period_m"] - 0.013) < 1e-12 and "meets its beginning" in json.dumps(explained["left_out"]), explained
-    _, said = tacto.run("render", "two.scene.json", "--at", "1mm", "--path", "even.csv", "--transducer", "wiertlewski2011", "-o", "x.wav", code=2)
+    _, said = tacto.run("render", "two.scene.json", "--at", "1mm", "--finger-path", "even.csv", "--transducer", "wiertlewski2011", "-o", "x.wav", code=2)
     assert "a scene defines the places" in said and not pathlib.Path("x.wav").exists(), said
 
 
@@ -186,7 +186,7 @@ def what_the_limits_took_is_told_in_db():
     weak = {**json.loads(preset.read_text()), "name": "weak", "drive_limit_v": 0.3}
     pathlib.Path("weak.transducer.json").write_text(json.dumps(weak))
     shared = ("oak", "--gain", "0.5mm/N", "--transducer", "weak")
-    rendered = tacto.run_json("render", "--force", *shared, "--path", "once.csv", "--engine", "kernel", "--over-limit", "clip", "--hold", "zero-order",
+    rendered = tacto.run_json("render", "--force", *shared, "--finger-path", "once.csv", "--engine", "kernel", "--over-limit", "clip", "--hold", "zero-order",
                               "--onset", "20ms", "--rate", "2kHz", "-o", "drive.wav")
     played = tacto.run_json("play", *shared, "-d", "sim:", "--finger-path", "once.csv", "-o", "weak")
     said = tacto.run_json("session", "weak")

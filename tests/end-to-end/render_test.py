@@ -71,7 +71,7 @@ def made(name):
 
 def drive_gives_what_was_wanted():
     made("tex")
-    report = tacto.run_json("render", "tex", "--path", "path.csv", "--transducer", "wiertlewski2011", "-o", "drive.wav")
+    report = tacto.run_json("render", "tex", "--finger-path", "path.csv", "--transducer", "wiertlewski2011", "-o", "drive.wav")
     drive, rate = soundfile.read("drive.wav")
     assert rate == RATE and drive.ndim == 1
     error = error_after_delay(displaced(drive), wanted("tex", len(drive)), report["delay_s"])
@@ -83,7 +83,7 @@ def drive_gives_what_was_wanted():
 
 def reconstruction_filter_is_accounted_for():
     made("tex")
-    tacto.run("render", "tex", "--path", "path.csv", "--transducer", "wiertlewski2011", "-o", "drive.wav",
+    tacto.run("render", "tex", "--finger-path", "path.csv", "--transducer", "wiertlewski2011", "-o", "drive.wav",
               "--reconstruction", "butterworth3")
     drive, _ = soundfile.read("drive.wav")
     filter_response = lambda f: freqs(*butter(3, 2 * np.pi * 600, analog=True), worN=2 * np.pi * f)[1]
@@ -97,7 +97,7 @@ def reconstruction_filter_is_accounted_for():
 
 def displacement_file_is_the_model():
     made("tex")
-    tacto.run("render", "tex", "--path", "path.csv", "--transducer", "wiertlewski2011", "-o", "drive.wav",
+    tacto.run("render", "tex", "--finger-path", "path.csv", "--transducer", "wiertlewski2011", "-o", "drive.wav",
               "--displacement", "tray.wav")
     drive, _ = soundfile.read("drive.wav")
     tray, _ = soundfile.read("tray.wav")

@@ -146,7 +146,7 @@ def a_newer_version_is_said_once():
             newer[file] = names
             add_newer(file, **extra)
         for number, verb in enumerate((["explain", "s", "--transducer", "mine"], ["play", "s", "-d", "sim:", "--time", "0.1s", "--transducer", "mine"],
-                                       ["render", "s", "--path", "way.csv", "--transducer", "mine", "-o", f"drive{len(newer)}.wav"])):
+                                       ["render", "s", "--finger-path", "way.csv", "--transducer", "mine", "-o", f"drive{len(newer)}.wav"])):
             said = tacto.run(*verb, *(["-o", f"n{len(newer)}"] if number == 1 else []))[1]
             lines = [line for line in said.splitlines() if "newer than this program's" in line]
             assert len(lines) == len(newer), (verb, said)

@@ -124,7 +124,7 @@ MAY_INCLUDE = {
         "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/recording "
         "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram}",
     "analysis/fidelity":
-        "analysis/{compare page} data-schema/{base files results texture transducer} firmware-host/{sim/bench "
+        "analysis/{compare page} data-schema/{base results texture transducer} firmware-host/{sim/bench "
         "sim/device sim/physics} playback/{model player render/reference session} spatial/{dsp/filter "
         "features texture}",
     "analysis/identify/fit": "analysis/identify/measure data-schema/{base transducer} playback/model",

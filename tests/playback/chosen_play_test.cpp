@@ -167,7 +167,7 @@ TEST(PlaybackChoices, AReconstructionFilterIsUndoneWhereItIsNamed) {
 class ChosenPlay : public PlayerOnSim {
  protected:
   Program chosen(const PlaybackChoices& choices, const std::string& name = "grating") {
-    ProgramRequest request{folder_ / name, {}, 5e-4, {}};
+    ProgramRequest request{folder_ / name, {}, {}, schema::Gain{5e-4, false}};
     request.choices = choices;
     return made(request);
   }

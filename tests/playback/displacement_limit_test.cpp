@@ -50,19 +50,19 @@ TEST(DisplacementLimit, ReachesTheTopOfTheResonanceHoweverSharp) {
   }
 }
 
-// The factor in the message is accepted, and a thousandth more is refused.
+// The gain in the message is accepted, and a thousandth more is refused.
 TEST(DisplacementLimit, NamesAFactorThatFits) {
   schema::Transducer t = with_damping_ratio(0.096);
   for (const double limit_m : {3.33333e-6, 1.99999e-6, 7.77777e-6}) {
     t.displacement_limit_m = limit_m;
-    const auto refused = check_displacement(10e-6, 1, kGainMPerN, t);
+    const auto refused = check_displacement(10e-6, 1, kGainMPerN, kGainMPerN, t);
     ASSERT_FALSE(refused);
     const std::string& remedy = refused.error().remedy;
-    const double factor = std::stod(remedy.substr(remedy.find("factor of ") + 10));
-    EXPECT_TRUE(check_displacement(10e-6, factor, kGainMPerN, t)) << remedy;
-    EXPECT_TRUE(check_displacement(10e-6, -factor, kGainMPerN, t)) << remedy;
-    EXPECT_FALSE(check_displacement(10e-6, 1.001 * factor, kGainMPerN, t)) << remedy;
-    EXPECT_FALSE(check_displacement(10e-6, -1.001 * factor, kGainMPerN, t)) << remedy;
+    const double factor = std::stod(remedy.substr(remedy.find("(") + 1));
+    EXPECT_TRUE(check_displacement(10e-6, factor, kGainMPerN, kGainMPerN, t)) << remedy;
+    EXPECT_TRUE(check_displacement(10e-6, -factor, kGainMPerN, kGainMPerN, t)) << remedy;
+    EXPECT_FALSE(check_displacement(10e-6, 1.001 * factor, kGainMPerN, kGainMPerN, t)) << remedy;
+    EXPECT_FALSE(check_displacement(10e-6, -1.001 * factor, kGainMPerN, kGainMPerN, t)) << remedy;
   }
 }
 

@@ -150,7 +150,7 @@ def check_choice(folder):
 
 
 def render(folder, *more):
-    return made.report_of("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav",
+    return made.report_of("render", folder / "t", "--finger-path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav",
                           "--gain", "0.2mm/N", *more)
 
 
@@ -161,15 +161,15 @@ def check_render(folder):
     # At rests and reversals the kernel's error is larger: the measured error breaks the promise. A named one stays.
     report = render(folder, "--max-tick", "1us", "--hold", "zero-order", "--max-error", "0.5%")
     assert report["engine"] == "reference" and report["displacement_error_db"] < 20 * np.log10(5e-3), report
-    refused(UNSUITABLE, "the rendering's error", "render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011",
+    refused(UNSUITABLE, "the rendering's error", "render", folder / "t", "--finger-path", folder / "path.csv", "--transducer", "wiertlewski2011",
             "-o", folder / "no.wav", "--gain", "0.2mm/N", "--engine", "kernel", "--hold", "zero-order", "--max-error", "0.5%")
     # The best possible choice keeps its own promise, not the path's: the difference is reported.
-    exact = made.run("render", "--force", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav", "--gain", "0.2mm/N",
+    exact = made.run("render", "--force", folder / "t", "--finger-path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav", "--gain", "0.2mm/N",
                      "--engine", "kernel", "--hold", "zero-order", "--quality", "exact")
     assert exact.returncode == 0 and "are predicted for the choice, the encoder's step" in exact.stderr, exact
     report = render(folder, "--engine", "kernel", "--hold", "zero-order", "--max-error", "10%", "--explain")
     assert report["engine"] == "kernel" and report["displacement_error_db"] <= -20 and "why" in report, report
-    refused(UNSUITABLE, "requested", "render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "no.wav",
+    refused(UNSUITABLE, "requested", "render", folder / "t", "--finger-path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "no.wav",
             "--inverse", "gain", "--max-error", "1%")
     assert not (folder / "no.wav").exists()
 
@@ -187,7 +187,7 @@ def check_where_it_was_identified(folder):
     preset = json.loads((pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json").read_text())
     about = {"date": "2026-01-01T00:00:00Z", "conditions": "bench", "source": "sim:", "converged": True, "misfit": False, "words": "noise",
              "r_squared": 1, "low_hz": 100, "high_hz": 300}
-    render = ["--path", folder / "path.csv", "--gain", "0.2mm/N"]
+    render = ["--finger-path", folder / "path.csv", "--gain", "0.2mm/N"]
     for low, high, warned in ((100, 300, True), (10, 1000, False)):
         narrow = folder / f"from{low}.transducer.json"
         narrow.write_text(json.dumps(preset | {"name": "narrow", "identification": about | {"low_hz": low, "high_hz": high}}))

@@ -43,7 +43,7 @@ class FilteredPlay : public testing::Test {
     options.metres_per_count = player_->metres_per_count();
     options.onset_s = 0.02;
     options.most_samples = device_->client().description().welcome.profile_samples;
-    ProgramRequest request{folder_ / "lines", {}, 5e-4, {}};
+    ProgramRequest request{folder_ / "lines", {}, {}, schema::Gain{5e-4, false}};
     request.choices = choices;
     auto made = make_program(request, "wiertlewski2011", options);
     EXPECT_TRUE(made) << schema::message(made.error());

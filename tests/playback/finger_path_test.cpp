@@ -48,10 +48,12 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Bad{"", "empty"}, Bad{"time_s,position_m\n", "at least 2 rows, this one has 0"},
         Bad{"time_s,position_m\n0,0\n", "at least 2 rows, this one has 1"},
-        Bad{"time,position_m\n0,0\n1,1\n", "no column 'time_s', only time, position_m"},
+        Bad{"time,position_m\n0,0\n1,1\n", "line 1: the column 'time' has no unit of time"},
+        Bad{"time_mm,position_m\n0,0\n1,1\n", "line 1: the column 'time_mm' has no unit of time"},
+        Bad{"time_s,position_m,position_mm\n0,0,0\n1,1,1\n", "line 1: there are several columns 'position'"},
         Bad{"time_s;position_m\n0;0\n1;1,2,3\n", "'1,2,3' is not a number"},
         Bad{"time_s,position_m\n0;0\n1;1\n", "line 2: the row has 1 fields"},
-        Bad{"0,0\n1,1\n", "no column 'time_s', only 0, 0"},
+        Bad{"0,0\n1,1\n", "no column 'time', only 0, 0"},
         Bad{"time_s,position_m\n0,0\n1,abc\n", "line 3, column 2 (position_m): 'abc' is not a number"},
         Bad{"time_s,position_m\n0,0\n1,\n", "line 3, column 2 (position_m): '' is not a number"},
         Bad{"time_s,position_m\n0,0\n1,1mm\n", "'1mm' is not a number"},
@@ -60,6 +62,44 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"time_s,position_m\n0,0\n1,1\n1,2\n", "line 4, column 1 (time_s): the time does not increase"},
         Bad{"time_s,position_m\n0,0\n1,1,2\n", "line 3: the row has 3 fields, the header 2"},
         Bad{"time_s,position_m\n0,0\n\n1,1\n", "line 3: the row has 1 fields"}));
+
+TEST(FingerPathCsv, TakesTheUnitsOfItsHeader) {
+  for (const char* header :
+       {"time_ms,position_mm,normal_force_mN", "time (ms),position [mm],normal_force / mN",
+        "time_ms,position_mm,normal_force_mn"}) {
+    const auto path = parse_finger_path(std::string(header) + "\n0,2,500\n500,-3.5,250\n", "p.csv");
+    ASSERT_TRUE(path) << message(path.error());
+    // Two roundings: of the number and of the product with the unit.
+    EXPECT_DOUBLE_EQ(path->time_s[1], 0.5) << header;
+    EXPECT_DOUBLE_EQ(path->position_m[1], -0.0035) << header;
+    ASSERT_EQ(path->normal_force_n.size(), 2U) << header;
+    EXPECT_DOUBLE_EQ(path->normal_force_n[0], 0.5) << header;
+  }
+}
+
+TEST(FingerPath, IsRepeatedFromItsBeginningIfItEndsThere) {
+  const FingerPath loop{{1, 1.5, 3}, {0.01, 0.03, 0.01}, {0.1, 0.2, 0.3}};
+  const auto thrice = repeated(loop, 3);
+  ASSERT_TRUE(thrice);
+  EXPECT_EQ(thrice->time_s, (std::vector<double>{1, 1.5, 3, 3.5, 5, 5.5, 7}));
+  EXPECT_EQ(thrice->position_m, (std::vector<double>{0.01, 0.03, 0.01, 0.03, 0.01, 0.03, 0.01}));
+  EXPECT_EQ(thrice->normal_force_n, (std::vector<double>{0.1, 0.2, 0.3, 0.2, 0.3, 0.2, 0.3}));
+}
+
+TEST(FingerPath, IsRepeatedBackAndForthIfItEndsElsewhere) {
+  const auto thrice = repeated({{1, 1.5, 3}, {0.01, 0.02, 0.03}, {0.1, 0.2, 0.3}}, 3);
+  ASSERT_TRUE(thrice);
+  EXPECT_EQ(thrice->time_s, (std::vector<double>{1, 1.5, 3, 4.5, 5, 5.5, 7}));
+  EXPECT_EQ(thrice->position_m, (std::vector<double>{0.01, 0.02, 0.03, 0.02, 0.01, 0.02, 0.03}));
+  EXPECT_EQ(thrice->normal_force_n, (std::vector<double>{0.1, 0.2, 0.3, 0.2, 0.1, 0.2, 0.3}));
+  EXPECT_TRUE(check_finger_path(*thrice));
+}
+
+TEST(FingerPath, IsNotRepeatedBeyondTheMemory) {
+  const auto many = repeated({{0, 1}, {0, 1}}, std::size_t{1} << 40);
+  ASSERT_FALSE(many);
+  EXPECT_EQ(many.error().kind, schema::ErrorKind::usage);
+}
 
 TEST(FingerPathCsv, AbsentFileIsNotFound) {
   const auto path = read_finger_path("/nowhere/path.csv");

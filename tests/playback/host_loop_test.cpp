@@ -97,7 +97,8 @@ class HostLoopOnSim : public testing::Test {
     options.watchdog_ms = kWatchdogMs;
     options.most_samples = client_->description().welcome.profile_samples;
     options.loop_delay_s = loop_->delay_s();
-    auto made = make_program({folder_ / "grating", {}, 5e-4, {}}, "wiertlewski2011", options);
+    auto made =
+        make_program({folder_ / "grating", {}, {}, schema::Gain{5e-4, false}}, "wiertlewski2011", options);
     EXPECT_TRUE(made) << schema::message(made.error());
     return std::move(*made);
   }

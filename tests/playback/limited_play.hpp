@@ -11,7 +11,7 @@ namespace tacto::playback {
 class LimitedPlay : public PlayerOnSim {
  protected:
   void load(const std::string& texture) {
-    ProgramRequest request{folder_ / texture, {}, 5e-4, {}};
+    ProgramRequest request{folder_ / texture, {}, {}, schema::Gain{5e-4, false}};
     request.choices = choices_;
     ASSERT_TRUE(player_->load(made(request, transducer_)));
   }

@@ -42,7 +42,7 @@ def write_path(name, columns):
 
 
 def render(scene, *options, **how):
-    return run("render", scene, "--path", "path.csv", "--device", "sandpaper-1990", "-o", "f.csv", "--force", *options, **how)
+    return run("render", scene, "--finger-path", "path.csv", "--device", "sandpaper-1990", "-o", "f.csv", "--force", *options, **how)
 
 
 def forces():
@@ -112,7 +112,7 @@ def wrong_uses_are_refused():
     write_scene("grooves", patch(layers=[spring(10), {"type": "grooves", "profile": "sine", "period_m": 0.001, "depth_m": 1e-4, "kappa_n": 1}]))
     tray = {"kind": "scene", "version": "1.0", "layers": [{"type": "texture", "texture": "oak", "at_m": 0, "gain_m_per_n": 0.001}]}
     pathlib.Path("tray.scene.json").write_text(json.dumps(tray))
-    arguments = {"scene": "bench.scene.json", "--path": "path.csv", "--device": "sandpaper-1990", "-o": "out.csv"}
+    arguments = {"scene": "bench.scene.json", "--finger-path": "path.csv", "--device": "sandpaper-1990", "-o": "out.csv"}
 
     def refused(code, *words, **changed):
         given = {**arguments, **{("scene" if key == "scene" else f"--{key}"): value for key, value in changed.items()}}
@@ -135,7 +135,7 @@ def wrong_uses_are_refused():
     write_path("wide.csv", {**KNOTS, "x_m": 10 * KNOTS["x_m"]})
     refused(UNSUITABLE, "travel", path="wide.csv")
     pathlib.Path("mine.csv").write_text("name,age\n")
-    run("render", "bench.scene.json", "--path", "path.csv", "--device", "sandpaper-1990", "-o", "mine.csv", "--force", code=USAGE)
+    run("render", "bench.scene.json", "--finger-path", "path.csv", "--device", "sandpaper-1990", "-o", "mine.csv", "--force", code=USAGE)
     assert pathlib.Path("mine.csv").read_text() == "name,age\n"
 
 
@@ -160,12 +160,12 @@ def a_device_of_one_axis_moves_on_a_line():
     pathlib.Path("up.device.json").write_text(json.dumps({**made, "axes": [{**axis, "name": "z"}]}))
     write_scene("bench", patch(angle_deg=45, layers=[spring(100, 0.01, 0)]))
     write_path("line.csv", {"time_s": KNOTS["time_s"], "x_m": KNOTS["x_m"]})
-    _, err = run("render", "bench.scene.json", "--path", "line.csv", "--device", "line", "-o", "line_f.csv")
+    _, err = run("render", "bench.scene.json", "--finger-path", "line.csv", "--device", "line", "-o", "line_f.csv")
     assert "no axis y" in err, err
     table = np.genfromtxt("line_f.csv", delimiter=",", names=True)
     assert table.dtype.names == ("time_s", "x_m", "force_x_n")
     assert np.abs(table["force_x_n"] + 100 * (counted(table["x_m"]) - 0.01 * np.sqrt(0.5))).max() < 1e-5
-    _, err = run("render", "bench.scene.json", "--path", "line.csv", "--device", "up", "-o", "up.csv", code=UNSUITABLE)
+    _, err = run("render", "bench.scene.json", "--finger-path", "line.csv", "--device", "up", "-o", "up.csv", code=UNSUITABLE)
     assert "axis" in err, err
 
 
@@ -208,7 +208,7 @@ def a_hand_on_a_spring_and_a_damper_is_scipys_loop():
     write_scene("bench", patch(layers=[spring(300), damper(2)]))
     for late_ticks in (0, 1):
         write_line("line", delay=late_ticks / rate)
-        run("render", "bench.scene.json", "--path", "swing.csv", "--device", "line", "--hand", "mine", "-o", f"swing{late_ticks}.csv")
+        run("render", "bench.scene.json", "--finger-path", "swing.csv", "--device", "line", "--hand", "mine", "-o", f"swing{late_ticks}.csv")
         table = np.genfromtxt(f"swing{late_ticks}.csv", delimiter=",", names=True)
         found = sampled_loop(table["hand_x_m"], rate, 0.9, 4.17, 400, 300, 2, late_ticks)
         worst, swing = np.abs(found - table["x_m"]).max(), np.ptp(table["x_m"])
@@ -225,7 +225,7 @@ def a_stiff_spring_is_stable_at_1_khz_and_not_at_100_hz():
     swings = {}
     for rate in (1000, 100):
         write_line("line", step=1e-7, rate=rate)
-        run("render", "bench.scene.json", "--path", "still.csv", "--device", "line", "--hand", "mine", "-o", f"at{rate}.csv")
+        run("render", "bench.scene.json", "--finger-path", "still.csv", "--device", "line", "--hand", "mine", "-o", f"at{rate}.csv")
         place = np.genfromtxt(f"at{rate}.csv", delimiter=",", names=True)["x_m"]
         swings[rate] = np.ptp(place[len(place) // 2:])
     # At 1 kHz 6.2 N s/m less K T / 2 are left on 0.8 kg: e^(-3 t), 2.5 um after 2 s.
@@ -237,7 +237,7 @@ def coulomb_friction_holds_the_hand():
     write_hand("mine", 0.5, 3, 400)
     write_scene("bench", patch(layers=[damper(1)]))
     write_line("rough", coulomb=2, step=1e-6)
-    run("render", "bench.scene.json", "--path", "pull.csv", "--device", "rough", "--hand", "mine", "-o", "pull.csv.out")
+    run("render", "bench.scene.json", "--finger-path", "pull.csv", "--device", "rough", "--hand", "mine", "-o", "pull.csv.out")
     table = np.genfromtxt("pull.csv.out", delimiter=",", names=True)
     # 400 N/m and 2 N: it moves when the hand is 5 mm away, and never comes nearer than that on the way.
     assert np.all(table["x_m"][table["hand_x_m"] < 0.00499] == 0) and table["x_m"][-1] > 0.002

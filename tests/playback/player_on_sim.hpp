@@ -58,7 +58,7 @@ class PlayerOnSim : public testing::Test {
     return std::move(*program);
   }
   Program program(const std::string& name = "grating", double gain_m_per_n = 5e-4, double rate_hz = kRateHz) {
-    return made({folder_ / name, {}, gain_m_per_n, {}}, "wiertlewski2011", rate_hz);
+    return made({folder_ / name, {}, {}, schema::Gain{gain_m_per_n, false}}, "wiertlewski2011", rate_hz);
   }
   void begin() {
     ASSERT_TRUE(player_->load(program()));

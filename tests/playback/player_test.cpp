@@ -275,7 +275,8 @@ TEST_F(PlayerOnSim, WhatTheDeviceWouldRefuseByNumberIsToldByName) {
   PrepareOptions options;
   options.metres_per_count = player_->metres_per_count();
   const auto error_of = [&](double at_m) {
-    const auto made = make_program({folder_ / "grating", at_m, 5e-4, {}}, "wiertlewski2011", options);
+    const auto made =
+        make_program({folder_ / "grating", at_m, {}, schema::Gain{5e-4, false}}, "wiertlewski2011", options);
     return made ? schema::Error{} : made.error();
   };
   EXPECT_EQ(error_of(10).what, "");

@@ -39,7 +39,7 @@ def in_band(values):
 
 def check(folder, speed_mps):
     made.write_path(folder / "path.csv", [0, 0.08 / speed_mps], [0.005, 0.085])
-    report = made.report_of("render", folder / "finger", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav", "--target", folder / "wanted.wav")
+    report = made.report_of("render", folder / "finger", "--finger-path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav", "--target", folder / "wanted.wav")
     wanted = in_band(made.samples(folder / "wanted.wav"))
     moved = in_band(displacement(made.samples(folder / "drive.wav")))
     error = np.sqrt(np.mean((moved - wanted) ** 2) / np.mean(wanted**2))

@@ -97,7 +97,7 @@ def check(name, value, bar):
 
 def check_rendering(folder, wanted, options, held, filtered):
     drive, moved, asked = (folder / f"{name}.wav" for name in ("drive", "moved", "asked"))
-    report = made.report_of("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "--at", "2mm", "-o", drive, "--displacement", moved, "--target", asked, *options)
+    report = made.report_of("render", folder / "t", "--finger-path", folder / "path.csv", "--transducer", "wiertlewski2011", "--at", "2mm", "-o", drive, "--displacement", moved, "--target", asked, *options)
     assert report["delay_s"] == 0 and report["rate_hz"] == RATE
     tray = tray_under(made.samples(drive), 32, held, filtered)
     label = " ".join(options) or "plain"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/table/column_unit.hpp"
+#include "data-schema/base/column_unit.hpp"
 
-#include "capture/table/csv_number.hpp"
+#include <algorithm>
+#include <cctype>
 
-namespace tacto::capture {
+namespace tacto::schema {
 namespace {
-
-using schema::Dimension;
 
 struct Spelling {
   std::string_view written, symbol;
@@ -28,8 +27,8 @@ bool is_bracketed(std::string_view text) {
 }
 
 std::string_view without_brackets(std::string_view text) {
-  text = trimmed(text);
-  return is_bracketed(text) ? trimmed(text.substr(1, text.size() - 2)) : text;
+  text = without_blanks(text);
+  return is_bracketed(text) ? without_blanks(text.substr(1, text.size() - 2)) : text;
 }
 
 std::string_view symbol_of(std::string_view text) {
@@ -45,26 +44,51 @@ std::size_t bracket_in(std::string_view name) {
   return name.ends_with(']') ? name.rfind('[') : std::string_view::npos;
 }
 
+// In the names of members and columns of this project's files.
+constexpr Spelling kInNames[] = {{"n", "N"},   {"mn", "mN"},   {"v", "V"},     {"mv", "mV"},
+                                 {"hz", "Hz"}, {"khz", "kHz"}, {"mps", "m/s"}, {"mps2", "m/s^2"}};
+
+// "mm" of "x_mm"; empty if the name does not end in a unit.
+std::string_view unit_after_underline(std::string_view name) {
+  const auto underline = name.rfind('_');
+  if (underline == std::string_view::npos || underline == 0) return {};
+  const std::string_view end = name.substr(underline + 1);
+  for (const Spelling& spelling : kInNames)
+    if (spelling.written == end) return spelling.symbol;
+  const bool letters = std::ranges::all_of(end, [](unsigned char c) { return std::isdigit(c) == 0; });
+  return letters && is_known_unit(end) ? end : std::string_view();
+}
+
 }  // namespace
 
+std::string_view without_blanks(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const auto first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
 NameWithUnit split_unit(std::string_view name) {
-  name = trimmed(name);
+  name = without_blanks(name);
   const auto bracket = bracket_in(name);
   if (bracket != std::string_view::npos && bracket > 0)
-    return {std::string(trimmed(name.substr(0, bracket))),
+    return {std::string(without_blanks(name.substr(0, bracket))),
             std::string(without_brackets(name.substr(bracket)))};
   for (auto slash = name.find('/'); slash != std::string_view::npos; slash = name.find('/', slash + 1))
     if (slash > 0 && is_known_unit(name.substr(slash + 1)))
-      return {std::string(trimmed(name.substr(0, slash))), std::string(trimmed(name.substr(slash + 1)))};
+      return {std::string(without_blanks(name.substr(0, slash))),
+              std::string(without_blanks(name.substr(slash + 1)))};
+  if (const auto unit = unit_after_underline(name); !unit.empty())
+    return {std::string(name.substr(0, name.rfind('_'))), std::string(unit)};
   return {std::string(name), ""};
 }
 
-std::optional<schema::Unit> known_unit(std::string_view text, Dimension target) {
+std::optional<Unit> known_unit(std::string_view text, Dimension target) {
   const std::string_view symbol = symbol_of(text);
   if (symbol.empty()) return std::nullopt;
-  if (const auto worth = schema::parse_quantity("1 " + std::string(symbol), target))
-    return schema::Unit{symbol, target, *worth};
-  const auto unit = schema::parse_unit(symbol);
+  if (const auto worth = parse_quantity("1 " + std::string(symbol), target))
+    return Unit{symbol, target, *worth};
+  const auto unit = parse_unit(symbol);
   return unit ? std::optional(*unit) : std::nullopt;
 }
 
@@ -73,8 +97,8 @@ bool is_known_unit(std::string_view text) {
 }
 
 bool may_be_unit(std::string_view text) {
-  text = trimmed(text);
+  text = without_blanks(text);
   return text.empty() || text == "-" || text == "--" || is_bracketed(text) || is_known_unit(text);
 }
 
-}  // namespace tacto::capture
+}  // namespace tacto::schema
