@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs the page's own modules (beside this file) without a browser: the device under random programs of the finger.
-// Arguments: core.wasm, upload, tray, seed, seconds, "fault" or "", output: the log of the wire.
+// Arguments: core.wasm, upload, tray, seed, seconds, kind, output. Kinds: "" writes the log of the wire; "fault" too, with
+// a jump of the encoder at its end; "tone" and "velocity" write the sound (float32) of strokes at 50 and 100 mm/s.
 import {readFileSync, writeFileSync} from 'node:fs';
 import {Core, METRES_PER_COUNT, RATE_HZ} from './core.js';
 import {Engine} from './engine.js';
 import {FOLLOWER_HZ, Finger} from './finger.js';
 
-const [wasm, upload, tray, seed, seconds, fault, output] = process.argv.slice(2);
+const [wasm, upload, tray, seed, seconds, kind, output] = process.argv.slice(2);
 const module = new WebAssembly.Module(readFileSync(wasm));
 
 let state = Number(seed);
@@ -33,7 +34,21 @@ const engine = new Engine(module, (report) => {
 const frames = new Uint8Array(readFileSync(upload)), taps = readFileSync(tray);
 engine.obey({what: 'texture', upload: frames, tray: new Float32Array(taps.buffer, taps.byteOffset, taps.length / 4), full_m: 1e-5});
 check(seen.accepted, 'the device accepts the upload');
-engine.obey({what: 'sound', volume: 1, velocity: false});
+engine.obey({what: 'sound', volume: 1, velocity: kind === 'velocity'});
+if (kind === 'tone' || kind === 'velocity') {
+  const sounds = [];
+  for (let ticks = 0; ticks < RATE_HZ; ticks += 64) engine.advance(64);  // the volume rises
+  engine.obey({what: 'play', gain_m_per_n: 1e-3});
+  for (const velocity_mps of [0.05, 0.1]) {
+    engine.obey({what: 'stroke', velocity_mps, from_m: 0, end_m: 0.035});
+    for (let ticks = 0; ticks < 0.3 * RATE_HZ; ticks += 64) {
+      engine.advance(64);
+      sounds.push(...engine.sounds.subarray(0, 64));
+    }
+  }
+  writeFileSync(output, new Uint8Array(Float32Array.from(sounds).buffer));
+  process.exit(0);
+}
 
 // A pointer of 125 Hz on pixels of 29 um, strokes, keys, lifts and levels, in random order.
 const LENGTH_M = 0.03;
@@ -79,7 +94,7 @@ for (const end_s = Number(seconds); time_s < end_s;) {
 }
 check(driven > 0, 'the tray was driven');
 check(loudest > 0 && loudest <= 0.7001, 'the sound is limited');
-if (fault === 'fault') {
+if (kind === 'fault') {
   engine.obey({what: 'land', place_m: 0.001});
   for (let i = 0; i < 100; ++i) advance(64);
   engine.finger.place_m = 0.02;  // a finger that jumps without lifting

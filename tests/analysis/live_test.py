@@ -3,6 +3,7 @@
 """tactograph live, without a browser: who may use it, what it serves, bad input; and the page's device in node, whose
 sessions `tactograph replay` computes again natively, to the bit.
 """
+import hashlib
 import json
 import pathlib
 import random
@@ -13,6 +14,7 @@ import sys
 
 import numpy as np
 import scipy.signal
+import soundfile
 from live_client import live
 from tacto import COMMAND, in_folder, run, run_json
 
@@ -29,6 +31,11 @@ def make_textures():
     side = json.loads(pathlib.Path("folder/C.texture.json").read_text())
     pathlib.Path(f"folder/{ODD_NAME}.texture.json").write_text(json.dumps(side))
     pathlib.Path("folder/broken.texture.json").write_text("{")
+    # A sine of 1 mm and 5 mN.
+    wav = pathlib.Path("folder/sine.texture.wav")
+    soundfile.write(wav, 0.005 * np.sin(2 * np.pi * np.arange(side["data"]["samples"]) / 1000), 1_000_000, subtype="FLOAT")
+    side["data"].update(file=wav.name, sha256=hashlib.sha256(wav.read_bytes()).hexdigest())
+    pathlib.Path("folder/sine.texture.json").write_text(json.dumps(side))
 
 
 def check_access(server):
@@ -69,7 +76,7 @@ def check_headers(server):
 
 def check_textures(server):
     rows = {row["name"]: row for row in server.json("/textures")["textures"]}
-    assert set(rows) == {"C", ODD_NAME, "broken"}, rows
+    assert set(rows) == {"C", ODD_NAME, "broken", "sine"}, rows
     assert "reason" in rows["broken"] and abs(rows["C"]["length_m"] - 0.035) < 0.002, rows
     figures = server.json(f"/texture/{rows['C']['index']}")
     assert figures["rate_hz"] == 16000 and figures["gain_m_per_n"] > 0 and figures["transducer"] == "wiertlewski2011", figures
@@ -183,6 +190,26 @@ def check_bits(server, made, odd_made):
     assert run_json("replay", kept(server, made, lacking)["kept"], code=5)["lost_ticks"] == 64
 
 
+def check_sound(server):
+    """The whole chain against a closed form: 5 um at 50 and 100 Hz, and as velocity times f / 200 Hz."""
+    index = next(row["index"] for row in server.json("/textures")["textures"] if row["name"] == "sine")
+    made = server.json(f"/texture/{index}")["made"]
+    for kind in ("tone", "velocity"):
+        sounds = np.frombuffer(device_log(server, made, 1, 1, kind), "<f4").reshape(2, -1)
+        for part, hz in zip(sounds, (50, 100)):
+            steady = part[int(0.16 * 16000):int(0.3 * 16000)]  # whole periods
+            t = np.arange(len(steady)) / 16000
+            amplitude = 2 * abs(np.mean(steady * np.exp(-2j * np.pi * hz * t)))
+            # 5 um of full 10 um, through the Butterworth filters of 15 and 500 Hz.
+            filters = 1 / np.sqrt((1 + (15 / hz) ** 4) * (1 + (hz / 500) ** 4))
+            expected = 0.5 * filters * (hz / 200 if kind == "velocity" else 1)
+            # The onset of 20 ms through the high-pass has decayed to exp(-2 pi 15 0.71 0.14) = 1e-4; the inverse's error
+            # is -72 dB, that of the modelled tray 1e-4.
+            assert abs(amplitude / expected - 1) < 1e-3, (kind, hz, amplitude, expected)
+            rest = steady - 2 * np.real(np.mean(steady * np.exp(-2j * np.pi * hz * t)) * np.exp(2j * np.pi * hz * t))
+            print(f"{kind} {hz} Hz: amplitude {amplitude / expected:.4f} of the exact one, rest {20 * np.log10(np.std(rest) / amplitude):.0f} dB")
+
+
 def check_damaged_logs(server, made, log):
     """Any log is an error or a session; afterwards the server serves."""
     draw = random.Random(34)
@@ -227,6 +254,7 @@ def live_page():
         made, odd_made = check_textures(server)
         check_protocol(server, made)
         check_bits(server, made, odd_made)
+        check_sound(server)
     assert not [path for path in pathlib.Path("folder").iterdir() if path.name.startswith(".")], "temporary files stay"
 
 
