@@ -145,6 +145,18 @@ def stroke_by_mouse(chrome):
     chrome.mouse("mouseReleased", x + 0.5 * width, y - 400)
 
 
+def stroke_by_touch(chrome):
+    x, y, width = chrome.value("(() => { const r = document.getElementById('strip').getBoundingClientRect(); return [r.x, r.y + r.height / 2, r.width]; })()")
+    def touch(kind, *at):
+        chrome.ask("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": part, "y": y} for part in at])
+    touch("touchStart", x + 0.9 * width)
+    for i in range(60):
+        touch("touchMove", x + (0.9 - 0.01 * i) * width)
+    chrome.wait("Number(document.getElementById('strip').ariaValueNow) < 12 && document.getElementById('place').textContent.startsWith('finger touches')")
+    touch("touchEnd")
+    chrome.wait("document.getElementById('state-word').textContent === 'playing, finger lifted'")
+
+
 def keep(chrome, least_ticks):
     chrome.click("keep")
     chrome.wait("document.getElementById('kept').textContent.startsWith('Kept: ')")
@@ -170,6 +182,9 @@ def check_playing(chrome):
     stroke_by_mouse(chrome)
     # 7 to 25 mm at the fastest, 1 m/s: 18 ms. Volts: a stroke of C needs several.
     assert drive_peak(keep(chrome, 0.018 * 16000)) > 0.1
+    stroke_by_touch(chrome)
+    chrome.click("stop")
+    chrome.wait("document.getElementById('state-word').textContent.startsWith('stopped')")
     # By keys: 50 mm/s to the right end, and back.
     chrome.value("document.getElementById('strip').focus()")
     chrome.key("Home")

@@ -34,8 +34,9 @@ const mm = (metres, digits = 2) => `${(1e3 * metres).toFixed(digits)} mm`;
 function showState() {
   const state = last.state === 'fault' ? 'fault' : playing ? 'playing' : 'stopped';
   at('state').dataset.state = state;
-  const word = state === 'playing' ? (last.touches ? 'playing' : 'playing, finger lifted') : state === 'fault' ? 'fault' : 'stopped';
-  const text = chosen === null ? 'no texture' : word + (device?.sounds === false ? ', no sound device' : '');
+  const words = {playing: last.touches ? 'playing' : 'playing, finger lifted', fault: 'fault',
+                 stopped: last.state === 'idle' ? 'stopped' : 'stopping'};
+  const text = chosen === null ? 'no texture' : words[state] + (device?.sounds === false ? ', no sound device' : '');
   if (at('state-word').textContent !== text) at('state-word').textContent = text;
   at('keep').disabled = session !== 'open';
 }
