@@ -25,7 +25,7 @@ const cli::VerbGroup kGroups[] = {
       &spatial::kDescribeVerb, &spatial::kCertifyVerb, &schema::kInfoVerb, &schema::kValidateVerb}},
     {"Play",
      {&playback::kRenderVerb, &playback::kPlayVerb, &playback::kCtlVerb, &playback::kSessionVerb,
-      &playback::kReplayVerb, &playback::kExplainVerb}},
+      &playback::kReplayVerb, &playback::kExplainVerb, &analysis::kLiveVerb}},
     {"Ask",
      {&analysis::kIdentifyVerb, &analysis::kFidelityVerb, &analysis::kCompareVerb, &analysis::kReportVerb,
       &analysis::kTradeVerb, &analysis::kExtremesVerb, &analysis::kDemoVerb}},

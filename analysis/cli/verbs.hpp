@@ -13,5 +13,6 @@ extern const cli::Verb kExtremesVerb;
 extern const cli::Verb kReportVerb;
 extern const cli::Verb kIdentifyVerb;
 extern const cli::Verb kTradeVerb;
+extern const cli::Verb kLiveVerb;
 
 }  // namespace tacto::analysis

@@ -33,6 +33,7 @@ WALLS = {
     r"pugixml": ["capture/import"],
     r"Eigen/|unsupported/Eigen": ["analysis/compare", "analysis/identify"],
     r"CLI/": ["data-schema/command"],
+    r"libwebsockets": ["analysis/live/server"],
 }
 
 # JSON and netCDF readers must not be used by verbs; only the report printer also uses JSON.
@@ -40,7 +41,7 @@ VERBS = r"(.*/)?cli/|data-schema/(command|report)/|spatial/job/"
 CLI_JSON_EXCEPTION = "data-schema/report/report.cpp"
 
 # Code that runs on a device uses no hosted library.
-C_HEADERS = {"firmware-host/core": ["stdint.h", "stddef.h"]}
+C_HEADERS = {"firmware-host/core": ["stdint.h", "stddef.h"], "playback/wasm": ["stdint.h", "stddef.h"]}
 
 FOLDERS = ["analysis", "capture", "data-schema", "firmware-host", "playback", "spatial", "tests", "cmake", "LICENSES", ".ci"]
 FILES = ["CMakeLists.txt", "README.md", "tactograph.cpp", "LICENSE", "CONTRIBUTING.md", "CHANGELOG.md", "bootstrap",

@@ -110,8 +110,9 @@ MAY_INCLUDE = {
     "playback/strokes":
         "data-schema/{base texture} firmware-host/{core/kernel core/wire} playback/{choose model render "
         "render/reference session}",
+    "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":
-        "analysis/{compare demo extremes fidelity identify/fit identify/measure identify/report report trade "
+        "analysis/{compare demo extremes fidelity identify/fit identify/measure identify/report live report trade "
         "trade/rows} data-schema/{base command files kinds report results scene texture} playback/{model player "
         "session} spatial/{cli picture}",
     "analysis/compare":
@@ -134,6 +135,10 @@ MAY_INCLUDE = {
     "analysis/identify/report":
         "analysis/{identify/fit identify/measure} data-schema/{base results} firmware-host/sim/physics "
         "spatial/{picture picture/draw}",
+    "analysis/live":
+        "analysis/live/server data-schema/{base control files report texture} firmware-host/{core/firmware core/wire "
+        "link} playback/{control model player prepare wasm} spatial/dsp/fourier",
+    "analysis/live/server": "",
     "analysis/page": "data-schema/{base results} spatial/picture",
     "analysis/report":
         "analysis/{identify/measure page} data-schema/{base calibration check device files kinds recording results "

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/live/live.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "analysis/live/live_access.hpp"
+#include "analysis/live/live_assets.hpp"
+#include "analysis/live/live_folder.hpp"
+#include "analysis/live/live_session.hpp"
+#include "data-schema/base/module.hpp"
+#include "data-schema/control/control.hpp"
+#include "data-schema/control/live_request.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::ErrorKind;
+using schema::fail;
+using schema::Result;
+
+constexpr int kFirstPort = 7230, kPortsTried = 20;
+
+std::string_view type_of_asset(std::string_view name) {
+  constexpr std::pair<std::string_view, std::string_view> kTypes[] = {
+      {".html", "text/html; charset=utf-8"},
+      {".css", "text/css; charset=utf-8"},
+      {".js", "text/javascript; charset=utf-8"},
+      {".svg", "image/svg+xml"},
+      {".wasm", "application/wasm"}};
+  for (const auto& [ending, type] : kTypes)
+    if (name.ends_with(ending)) return type;
+  return "application/octet-stream";
+}
+
+WebAnswer json_answer(std::string body, int status = 200) {
+  WebAnswer answer;
+  answer.status = status;
+  answer.type = "application/json";
+  answer.body = std::move(body);
+  return answer;
+}
+
+WebAnswer error_answer(const schema::Error& error) {
+  return json_answer(schema::control_error_line("", error), error.kind == ErrorKind::not_found ? 404 : 422);
+}
+
+template <class Value>
+WebAnswer bytes_answer(const std::vector<Value>& values) {
+  WebAnswer answer;
+  answer.type = "application/octet-stream";
+  answer.body.assign(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
+  return answer;
+}
+
+// One page: it plays one texture at a time, and may keep what it played.
+class Page final : public WebConversation {
+ public:
+  Page(LiveFolder& folder, std::size_t& kept) : folder_(folder), kept_(kept) {}
+
+  std::string receive_text(std::string_view text) override {
+    auto done = obey(text);
+    return done ? schema::control_reply_line("", *done) : schema::control_error_line("", done.error());
+  }
+  std::string receive_bytes(std::span<const std::uint8_t> bytes) override {
+    if (session_ == nullptr) return {};  // it could not begin, which the page knows
+    const auto taken = session_->take(bytes);
+    const auto fault = session_->take_fault();
+    if (taken && fault)
+      return schema::control_event_line("fault", {{"what", fault->what}, {"remedy", fault->remedy}});
+    if (taken) return {};
+    session_.reset();
+    return schema::control_error_line("", taken.error());
+  }
+
+ private:
+  Result<schema::ControlFields> obey(std::string_view text) {
+    const auto request = schema::parse_live_request(text);
+    TACTO_TRY(request);
+    return request->verb == schema::LiveVerb::begin ? begin(request->made) : keep();
+  }
+  Result<schema::ControlFields> begin(std::size_t made) {
+    session_.reset();
+    const auto texture = folder_.made(made);
+    TACTO_TRY(texture);
+    auto session = LiveSession::begin(**texture);
+    TACTO_TRY(session);
+    session_ = std::move(*session);
+    return schema::ControlFields{{"begun", static_cast<std::int64_t>(made)}};
+  }
+  Result<schema::ControlFields> keep() {
+    if (session_ == nullptr)
+      return fail(ErrorKind::unsuitable, "there is nothing to keep", "the page", "play first");
+    const auto session = std::exchange(session_, nullptr);
+    const auto kept = session->keep();
+    TACTO_TRY(kept);
+    ++kept_;
+    return schema::ControlFields{{"kept", kept->path},
+                                 {"ticks", static_cast<std::int64_t>(kept->ticks)},
+                                 {"lost_ticks", static_cast<std::int64_t>(kept->lost_ticks)}};
+  }
+
+  LiveFolder& folder_;
+  std::size_t& kept_;
+  std::unique_ptr<LiveSession> session_;
+};
+
+class Site {
+ public:
+  Site(const LiveOptions& options, int port) : access_(port), folder_(options.folder, options.transducer) {
+    folder_.refresh();
+  }
+  WebSite handlers() {
+    return {[this](const WebRequest& request) { return answer(request); },
+            [this] { return std::make_unique<Page>(folder_, kept_); }};
+  }
+  const LiveAccess& access() const { return access_; }
+  std::size_t kept() const { return kept_; }
+
+ private:
+  WebAnswer answer(const WebRequest& request) {
+    auto refused = access_.refusal(request);
+    WebAnswer answer = refused ? std::move(*refused) : content(request);
+    if (!refused) access_.let_in(request, answer);
+    add_safe_headers(answer);
+    return answer;
+  }
+  WebAnswer content(const WebRequest& request) {
+    if (request.upgrade) return request.path == "/session" ? WebAnswer() : not_found();
+    if (request.path == "/textures") {
+      folder_.refresh();
+      return json_answer(folder_.list_json());
+    }
+    if (const auto index = number_after("/texture/", request.path)) return texture(*index);
+    for (const std::string_view part : {"upload", "map", "tray"})
+      if (const auto number = number_after(fmt::format("/{}/", part), request.path))
+        return bytes_of(part, *number);
+    const std::string_view name =
+        request.path == "/" ? "index.html" : std::string_view(request.path).substr(1);
+    for (const LiveAsset& asset : live_assets())
+      if (asset.name == name) return asset_answer(asset);
+    return not_found();
+  }
+  static WebAnswer not_found() {
+    WebAnswer answer;
+    answer.status = 404;
+    answer.body = "there is no such page\n";
+    return answer;
+  }
+  static WebAnswer asset_answer(const LiveAsset& asset) {
+    WebAnswer answer;
+    answer.type = type_of_asset(asset.name);
+    answer.body = asset.bytes;
+    return answer;
+  }
+  static std::optional<std::size_t> number_after(std::string_view beginning, std::string_view path) {
+    if (!path.starts_with(beginning)) return std::nullopt;
+    const std::string_view digits = path.substr(beginning.size());
+    std::size_t number = 0;
+    const auto [end, failed] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    return failed == std::errc() && end == digits.data() + digits.size() ? std::optional(number)
+                                                                         : std::nullopt;
+  }
+  WebAnswer texture(std::size_t index) {
+    const auto number = folder_.make(index);
+    return number ? json_answer(figures_json(*number, **folder_.made(*number)))
+                  : error_answer(number.error());
+  }
+  WebAnswer bytes_of(std::string_view part, std::size_t number) {
+    const auto made = folder_.made(number);
+    if (!made) return error_answer(made.error());
+    const LiveTexture& live = **made;
+    if (part == "map") return bytes_answer(live.map);
+    if (part == "tray") return bytes_answer(live.tray);
+    std::vector<std::uint8_t> frames;
+    for (const auto& frame : live.upload) frames.insert(frames.end(), frame.begin(), frame.end());
+    return bytes_answer(frames);
+  }
+
+  LiveAccess access_;
+  LiveFolder folder_;
+  std::size_t kept_ = 0;
+};
+
+Result<void> check_live(const LiveOptions& options) {
+  if (live_assets().empty())
+    return fail(ErrorKind::unsuitable, "this program was built without the live page", "tactograph live",
+                "install libwebsockets-dev, clang-16 and lld-16, and build again");
+  if (std::error_code ignored; !std::filesystem::is_directory(options.folder, ignored))
+    return fail(ErrorKind::not_found, "there is no such folder", options.folder,
+                "name a folder with textures");
+  const auto transducer = schema::read_transducer(options.transducer);
+  TACTO_TRY(transducer);
+  return {};
+}
+
+// A site for the first port that is free, and its server.
+struct Served {
+  std::unique_ptr<Site> site;
+  std::unique_ptr<WebSite> handlers;
+  std::unique_ptr<WebServer> server;
+};
+
+Result<Served> serve_on_free_port(const LiveOptions& options, WebEntry entry) {
+  const int first = options.port.value_or(kFirstPort), last = options.port ? first : first + kPortsTried - 1;
+  for (int port = first; port <= last; ++port) {
+    Served served;
+    served.site = std::make_unique<Site>(options, port);
+    served.handlers = std::make_unique<WebSite>(served.site->handlers());
+    served.server.reset(entry(port, *served.handlers));
+    if (served.server != nullptr) return served;
+  }
+  return fail(ErrorKind::unsuitable,
+              first == last ? fmt::format("port {} of 127.0.0.1 is taken or not permitted", first)
+                            : fmt::format("ports {} to {} of 127.0.0.1 are taken", first, last),
+              "tactograph live", "choose another one with --port");
+}
+
+}  // namespace
+
+Result<LiveSummary> run_live(const LiveOptions& options,
+                             const std::function<void(const std::string& address)>& announce,
+                             const std::function<bool()>& stop) {
+  TACTO_TRY(check_live(options));
+  const auto entry = schema::function_in_module(kWebModule, kWebEntry);
+  TACTO_TRY(entry);
+  const auto served = serve_on_free_port(options, reinterpret_cast<WebEntry>(*entry));
+  TACTO_TRY(served);
+  const std::string address = served->site->access().address();
+  announce(address);
+  served->server->serve(stop);
+  return LiveSummary{address, served->site->kept()};
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The textures of a folder, by index: the page never names a path.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/live/live_texture.hpp"
+
+namespace tacto::analysis {
+
+class LiveFolder {
+ public:
+  LiveFolder(std::string folder, std::string transducer)
+      : folder_(std::move(folder)), transducer_(std::move(transducer)) {}
+
+  /// Reads the folder again. A texture that was listed before keeps its index.
+  void refresh();
+  /// A JSON array of the textures, by name: index, name, length; one that can't be read has the reason.
+  std::string list_json() const;
+  /// Prepares a texture from its files as they are now, under a new number. Errors: not_found; as
+  /// make_live_texture.
+  schema::Result<std::size_t> make(std::size_t index);
+  /// One of the last kMostMade that were made. Errors: not_found.
+  schema::Result<std::shared_ptr<const LiveTexture>> made(std::size_t number) const;
+
+ private:
+  static constexpr std::size_t kMostMade = 4;
+  std::string folder_, transducer_;
+  std::vector<std::string> files_;  // by index
+  std::map<std::size_t, std::shared_ptr<const LiveTexture>> made_;
+  std::size_t next_ = 0;
+};
+
+/// The figures of a texture, for the page: a JSON object.
+std::string figures_json(std::size_t made, const LiveTexture& texture);
+
+}  // namespace tacto::analysis

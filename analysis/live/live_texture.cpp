@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/live/live_texture.hpp"
+
+#include <algorithm>
+#include <complex>
+#include <memory>
+
+#include "data-schema/texture/texture.hpp"
+#include "firmware-host/core/firmware/firmware.hpp"
+#include "firmware-host/link/client.hpp"
+#include "firmware-host/link/hosted_board.hpp"
+#include "playback/model/chain.hpp"
+#include "playback/prepare/upload.hpp"
+#include "playback/wasm/browser_board.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::Result;
+
+constexpr double kOnsetS = 0.02;
+
+// The page's board in this process, at rest: it checks the upload and accepts it as the page's does.
+class RestingBoard final : public firmware_host::Transport {
+ public:
+  RestingBoard() : firmware_(std::make_unique<core::Firmware>(board(), hal())) {}
+
+  Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override {
+    firmware_->poll();
+    if (to_host_.empty()) now_s_ += timeout_s;
+    return firmware_host::take_first(to_host_, bytes);
+  }
+  Result<void> write(std::span<const std::uint8_t> bytes, double) override {
+    from_host_.insert(from_host_.end(), bytes.begin(), bytes.end());
+    firmware_->poll();
+    return {};
+  }
+  double now_s() override { return now_s_; }
+
+ private:
+  static RestingBoard& of(void* board) noexcept { return *static_cast<RestingBoard*>(board); }
+  core::Board board() { return browser::board(channel_, profile_.data()); }
+  core::Hal hal() {
+    core::Hal hal;
+    hal.board = this;
+    hal.read_encoder = [](void*) noexcept { return std::int32_t{0}; };
+    hal.read_channels = [](void*, std::int32_t*) noexcept { return true; };
+    hal.write_drive = [](void*, float) noexcept {};
+    hal.enable_closed = [](void*) noexcept { return true; };
+    hal.clock = [](void*) noexcept { return std::uint64_t{0}; };
+    hal.set_rate = [](void*, std::uint32_t) noexcept {};
+    hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
+      return firmware_host::take_first(of(b).from_host_, {bytes, size});
+    };
+    hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
+      of(b).to_host_.insert(of(b).to_host_.end(), bytes, bytes + size);
+      return size;
+    };
+    hal.restart = [](void*) noexcept {};
+    return hal;
+  }
+
+  wire::Channel channel_ = browser::encoder_channel();
+  firmware_host::HostedProfile profile_;
+  std::vector<std::uint8_t> from_host_, to_host_;
+  double now_s_ = 0;
+  std::unique_ptr<core::Firmware> firmware_;
+};
+static_assert(browser::kProfileSamples == firmware_host::HostedProfile::kSamples);
+
+Result<std::vector<std::vector<std::uint8_t>>> upload_frames(const playback::Prepared& prepared,
+                                                             const std::string& name) {
+  auto client = firmware_host::Client::connect(std::make_unique<RestingBoard>(), "the page");
+  TACTO_TRY(client);
+  std::vector<std::vector<std::uint8_t>> frames;
+  (*client)->listen(
+      [&](std::span<const std::uint8_t> frame) { frames.emplace_back(frame.begin(), frame.end()); });
+  if (const auto sent = playback::upload(**client, prepared); !sent) {
+    schema::Error error = sent.error();
+    error.where = name;
+    return tl::unexpected(error);
+  }
+  return frames;
+}
+
+std::vector<float> map_of(const std::vector<double>& values) {
+  std::vector<float> map;
+  for (std::size_t column = 0; column < kMapColumns; ++column) {
+    const std::size_t first = std::min(column * values.size() / kMapColumns, values.size() - 1);
+    const std::size_t end = std::max((column + 1) * values.size() / kMapColumns, first + 1);
+    const auto [least, most] = std::minmax_element(values.begin() + static_cast<std::ptrdiff_t>(first),
+                                                   values.begin() + static_cast<std::ptrdiff_t>(end));
+    map.push_back(static_cast<float>(*least));
+    map.push_back(static_cast<float>(*most));
+  }
+  return map;
+}
+
+playback::PrepareOptions page_options() {
+  playback::PrepareOptions options;
+  options.rate_hz = browser::kRateHz;
+  options.metres_per_count = browser::kMetresPerCount;
+  options.most_samples = browser::kProfileSamples;
+  options.onset_s = kOnsetS;
+  return options;
+}
+
+}  // namespace
+
+std::vector<float> tray_response(const schema::Transducer& transducer) {
+  constexpr std::size_t kLength = 4 * kTrayTaps;
+  playback::Chain chain;
+  chain.transducer = transducer;
+  chain.hold = playback::Hold::zero_order;
+  chain.sample_rate_hz = browser::kRateHz;
+  spatial::RealFft fft(kLength);
+  std::vector<std::complex<double>> response(fft.bins());
+  for (std::size_t k = 0; k < response.size(); ++k)
+    response[k] = playback::chain_response(chain, static_cast<double>(k) * browser::kRateHz / kLength);
+  response.back() = response.back().real();
+  std::vector<double> impulse(kLength);
+  fft.inverse(response, impulse);
+  return {impulse.begin(), impulse.begin() + kTrayTaps};
+}
+
+Result<LiveTexture> make_live_texture(const std::string& file, const std::string& transducer) {
+  const auto texture = schema::read_texture(file);
+  TACTO_TRY(texture);
+  playback::ProgramRequest request;
+  request.file = file;
+  LiveTexture live;
+  live.file = file;
+  auto program = playback::make_program(request, transducer, page_options());
+  TACTO_TRY(program);
+  live.program = std::move(*program);
+  auto upload = upload_frames(live.program.prepared, file);
+  TACTO_TRY(upload);
+  live.upload = std::move(*upload);
+  live.map = map_of(texture->signal.values);
+  live.tray = tray_response(live.program.session.transducer);
+  return live;
+}
+
+}  // namespace tacto::analysis

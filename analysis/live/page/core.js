@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The device: firmware-host/core as WebAssembly (playback/wasm/browser.cpp).
+
+export const RATE_HZ = 16000;
+export const METRES_PER_COUNT = 1e-6;
+const STEERING = {arm: 0, play: 1, stop: 2, disarm: 3, gain: 4};
+export const STATES = ['idle', 'armed', 'playing', 'fault'];
+
+export class Core {
+  /** @param {WebAssembly.Module} module */
+  constructor(module) {
+    this.device = new WebAssembly.Instance(module, {}).exports;
+    this.device.begin();
+    const memory = this.device.memory.buffer;  // it does not grow
+    this.input = new Uint8Array(memory, this.device.input(), this.device.input_size());
+    this.counts = new Int32Array(memory, this.device.counts(), this.device.block_ticks());
+    this.drives = new Float32Array(memory, this.device.drives(), this.device.block_ticks());
+    this.memory = memory;
+  }
+
+  /** Gives whole frames of the wire to the device; false if it refuses one.
+   * @param {Uint8Array} frames */
+  upload(frames) {
+    for (let at = 0; at < frames.length;) {
+      const part = frames.subarray(at, at + this.input.length);
+      this.input.set(part);
+      const used = this.device.upload(part.length);
+      if (used === 0) return false;
+      at += used;
+    }
+    return true;
+  }
+
+  /** False if the device refuses it.
+   * @param {'arm'|'play'|'stop'|'disarm'|'gain'} what
+   * @param {number} [gain_m_per_n] */
+  steer(what, gain_m_per_n = 0) {
+    return this.device.steer(STEERING[what], gain_m_per_n) !== 0;
+  }
+
+  /** Ticks at the first `ticks` counts; then `drives` has the drive of each, in volts. */
+  run(ticks, touches) {
+    this.device.touch(touches);
+    this.device.run(ticks);
+  }
+
+  /** What the device accepted and sent since the last call: a copy of whole frames. */
+  takeLog() {
+    const size = this.device.take_log();
+    return new Uint8Array(this.memory, this.device.log(), size).slice();
+  }
+
+  takeFlags() { return this.device.take_flags() >>> 0; }
+  get state() { return STATES[this.device.state()]; }
+  get fault() { return this.device.fault(); }
+  get faultDetail() { return this.device.fault_detail() >>> 0; }
+}

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The board that the page of `tactograph live` is: its description, the same in the page and in the server.
+#pragma once
+
+#include "firmware-host/core/firmware/board.hpp"
+
+namespace tacto::browser {
+
+inline constexpr uint32_t kRateHz =
+    16000;  ///< of the ticks: a third of 48 kHz, so that sound needs no resampling
+inline constexpr uint32_t kClocksPerTick = 1000;
+inline constexpr double kMetresPerCount = 1e-6;  ///< of its encoder
+inline constexpr uint32_t kProfileSamples =
+    1U << 22;  ///< 16 MB: a metre of texture on a 1 um grid, with all levels
+inline constexpr float kDriveLimitV = 1e4F,
+                       kSlewLimitVPerS = 1e9F;  ///< no amplifier: the transducer's file has the limits
+
+/// Its only channel.
+inline wire::Channel encoder_channel() noexcept {
+  wire::Channel channel;
+  constexpr char kName[] = "encoder", kQuantity[] = "position", kUnit[] = "m";
+  for (size_t i = 0; i < sizeof kName; ++i) channel.name[i] = kName[i];
+  for (size_t i = 0; i < sizeof kQuantity; ++i) channel.quantity[i] = kQuantity[i];
+  for (size_t i = 0; i < sizeof kUnit; ++i) channel.unit[i] = kUnit[i];
+  channel.scale = kMetresPerCount;
+  channel.native_rate_hz = __builtin_nan("");
+  return channel;
+}
+
+/// `channel` (encoder_channel()) and `profile` (kProfileSamples) must outlive the firmware.
+inline core::Board board(const wire::Channel& channel, float* profile) noexcept {
+  core::Board board;
+  board.channels = &channel;
+  board.channel_count = 1;
+  board.profile_memory = profile;
+  board.profile_samples = kProfileSamples;
+  wire::Welcome& about = board.about;
+  constexpr char kName[] = "browser", kFirmware[] = "core";
+  for (size_t i = 0; i < sizeof kName; ++i) about.name[i] = kName[i];
+  for (size_t i = 0; i < sizeof kFirmware; ++i) about.firmware[i] = kFirmware[i];
+  about.features = wire::kFeatureSimulated | wire::kFeatureDrive;
+  about.clock_hz = kClocksPerTick * kRateHz;
+  about.default_rate_millihertz = about.least_rate_millihertz = about.most_rate_millihertz = 1000 * kRateHz;
+  about.drive_limit_v = kDriveLimitV;
+  about.slew_limit_v_per_s = kSlewLimitVPerS;
+  return board;
+}
+
+}  // namespace tacto::browser

@@ -1,0 +1,282 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""tactograph live in Debian's Chromium, by mouse and by keyboard: it plays, sounds, keeps, and the kept session is the
+same to the bit; every control has a name, texts have their contrast, the console stays empty.
+
+With --pictures FOLDER it writes screenshots (wide and narrow, light and dark) instead.
+"""
+import base64
+import contextlib
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+from live_client import WebSocket, live
+from tacto import in_folder, run, run_json
+
+ODD_NAME = "<img src=x onerror=alert(1)>"
+WAIT_S = 120  # until a test fails, not a time that is judged
+
+# Least contrast of all texts that are seen, over the nearest opaque ground behind them (WCAG 2.1).
+CONTRAST = """(() => {
+  const light = ([r, g, b]) => [r, g, b].map((c) => c / 255).map((c) => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
+  const rgba = (text) => { const n = text.match(/[\\d.]+/g).map(Number); return n.length === 3 ? [...n, 1] : n; };
+  const ground = (e) => { for (; e; e = e.parentElement) { const c = rgba(getComputedStyle(e).backgroundColor); if (c[3] === 1) return c; } return [255, 255, 255, 1]; };
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  let least = {ratio: 99};
+  for (let node; (node = texts.nextNode());) {
+    const e = node.parentElement;
+    if (node.textContent.trim() === '' || e.getClientRects().length === 0) continue;
+    const [a, b] = [light(rgba(getComputedStyle(e).color)), light(ground(e))].sort((x, y) => y - x);
+    const ratio = (a + 0.05) / (b + 0.05);
+    if (ratio < least.ratio) least = {ratio, text: node.textContent.trim().slice(0, 40)};
+  }
+  return least;
+})()"""
+
+
+class Browser:
+    """Chromium, by the DevTools protocol."""
+
+    def __init__(self, port, address):
+        self.socket, self.number, self.console = WebSocket(port, address), 0, []
+        for domain in ("Page", "Runtime", "Log", "Accessibility"):
+            self.ask(domain + ".enable")
+
+    def ask(self, method, **parameters):
+        self.number += 1
+        self.socket.send(json.dumps({"id": self.number, "method": method, "params": parameters}))
+        while True:
+            message = self.socket.receive()
+            if message.get("method") in ("Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded", "Page.javascriptDialogOpening"):
+                self.console.append(message["params"])
+            if message.get("id") == self.number:
+                assert "error" not in message, (method, message)
+                return message["result"]
+
+    def value(self, expression):
+        result = self.ask("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        assert "exceptionDetails" not in result, (expression, result)
+        return result["result"].get("value")
+
+    def wait(self, expression):
+        until = time.monotonic() + WAIT_S
+        while not self.value(expression):
+            assert time.monotonic() < until, (expression, self.value("document.body.innerText"), self.console)
+            time.sleep(0.05)
+
+    def text(self, name):
+        return self.value(f"document.getElementById({json.dumps(name)}).textContent")
+
+    def mouse(self, kind, x, y):
+        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=0 if kind == "mouseReleased" else 1, clickCount=1)
+
+    def click(self, name):
+        box = self.value(f"(() => {{ const e = document.getElementById({json.dumps(name)}); e.scrollIntoView({{block: 'center'}}); "
+                         "const r = e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
+        self.mouse("mousePressed", *box)
+        self.mouse("mouseReleased", *box)
+
+    def key(self, key, kinds=("rawKeyDown", "keyUp")):
+        codes = {"ArrowRight": 39, "ArrowLeft": 37, "Home": 36, "End": 35, "Tab": 9, "Enter": 13, "Escape": 27, " ": 32}
+        for kind in kinds:
+            text = {"Enter": "\r", " ": " "}.get(key) if kind == "rawKeyDown" else None
+            self.ask("Input.dispatchKeyEvent", type="keyDown" if text else kind, key=key, windowsVirtualKeyCode=codes[key],
+                     **({"text": text} if text else {}))
+
+    def picture(self, path, width, dark):
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=1050 if width > 700 else 2000, deviceScaleFactor=1, mobile=width < 700)
+        self.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        time.sleep(0.5)
+        path.write_bytes(base64.b64decode(self.ask("Page.captureScreenshot", format="png")["data"]))
+
+
+@contextlib.contextmanager
+def browser(address):
+    program = shutil.which("chromium")
+    if program is None:
+        print("skipped: no chromium")
+        sys.exit(77)
+    with tempfile.TemporaryDirectory(prefix="tacto-chromium-", ignore_cleanup_errors=True) as profile:
+        flags = ["--headless", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+                 "--disable-component-update", "--disable-sync", "--remote-debugging-port=0", f"--user-data-dir={profile}", "--window-size=1300,1000"]
+        if os.getuid() == 0:
+            flags.append("--no-sandbox")
+        process = subprocess.Popen([program, *flags, "about:blank"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            until, told = time.monotonic() + WAIT_S, pathlib.Path(profile, "DevToolsActivePort")
+            while not told.exists() or len(told.read_text().split()) < 2:
+                assert time.monotonic() < until and process.poll() is None, "chromium does not start"
+                time.sleep(0.1)
+            port, path = told.read_text().split()
+            root = WebSocket(int(port), path)
+            target = root.ask(id=1, method="Target.getTargets")["result"]["targetInfos"]
+            page = next(t["targetId"] for t in target if t["type"] == "page")
+            chrome = Browser(int(port), f"/devtools/page/{page}")
+            chrome.ask("Page.navigate", url=address)
+            chrome.wait("document.readyState === 'complete' && document.querySelectorAll('#textures li').length > 0")
+            yield chrome
+        finally:
+            process.terminate()
+            process.wait()
+
+
+def choose_by_keys(chrome, name):
+    chrome.value(f"[...document.querySelectorAll('#textures button')].find((b) => b.firstChild.textContent === {json.dumps(name)}).focus()")
+    chrome.key("Enter")
+    chrome.wait(f"document.getElementById('strip-title').textContent === {json.dumps(name)}")
+
+
+def stroke_by_mouse(chrome):
+    x, y, width = chrome.value("(() => { const s = document.getElementById('strip'); s.scrollIntoView({block: 'center'}); const r = s.getBoundingClientRect(); return [r.x, r.y + r.height / 2, r.width]; })()")
+    chrome.mouse("mousePressed", x + 0.2 * width, y)
+    for i in range(60):
+        chrome.mouse("mouseMoved", x + (0.2 + 0.01 * i) * width, y)
+    chrome.wait("Number(document.getElementById('strip').ariaValueNow) > 25")  # of 35 mm
+    assert chrome.text("state-word") == "playing"
+    chrome.mouse("mouseMoved", x + 0.5 * width, y - 400)  # leaving the strip lifts the finger
+    chrome.wait("document.getElementById('state-word').textContent === 'playing, finger lifted'")
+    chrome.mouse("mouseReleased", x + 0.5 * width, y - 400)
+
+
+def stroke_by_touch(chrome):
+    x, y, width = chrome.value("(() => { const r = document.getElementById('strip').getBoundingClientRect(); return [r.x, r.y + r.height / 2, r.width]; })()")
+    def touch(kind, *at):
+        chrome.ask("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": part, "y": y} for part in at])
+    touch("touchStart", x + 0.9 * width)
+    for i in range(60):
+        touch("touchMove", x + (0.9 - 0.01 * i) * width)
+    chrome.wait("Number(document.getElementById('strip').ariaValueNow) < 12 && document.getElementById('place').textContent.startsWith('finger touches')")
+    touch("touchEnd")
+    chrome.wait("document.getElementById('state-word').textContent === 'playing, finger lifted'")
+
+
+def keep(chrome, least_ticks):
+    chrome.click("keep")
+    chrome.wait("document.getElementById('kept').textContent.startsWith('Kept: ')")
+    path = chrome.text("kept").removeprefix("Kept: ").split(", ")[0]
+    report = run_json("replay", path)
+    assert report["same_to_the_bit"] and report["ticks_compared"] > least_ticks and "lost_ticks" not in report, report
+    return path
+
+
+def drive_peak(path):
+    run("session", path, "-o", "ticks.csv", "--force")
+    lines = pathlib.Path("ticks.csv").read_text().splitlines()
+    column = lines[0].split(",").index("drive_v")
+    return max(abs(float(line.split(",")[column])) for line in lines[1:])
+
+
+def check_playing(chrome):
+    choose_by_keys(chrome, ODD_NAME)
+    choose_by_keys(chrome, "C")
+    assert chrome.value("document.querySelectorAll('#textures img, h2 img').length") == 0
+    chrome.click("sound")
+    assert chrome.value("document.getElementById('sound').getAttribute('aria-pressed')") == "true"
+    stroke_by_mouse(chrome)
+    # 7 to 25 mm at the fastest, 1 m/s: 18 ms. Volts: a stroke of C needs several.
+    assert drive_peak(keep(chrome, 0.018 * 16000)) > 0.1
+    stroke_by_touch(chrome)
+    chrome.click("stop")
+    chrome.wait("document.getElementById('state-word').textContent.startsWith('stopped')")
+    # By keys: 50 mm/s to the right end, and back.
+    chrome.value("document.getElementById('strip').focus()")
+    chrome.key("Home")
+    chrome.wait("Number(document.getElementById('strip').ariaValueNow) < 0.2")
+    chrome.key("ArrowRight", kinds=("rawKeyDown",))
+    chrome.wait("Number(document.getElementById('strip').ariaValueNow) > 10")
+    chrome.key("ArrowRight", kinds=("keyUp",))
+    chrome.wait("document.getElementById('place').textContent.endsWith(' 0 mm/s')")
+    chrome.key("Escape")
+    chrome.wait("document.getElementById('state-word').textContent.startsWith('stopped')")
+    assert drive_peak(keep(chrome, 0.19 * 16000)) > 0.1  # 0.2 to 10 mm at 50 mm/s
+    chrome.value("document.querySelector('#strokes button[data-speed=\"100\"]').click()")
+    chrome.wait("document.getElementById('state-word').textContent === 'playing, finger lifted' && Number(document.getElementById('strip').ariaValueNow) > 30")
+    chrome.click("stop")
+    chrome.wait("document.getElementById('state-word').textContent.startsWith('stopped')")
+
+
+def check_without_sound(chrome):
+    """Without AudioContext the engine runs on a timer, and the page says so."""
+    script = chrome.ask("Page.addScriptToEvaluateOnNewDocument", source="delete window.AudioContext")["identifier"]
+    chrome.ask("Page.reload")
+    chrome.wait("document.readyState === 'complete' && document.querySelectorAll('#textures li').length > 0")
+    choose_by_keys(chrome, "C")
+    chrome.value("document.querySelector('#strokes button[data-speed=\"100\"]').click()")
+    chrome.wait("Number(document.getElementById('strip').ariaValueNow) > 34.5")
+    assert "no sound device" in chrome.text("state-word")
+    keep(chrome, 0.34 * 16000)  # 34.5 mm at 100 mm/s
+    chrome.ask("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
+
+
+def check_names(chrome):
+    roles = ("button", "slider", "checkbox", "combobox", "spinbutton", "image", "link", "textbox")
+    for node in chrome.ask("Accessibility.getFullAXTree")["nodes"]:
+        if not node["ignored"] and node["role"]["value"] in roles:
+            assert node.get("name", {}).get("value"), node
+    # Everything is reached by Tab, and the focus is visible.
+    chrome.value("document.activeElement.blur()")
+    seen = set()
+    for _ in range(60):
+        chrome.key("Tab")
+        where, outline = chrome.value("[document.activeElement.id || document.activeElement.textContent, parseFloat(getComputedStyle(document.activeElement).outlineWidth)]")
+        if where in seen:
+            break
+        seen.add(where)
+        assert outline >= 2, where
+    reachable = chrome.value("[...document.querySelectorAll('button, input, select, [tabindex=\"0\"], summary')].filter((e) => !e.disabled).map((e) => e.id || e.textContent)")
+    assert set(reachable) <= seen, set(reachable) - seen
+
+
+def check_looks(chrome):
+    for dark in ("dark", "light"):
+        chrome.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": dark}])
+        least = chrome.value(CONTRAST)
+        assert least["ratio"] >= 4.5, least
+    chrome.ask("Emulation.setDeviceMetricsOverride", width=400, height=900, deviceScaleFactor=1, mobile=False)
+    assert chrome.value("document.documentElement.scrollWidth") <= 400
+    chrome.ask("Emulation.clearDeviceMetricsOverride")
+
+
+def make_textures():
+    run("record", "-d", "sim:surface=C,speed=50mm/s,seed=1", "--time", "2s", "-o", "rec")
+    run("spatial", "rec", "-o", "folder/C", "--stroke", "1")
+    for ending in (".texture.wav", ".texture.json"):
+        shutil.copy(f"folder/C{ending}", f"folder/{ODD_NAME}{ending}")
+
+
+def live_in_chromium():
+    make_textures()
+    with live("folder") as server, browser(server.address) as chrome:
+        assert chrome.value("location.search") == "", "the token stays out of the address"
+        check_playing(chrome)
+        check_names(chrome)
+        check_looks(chrome)
+        check_without_sound(chrome)
+        assert chrome.console == [], chrome.console
+
+
+def pictures(folder):
+    run("demo", "-o", "demo")
+    with live("demo") as server, browser(server.address) as chrome:
+        choose_by_keys(chrome, "C")
+        stroke_by_mouse(chrome)
+        chrome.value("document.querySelector('#strokes button[data-speed=\"20\"]').click()")
+        time.sleep(1)
+        for width in (1300, 400):
+            for dark in (False, True):
+                chrome.picture(folder / f"live-{width}-{'dark' if dark else 'light'}.png", width, dark)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) == 3 and sys.argv[1] == "--pictures":
+        target = pathlib.Path(sys.argv[2]).resolve()
+        in_folder(lambda: pictures(target))
+    else:
+        in_folder(live_in_chromium)

@@ -1,0 +1,267 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""tactograph live, without a browser: who may use it, what it serves, bad input; and the page's device in node, whose
+sessions `tactograph replay` computes again natively, to the bit.
+"""
+import hashlib
+import json
+import pathlib
+import random
+import shutil
+import struct
+import subprocess
+import sys
+
+import numpy as np
+import scipy.signal
+import soundfile
+from live_client import live
+from tacto import COMMAND, in_folder, run, run_json
+
+ODD_NAME = "<img src=x onerror=alert(1)>"
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def make_textures():
+    """C of the emulated device; a texture with an odd name; one that can't be read."""
+    run("record", "-d", "sim:surface=C,speed=50mm/s,seed=1", "--time", "2s", "-o", "rec")
+    run("spatial", "rec", "-o", "folder/C", "--stroke", "1")
+    for ending in (".texture.wav", ".texture.json"):
+        shutil.copy(f"folder/C{ending}", f"folder/{ODD_NAME}{ending}")
+    side = json.loads(pathlib.Path("folder/C.texture.json").read_text())
+    pathlib.Path(f"folder/{ODD_NAME}.texture.json").write_text(json.dumps(side))
+    pathlib.Path("folder/broken.texture.json").write_text("{")
+    # A sine of 1 mm and 5 mN.
+    wav = pathlib.Path("folder/sine.texture.wav")
+    soundfile.write(wav, 0.005 * np.sin(2 * np.pi * np.arange(side["data"]["samples"]) / 1000), 1_000_000, subtype="FLOAT")
+    side["data"].update(file=wav.name, sha256=hashlib.sha256(wav.read_bytes()).hexdigest())
+    pathlib.Path("folder/sine.texture.json").write_text(json.dumps(side))
+
+
+def check_access(server):
+    for host in ("evil.example", f"127.0.0.1.evil.example:{server.port}", "localhost:", "127.0.0.1:7230x", None):
+        assert server.ask("/", Host=host).status in ((421,) if host else (400, 421)), host
+    for host in (f"localhost:{server.port}", "localhost:9999", "[::1]:80", "127.0.0.1"):
+        assert server.ask("/", Host=host).status == 200, host
+    assert server.ask("/", Origin="http://evil.example").status == 403
+    assert server.ask("/", Origin="null").status == 403
+    assert server.ask("/", Origin=f"http://127.0.0.1:{server.port}").status == 200
+    assert server.ask("/", method="POST", Content_Length="0").status == 405
+    for path in ("/", "/page.js", "/textures", "/upload/0", "/?token=", "/?token=" + "0" * 32, "/page.js?token=" + server.token):
+        assert server.ask(path, cookie=False).status == 401, path
+    assert server.ask("/", cookie=False, Cookie=f"tactograph-{server.port}={server.token[:-1]}").status == 401
+    entered = server.ask("/?token=" + server.token, cookie=False)
+    assert entered.status == 200 and entered.body.startswith(b"<!doctype html>")
+    cookie = entered.headers["set-cookie"]
+    assert cookie.startswith(server.cookie + ";") and "HttpOnly" in cookie and "SameSite=Strict" in cookie, cookie
+    for path in ("/../../etc/passwd", "/..%2f..%2fetc/passwd", "/etc/passwd", "/folder/C.texture.json", "/texture/x", "/texture/0/wav", "/texture/", "/upload/0", "/session"):
+        assert server.ask(path).status == 404, path
+    assert server.ask("/texture/999").status == 404
+
+
+def check_headers(server):
+    for answer in (server.ask("/"), server.ask("/page.js"), server.ask("/textures"), server.ask("/none"), server.ask("/", cookie=False)):
+        policy = dict(part.strip().split(" ", 1) for part in answer.headers["content-security-policy"].split(";"))
+        assert policy["default-src"] == "'none'" and "unsafe-inline" not in str(policy) and "'unsafe-eval'" not in str(policy), policy
+        assert policy["script-src"] == "'self' 'wasm-unsafe-eval'" and policy["frame-ancestors"] == "'none'", policy
+        assert answer.headers["x-content-type-options"] == "nosniff"
+        assert answer.headers["cross-origin-opener-policy"] == "same-origin"
+        assert answer.headers["cross-origin-embedder-policy"] == "require-corp"
+    types = {name: server.ask(name).headers["content-type"] for name in ("/", "/page.js", "/style.css", "/core.wasm")}
+    assert types == {"/": "text/html; charset=utf-8", "/page.js": "text/javascript; charset=utf-8",
+                     "/style.css": "text/css; charset=utf-8", "/core.wasm": "application/wasm"}, types
+    page = server.ask("/").body.decode()
+    assert "<script>" not in page and "onclick" not in page and " style=" not in page
+
+
+def check_textures(server):
+    rows = {row["name"]: row for row in server.json("/textures")["textures"]}
+    assert set(rows) == {"C", ODD_NAME, "broken", "sine"}, rows
+    assert "reason" in rows["broken"] and abs(rows["C"]["length_m"] - 0.035) < 0.002, rows
+    figures = server.json(f"/texture/{rows['C']['index']}")
+    assert figures["rate_hz"] == 16000 and figures["gain_m_per_n"] > 0 and figures["transducer"] == "wiertlewski2011", figures
+    bad = server.ask(f"/texture/{rows['broken']['index']}")
+    assert bad.status == 422 and json.loads(bad.body)["error"]["fault"] == 3, bad.body
+    map_ = server.ask(f"/map/{figures['made']}").body
+    values = struct.unpack(f"<{len(map_) // 4}f", map_)
+    assert len(values) == 4000 and all(least <= most for least, most in zip(values[::2], values[1::2]))
+    check_tray(np.frombuffer(server.ask(f"/tray/{figures['made']}").body, "<f4"))
+    odd = server.json(f"/texture/{rows[ODD_NAME]['index']}")
+    assert odd["made"] != figures["made"] and odd["name"] == ODD_NAME
+    return figures["made"], odd["made"]
+
+
+def check_tray(taps):
+    """The impulse response against SciPy's zero-order hold of the equation of motion (Wiertlewski 2011, 5 and 6)."""
+    t = json.loads((HERE.parents[1] / "data-schema/presets/wiertlewski2011.transducer.json").read_text())
+    stiffness = t["flexure_stiffness_n_per_m"] + t["bender_stiffness_n_per_m"]
+    size = t["deflection_m"] / t["max_voltage_v"] * t["bender_stiffness_n_per_m"] * t["amplifier_gain"] * t["actuator_scale"]
+    poles = np.polymul([t["mass_kg"], t["damping_n_s_per_m"], stiffness], [2 * t["amplifier_resistance_ohm"] * t["capacitance_f"], 1])
+    numerator, denominator, _ = scipy.signal.cont2discrete(([size], poles), 1 / 16000, method="zoh")
+    w = 2 * np.pi * np.array([0, 15, 50, 100, 200, 350, 500]) / 16000
+    exact = scipy.signal.freqz(numerator.ravel(), denominator, w)[1]
+    ours = scipy.signal.freqz(taps.astype(float), 1, w)[1]
+    # Beyond 32 ms: -92 dB; images above 8 kHz, which the page leaves out: (547 / 15500)^2 / 31 = -88 dB at 500 Hz.
+    assert np.max(np.abs(ours / exact - 1)) < 1e-4, ours / exact
+
+
+def check_protocol(server, made):
+    assert server.page(Origin=None).status == 403
+    assert server.page(Origin="http://evil.example").status == 403
+    assert server.page(Cookie=None).status == 401
+    assert server.page(Host="evil.example", Origin="http://evil.example").status == 421
+    assert server.page("/other").status == 404
+    page = server.page()
+    assert page.status == 101
+    for text in ("", "[]", "{", '{"request":"format"}', '{"request":"begin"}', '{"request":"keep","path":"/etc/x"}',
+                 '{"request":"begin","made":-1}', '{"request":"begin","made":"C"}', '{"request":"keep","request":"keep"}',
+                 "[" * 1000, "\x00"):
+        page.send(text)
+        answer = page.receive()
+        assert answer["ok"] is False and answer["error"]["fault"] == 3, (text, answer)
+    assert page.ask(request="begin", made=999)["error"]["fault"] == 2
+    assert page.ask(request="keep")["error"]["fault"] == 4
+    assert page.ask(request="begin", made=made)["ok"]
+    assert page.ask(request="keep")["error"]["fault"] == 4  # no tick
+    page.ask(request="begin", made=made)
+    page.send(b"no frames at all")
+    page.send(b"x" * 64)
+    assert page.receive()["error"]["fault"] == 3
+    page.send("x" * 16384)
+    assert page.receive()["error"]["fault"] == 3
+    page.send("x" * 16385)
+    assert page.receive() == ("closed", 1009)
+    assert not list(pathlib.Path("folder").glob("*.session"))
+
+
+def fetch_page(server):
+    """The modules that the page runs, for node."""
+    pathlib.Path("page").mkdir(exist_ok=True)
+    for name in ("core.js", "engine.js", "finger.js", "core.wasm"):
+        pathlib.Path("page", name).write_bytes(server.ask("/" + name).body)
+    pathlib.Path("page/package.json").write_text('{"type": "module"}')
+    shutil.copy(HERE / "live_device.mjs", "page")
+
+
+def device_log(server, made, seed, seconds, fault=""):
+    for part in ("upload", "tray"):
+        pathlib.Path(part).write_bytes(server.ask(f"/{part}/{made}").body)
+    done = subprocess.run(["node", "page/live_device.mjs", "page/core.wasm", "upload", "tray", str(seed), str(seconds), fault, "log"],
+                          capture_output=True, timeout=300)
+    assert done.returncode == 0, done.stderr.decode()
+    print(f"seed {seed}: {done.stderr.decode().strip()}")
+    return pathlib.Path("log").read_bytes()
+
+
+def kept(server, made, log):
+    page = server.page()
+    assert page.ask(request="begin", made=made)["ok"]
+    for at in range(0, len(log), 5000):
+        page.send(log[at:at + 5000])
+    answer = page.ask(request="keep")
+    if answer.get("event") == "fault":
+        assert answer["what"] and answer["remedy"], answer
+        answer = page.receive()
+    assert answer["ok"], answer
+    return answer
+
+
+def check_bits(server, made, odd_made):
+    fetch_page(server)
+    for seed, which, fault in ((1, made, ""), (2, odd_made, ""), (3, made, "fault")):
+        log = device_log(server, which, seed, 6, fault)
+        answer = kept(server, which, log)
+        report = run_json("replay", answer["kept"])
+        assert report["same_to_the_bit"] and report["ticks_compared"] == answer["ticks"] > 90_000, report
+        assert "lost_ticks" not in report
+        run("validate", answer["kept"])
+        info = run_json("info", answer["kept"])
+        assert "simulated" in json.dumps(info) and "browser" in json.dumps(info), info
+    # One bit of one drive: the comparison is able to fail. The frame's check has to be right again.
+    frame = log.rfind(b"\xa5\x54\x01\x86", 0, len(log) // 2)
+    length = struct.unpack_from("<H", log, frame + 4)[0]
+    payload = bytearray(log[frame + 12:frame + 12 + length])
+    payload[20 + 4] ^= 1
+    changed = log[:frame + 12] + payload + struct.pack("<I", crc32c(log[frame:frame + 12] + payload)) + log[frame + 12 + length + 4:]
+    check_damaged_logs(server, made, log)
+    assert not run_json("replay", kept(server, made, changed)["kept"], code=5)["same_to_the_bit"]
+    # A part of the log that is missing is a loss in the session.
+    lacking = log[:frame] + log[frame + 12 + length + 4:]
+    assert run_json("replay", kept(server, made, lacking)["kept"], code=5)["lost_ticks"] == 64
+
+
+def check_sound(server):
+    """The whole chain against a closed form: 5 um at 50 and 100 Hz, and as velocity times f / 200 Hz."""
+    index = next(row["index"] for row in server.json("/textures")["textures"] if row["name"] == "sine")
+    made = server.json(f"/texture/{index}")["made"]
+    for kind in ("tone", "velocity"):
+        sounds = np.frombuffer(device_log(server, made, 1, 1, kind), "<f4").reshape(2, -1)
+        for part, hz in zip(sounds, (50, 100)):
+            steady = part[int(0.16 * 16000):int(0.3 * 16000)]  # whole periods
+            t = np.arange(len(steady)) / 16000
+            amplitude = 2 * abs(np.mean(steady * np.exp(-2j * np.pi * hz * t)))
+            # 5 um of full 10 um, through the Butterworth filters of 15 and 500 Hz.
+            filters = 1 / np.sqrt((1 + (15 / hz) ** 4) * (1 + (hz / 500) ** 4))
+            expected = 0.5 * filters * (hz / 200 if kind == "velocity" else 1)
+            # The onset of 20 ms through the high-pass has decayed to exp(-2 pi 15 0.71 0.14) = 1e-4; the inverse's error
+            # is -72 dB, that of the modelled tray 1e-4.
+            assert abs(amplitude / expected - 1) < 1e-3, (kind, hz, amplitude, expected)
+            rest = steady - 2 * np.real(np.mean(steady * np.exp(-2j * np.pi * hz * t)) * np.exp(2j * np.pi * hz * t))
+            print(f"{kind} {hz} Hz: amplitude {amplitude / expected:.4f} of the exact one, rest {20 * np.log10(np.std(rest) / amplitude):.0f} dB")
+
+
+def check_damaged_logs(server, made, log):
+    """Any log is an error or a session; afterwards the server serves."""
+    draw = random.Random(34)
+    for _ in range(40):
+        damaged = bytearray(log[:draw.randrange(1, 20_000)])
+        for _ in range(draw.choice((0, 1, 20))):
+            damaged[draw.randrange(len(damaged))] = draw.randrange(256)
+        page = server.page()
+        assert page.ask(request="begin", made=made)["ok"]
+        page.send(damaged[:16384])
+        answer = page.ask(request="keep")
+        assert answer["ok"] or answer["error"]["fault"] in (3, 4), answer
+        if answer["ok"]:
+            run("validate", answer["kept"])
+    assert server.ask("/").status == 200
+
+
+def crc32c(data):
+    check = 0xFFFFFFFF
+    for byte in data:
+        check ^= byte
+        for _ in range(8):
+            check = check >> 1 ^ (0x82F63B78 if check & 1 else 0)
+    return check ^ 0xFFFFFFFF
+
+
+def check_command():
+    run("live", "nowhere", code=3)
+    run("live", "folder", "--transducer", "nothing", code=3)
+    run("live", "folder", "--port", "70000", code=2)
+
+
+def live_page():
+    make_textures()
+    check_command()
+    with live("folder") as server:
+        run("live", "folder", "--port", server.port, code=5)  # taken
+        with live("folder") as second:
+            assert second.port != server.port and second.token != server.token
+        check_access(server)
+        check_headers(server)
+        made, odd_made = check_textures(server)
+        check_protocol(server, made)
+        check_bits(server, made, odd_made)
+        check_sound(server)
+    assert not [path for path in pathlib.Path("folder").iterdir() if path.name.startswith(".")], "temporary files stay"
+
+
+if __name__ == "__main__":
+    refused = subprocess.run([COMMAND, "live", "/nonexistent", "--json"], capture_output=True, text=True)
+    if refused.returncode == 5:  # built without libwebsockets, clang-16 or lld-16
+        assert "libwebsockets-dev" in refused.stdout + refused.stderr, refused
+        print("skipped: built without the page")
+        sys.exit(77)
+    in_folder(live_page)
