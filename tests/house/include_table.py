@@ -107,7 +107,7 @@ MAY_INCLUDE = {
         "data-schema/{base texture} firmware-host/{core/kernel core/wire} playback/{choose model render "
         "render/reference session}",
     "analysis/cli":
-        "analysis/{compare demo extremes fidelity identify/fit identify/measure identify/report report trade "
+        "analysis/{compare demo experiment extremes fidelity identify/fit identify/measure identify/report page report trade "
         "trade/rows} data-schema/{base command files kinds report results scene texture} playback/{model player "
         "session} spatial/{cli picture}",
     "analysis/compare":
@@ -116,6 +116,7 @@ MAY_INCLUDE = {
     "analysis/demo":
         "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
         "sim/bench} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
+    "analysis/experiment": "analysis/{page psychometrics} capture/table data-schema/{base results}",
     "analysis/extremes":
         "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/recording "
         "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram}",
@@ -131,6 +132,7 @@ MAY_INCLUDE = {
         "analysis/{identify/fit identify/measure} data-schema/{base results} firmware-host/sim/physics "
         "spatial/{picture picture/draw}",
     "analysis/page": "data-schema/{base results} spatial/picture",
+    "analysis/psychometrics": "data-schema/base",
     "analysis/report":
         "analysis/{identify/measure page} data-schema/{base calibration check device files kinds recording results "
         "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
