@@ -56,16 +56,11 @@ void add_test(Report& row, double deviance, std::size_t freedom, double p) {
   row.add("deviance", deviance).add("degrees_of_freedom", freedom).add("p", p);
 }
 
-std::string steepness_key(const AnswersFit& all) {
-  const std::string name = steepness_of(all.options).name;
-  return name == "JND" ? "jnd" : name;
-}
-
 Report fit_row(const AnswersFit& all, const FittedGroup& group) {
   Report row;
-  add_by(row, all.columns.by, group.by);
+  add_by(row, all.table.columns.by, group.by);
   add_estimate(row, all.options.guess ? "threshold" : "pse", group.fit.threshold);
-  add_estimate(row, steepness_key(all), steepness_of(all.options).of(group.fit));
+  add_estimate(row, all.steepness_name == "JND" ? "jnd" : all.steepness_name, group.steepness);
   row.add("lapse", group.fit.function.lapse);
   if (!all.options.lapse) row.add("lapse_high", group.fit.lapse_high);
   if (all.options.overdispersed)
@@ -79,7 +74,7 @@ Report people_row(const AnswersFit& all, const OverPeople& over) {
   std::vector<Report> rows;
   for (const ConditionOverPeople& each : over.conditions) {
     Report& row = rows.emplace_back();
-    add_by(row, {all.columns.by.begin() + 1, all.columns.by.end()}, each.condition);
+    add_by(row, {all.table.columns.by.begin() + 1, all.table.columns.by.end()}, each.condition);
     row.add("people", each.people.size()).add("mean", each.mean);
     add_estimate(row, "geometric_mean", each.geometric);
   }
@@ -93,8 +88,10 @@ Report people_row(const AnswersFit& all, const OverPeople& over) {
 // All values, for --json and results.
 Report answers_report(const AnswersFit& all) {
   Report report;
-  report.add("verdict", answers_verdict(all)).add("level", all.columns.level).add("unit", all.unit);
-  report.add("yes", all.columns.yes);
+  report.add("verdict", answers_verdict(all))
+      .add("level", all.table.columns.level)
+      .add("unit", all.table.unit);
+  report.add("yes", all.table.columns.yes);
   std::vector<Report> rows;
   for (const FittedGroup& group : all.groups) rows.push_back(fit_row(all, group));
   report.add("fits", std::move(rows));
@@ -132,15 +129,9 @@ Report brief_report(const std::vector<schema::ResultFigure>& figures) {
 Report brief_answers(const AnswersFit& all) {
   Report report = brief_report(answers_figures(all));
   if (all.groups.size() == 1) return report;
-  const Steepness steepness = steepness_of(all.options);
-  std::vector<Report> rows;
-  for (const FittedGroup& group : all.groups) {
-    Report& row = rows.emplace_back();
-    add_by(row, all.columns.by, group.by);
-    row.add(all.options.guess ? "threshold" : "PSE", in_words(group.fit.threshold, all.unit));
-    row.add(steepness.name, in_words(steepness.of(group.fit), steepness.in_levels ? all.unit : ""));
-    row.add("lapse_percent", 100 * group.fit.function.lapse).add("p", group.fit.p);
-  }
+  const auto table = groups_table(all);
+  std::vector<Report> rows(table.size() - 1);
+  for (std::size_t row = 0; row < rows.size(); ++row) add_by(rows[row], table.front(), table[row + 1]);
   return report.add("fits", std::move(rows));
 }
 
@@ -170,10 +161,10 @@ Result<Report> write_fit(const FitOptions& o, schema::Results results, const Rep
 }
 
 Result<Report> fit_levels(const FitOptions& o, bool json) {
-  const auto table = read_answers(o.file, o.columns);
+  auto table = read_answers(o.file, o.columns);
   TACTO_TRY(table);
   cli::Progress progress("fitting");
-  auto fit = fit_answers(*table, o.fit, [&](double part) { progress.update(part); });
+  auto fit = fit_answers(std::move(*table), o.fit, [&](double part) { progress.update(part); });
   if (!fit) fit.error().where = o.file + (fit.error().where.empty() ? "" : ": " + fit.error().where);
   TACTO_TRY(fit);
   const Report details = answers_report(*fit);

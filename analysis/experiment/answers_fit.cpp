@@ -12,8 +12,13 @@ namespace {
 
 using schema::Result;
 
-Estimate scaled(const Estimate& estimate, double factor) {
-  return {estimate.value * factor, estimate.low * factor, estimate.high * factor};
+Estimate steepness_of(const PsychometricFit& fit) {
+  const auto [value, low, high] = fit.spread;
+  const Shape shape = fit.function.shape;
+  if (shape == Shape::weibull) return {1 / value, 1 / high, 1 / low};
+  const double jnd = standard_quantile(shape, 0.75), width = 2 * standard_quantile(shape, 0.95);
+  const double factor = fit.function.guess ? width : jnd;
+  return {factor * value, factor * low, factor * high};
 }
 
 Result<std::vector<FittedGroup>> fit_groups(const AnswersTable& table, const PsychometricOptions& options,
@@ -23,20 +28,21 @@ Result<std::vector<FittedGroup>> fit_groups(const AnswersTable& table, const Psy
     auto fit = fit_psychometric(group.rows, options);
     if (!fit && !group.by.empty()) fit.error().where = group_name(group.by);
     TACTO_TRY(fit);
-    groups.push_back({group.by, std::move(*fit)});
+    const Estimate steepness = steepness_of(*fit);
+    groups.push_back({group.by, std::move(*fit), steepness});
     tell(static_cast<double>(groups.size()) / static_cast<double>(table.groups.size()));
   }
   return groups;
 }
 
-OverPeople over_people(const std::vector<FittedGroup>& groups, const Steepness& steepness) {
+OverPeople over_people(const std::vector<FittedGroup>& groups) {
   OverPeople all;
   for (const FittedGroup& group : groups) {
     const std::vector<std::string> condition(group.by.begin() + 1, group.by.end());
     auto found = std::ranges::find(all.conditions, condition, &ConditionOverPeople::condition);
     if (found == all.conditions.end()) found = all.conditions.insert(found, {condition, {}, {}, 0, {}});
     found->people.push_back(group.by.front());
-    found->figures.push_back(steepness.of(group.fit).value);
+    found->figures.push_back(group.steepness.value);
   }
   for (ConditionOverPeople& each : all.conditions) {
     each.mean = std::accumulate(each.figures.begin(), each.figures.end(), 0.0) /
@@ -57,8 +63,8 @@ std::vector<double> matched(const ConditionOverPeople& one, const ConditionOverP
   return figures;
 }
 
-OverPeople compared_people(const std::vector<FittedGroup>& groups, const Steepness& steepness) {
-  OverPeople all = over_people(groups, steepness);
+OverPeople compared_people(const std::vector<FittedGroup>& groups) {
+  OverPeople all = over_people(groups);
   if (all.conditions.size() != 2) return all;
   const auto& first = all.conditions.front();
   if (const auto second = matched(first, all.conditions.back()); second.size() > 1)
@@ -72,32 +78,23 @@ std::string group_name(const std::vector<std::string>& by) {
   return by.empty() ? "all" : fmt::format("{}", fmt::join(by, ", "));
 }
 
-Steepness steepness_of(const PsychometricOptions& options) {
-  if (options.shape == Shape::weibull) return {"exponent", false};
-  return {options.guess ? "width" : "JND", true};
-}
-
-Estimate Steepness::of(const PsychometricFit& fit) const {
-  const PsychometricFunction& f = fit.function;
-  if (!in_levels) return {1 / fit.spread.value, 1 / fit.spread.high, 1 / fit.spread.low};
-  if (!f.guess) return scaled(fit.spread, standard_quantile(f.shape, 0.75));
-  return scaled(fit.spread, standard_quantile(f.shape, 0.95) - standard_quantile(f.shape, 0.05));
-}
-
-Result<AnswersFit> fit_answers(const AnswersTable& table, const PsychometricOptions& options,
+Result<AnswersFit> fit_answers(AnswersTable table, const PsychometricOptions& options,
                                const std::function<void(double)>& tell) {
-  AnswersFit all{table.columns, table.level_name, table.unit, options, {}, {}, {}};
   auto groups = fit_groups(table, options, tell);
   TACTO_TRY(groups);
-  all.groups = std::move(*groups);
+  AnswersFit all{
+      std::move(table), options, options.guess ? "threshold" : "PSE", "exponent", "", *groups, {}, {}};
+  if (options.shape != Shape::weibull) {
+    all.steepness_name = options.guess ? "width" : "JND";
+    all.steepness_unit = all.table.unit;
+  }
   if (all.groups.size() < 2) return all;
-  const Steepness steepness = steepness_of(options);
-  all.over_people = compared_people(all.groups, steepness);
+  all.over_people = compared_people(all.groups);
   if (options.lapse) return all;
   PsychometricOptions without = options;
   without.lapse = 0;
-  if (const auto others = fit_groups(table, without, [](double) {}))
-    all.without_lapses = compared_people(*others, steepness);
+  if (const auto others = fit_groups(all.table, without, [](double) {}))
+    all.without_lapses = compared_people(*others);
   return all;
 }
 

@@ -12,19 +12,13 @@
 
 namespace tacto::analysis {
 
+/// How steep the function is: its JND (threshold to F = 0.75) where stimuli are compared, its width (F = 0.05
+/// to 0.95) where one guesses, the exponent of a Weibull function.
 struct FittedGroup {
   std::vector<std::string> by;
   PsychometricFit fit;
+  Estimate steepness;
 };
-
-/// How steep a function is: its JND (threshold to F = 0.75) where stimuli are compared, its width (F = 0.05
-/// to 0.95) where one guesses, the exponent of a Weibull function.
-struct Steepness {
-  const char* name;
-  bool in_levels;  ///< in the unit of the levels
-  Estimate of(const PsychometricFit& fit) const;
-};
-Steepness steepness_of(const PsychometricOptions& options);
 
 /// One condition: the steepness of each of its people.
 struct ConditionOverPeople {
@@ -41,9 +35,10 @@ struct OverPeople {
 };
 
 struct AnswersFit {
-  AnswerColumns columns;
-  std::string level_name, unit;
+  AnswersTable table;
   PsychometricOptions options;
+  std::string threshold_name, steepness_name;  ///< "PSE", "JND" ...
+  std::string steepness_unit;                  ///< that of the levels, or empty
   std::vector<FittedGroup> groups;
   std::optional<OverPeople> over_people;     ///< if there are several groups
   std::optional<OverPeople> without_lapses;  ///< the same with the lapse fixed at 0, if it was fitted
@@ -51,7 +46,7 @@ struct AnswersFit {
 
 /// Fits each group. The first column of `by` is the person, the others are conditions. Errors: those of
 /// fit_psychometric(), with the group. `tell` receives 0 to 1.
-schema::Result<AnswersFit> fit_answers(const AnswersTable& table, const PsychometricOptions& options,
+schema::Result<AnswersFit> fit_answers(AnswersTable table, const PsychometricOptions& options,
                                        const std::function<void(double)>& tell);
 
 /// "S1, 0", or "all" without columns.

@@ -25,16 +25,8 @@ std::string with_unit(std::string value, const std::string& unit) {
   return unit.empty() ? value : value + " " + unit;
 }
 
-std::string threshold_name(const AnswersFit& fit) {
-  return fit.options.guess ? "threshold" : "PSE";
-}
-
-std::string unit_of(const AnswersFit& fit, const Steepness& steepness) {
-  return steepness.in_levels ? fit.unit : "";
-}
-
 std::string fit_in_words(double deviance, std::size_t freedom, double p) {
-  if (freedom == 0) return "too few groups of answers to test it";
+  if (freedom == 0) return "too few levels to test it";
   return fmt::format("deviance {:.4g} with {} degrees of freedom, p {:.2g}: {}", deviance, freedom, p,
                      p < kUsualP ? kMisfit : kNoMisfit);
 }
@@ -72,8 +64,8 @@ std::string answers_in_words(const AnswersFit& all) {
       yes += each.yes;
       trials += each.trials;
     }
-  return fmt::format("{:g} '{}' in {:g} trials, against '{}'", yes, all.columns.yes, trials,
-                     all.columns.level);
+  return fmt::format("{:g} '{}' in {:g} trials, against '{}'", yes, all.table.columns.yes, trials,
+                     all.table.columns.level);
 }
 
 std::string p_in_words(const PairedTest& test) {
@@ -85,12 +77,11 @@ std::string p_in_words(const PairedTest& test) {
 std::string means_in_words(const AnswersFit& all, const OverPeople& over) {
   std::vector<std::string> means;
   for (const ConditionOverPeople& each : over.conditions) means.push_back(fmt::format("{:.4g}", each.mean));
-  return with_unit(fmt::format("{}", fmt::join(means, " and ")), unit_of(all, steepness_of(all.options)));
+  return with_unit(fmt::format("{}", fmt::join(means, " and ")), all.steepness_unit);
 }
 
 std::string compared(const AnswersFit& all, const OverPeople& over) {
-  const std::string name = steepness_of(all.options).name;
-  std::string text = fmt::format("mean {} {}", name, means_in_words(all, over));
+  std::string text = fmt::format("mean {} {}", all.steepness_name, means_in_words(all, over));
   if (over.test) text += "; " + p_in_words(*over.test);
   return text;
 }
@@ -99,18 +90,17 @@ std::string compared(const AnswersFit& all, const OverPeople& over) {
 std::string condition_in_words(const AnswersFit& all, const std::vector<std::string>& condition) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < condition.size(); ++i)
-    words.push_back(fmt::format("{} {}", all.columns.by[i + 1], condition[i]));
+    words.push_back(fmt::format("{} {}", all.table.columns.by[i + 1], condition[i]));
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
 void add_people(std::vector<ResultFigure>& figures, const AnswersFit& all) {
-  const Steepness steepness = steepness_of(all.options);
   for (const ConditionOverPeople& each : all.over_people->conditions) {
     const std::string condition = condition_in_words(all, each.condition);
     figures.push_back(
-        {condition.empty() ? steepness.name : fmt::format("{} at {}", steepness.name, condition),
+        {condition.empty() ? all.steepness_name : fmt::format("{} at {}", all.steepness_name, condition),
          fmt::format("mean {:.4g} of {} people; geometric mean {}", each.mean, each.people.size(),
-                     in_words(each.geometric, unit_of(all, steepness)))});
+                     in_words(each.geometric, all.steepness_unit))});
   }
   if (all.over_people->test) figures.push_back({"difference", p_in_words(*all.over_people->test)});
   if (all.without_lapses) figures.push_back({"with lapses fixed at 0", compared(all, *all.without_lapses)});
@@ -132,10 +122,10 @@ std::vector<std::string> all_notes(const AnswersFit& all) {
 }
 
 void add_one(std::vector<ResultFigure>& figures, const AnswersFit& all) {
-  const PsychometricFit& fit = all.groups.front().fit;
-  const Steepness steepness = steepness_of(all.options);
-  figures.push_back({threshold_name(all), in_words(fit.threshold, all.unit)});
-  figures.push_back({steepness.name, in_words(steepness.of(fit), unit_of(all, steepness))});
+  const FittedGroup& group = all.groups.front();
+  const PsychometricFit& fit = group.fit;
+  figures.push_back({all.threshold_name, in_words(fit.threshold, all.table.unit)});
+  figures.push_back({all.steepness_name, in_words(group.steepness, all.steepness_unit)});
   figures.push_back({"lapses", lapse_in_words(all, fit)});
   if (all.options.overdispersed)
     figures.push_back({"overdispersion", fmt::format("{:.3g} (below {:.3g} with 95 %)", fit.overdispersion,
@@ -175,22 +165,6 @@ void add_group(ResultPicture& picture, const FittedGroup& group) {
   picture.curves.push_back(std::move(curve));
 }
 
-std::string groups_table(const AnswersFit& all) {
-  const Steepness steepness = steepness_of(all.options);
-  std::vector<Column<FittedGroup>> columns;
-  for (std::size_t i = 0; i < all.columns.by.size(); ++i)
-    columns.emplace_back(all.columns.by[i], [i](const FittedGroup& group) { return group.by[i]; });
-  columns.emplace_back(threshold_name(all),
-                       [&](const FittedGroup& group) { return in_words(group.fit.threshold, all.unit); });
-  columns.emplace_back(steepness.name, [&](const FittedGroup& group) {
-    return in_words(steepness.of(group.fit), unit_of(all, steepness));
-  });
-  columns.emplace_back("lapses", [&](const FittedGroup& group) { return lapse_in_words(all, group.fit); });
-  columns.emplace_back("p of the deviance",
-                       [](const FittedGroup& group) { return fmt::format("{:.2g}", group.fit.p); });
-  return html_table(all.groups, columns);
-}
-
 schema::Result<std::string> page_of(const std::string& file, const std::string& verdict,
                                     const std::vector<ResultFigure>& figures,
                                     const std::vector<ResultPicture>& pictures, const std::string& table) {
@@ -203,6 +177,21 @@ schema::Result<std::string> page_of(const std::string& file, const std::string& 
 
 }  // namespace
 
+std::vector<std::vector<std::string>> groups_table(const AnswersFit& all) {
+  std::vector<std::vector<std::string>> rows = {all.table.columns.by};
+  for (const std::string& name :
+       {all.threshold_name, all.steepness_name, std::string("lapses"), std::string("p of the deviance")})
+    rows.front().push_back(name);
+  for (const FittedGroup& group : all.groups) {
+    auto& row = rows.emplace_back(group.by);
+    row.push_back(in_words(group.fit.threshold, all.table.unit));
+    row.push_back(in_words(group.steepness, all.steepness_unit));
+    row.push_back(lapse_in_words(all, group.fit));
+    row.push_back(fmt::format("{:.2g}", group.fit.p));
+  }
+  return rows;
+}
+
 std::string in_words(const Estimate& estimate, const std::string& unit) {
   return with_unit(fmt::format("{:.4g} [{:.4g}, {:.4g}]", estimate.value, estimate.low, estimate.high), unit);
 }
@@ -213,11 +202,12 @@ std::string answers_verdict(const AnswersFit& all) {
                        all.over_people->test->p < kUsualP ? "the conditions differ" : "no difference found",
                        compared(all, *all.over_people));
   if (all.over_people) return compared(all, *all.over_people);
-  const PsychometricFit& fit = all.groups.front().fit;
-  const Steepness steepness = steepness_of(all.options);
-  return fmt::format("{} {}, {} {}", threshold_name(all),
-                     with_unit(fmt::format("{:.4g}", fit.threshold.value), all.unit), steepness.name,
-                     with_unit(fmt::format("{:.4g}", steepness.of(fit).value), unit_of(all, steepness)));
+  const FittedGroup& group = all.groups.front();
+  const PsychometricFit& fit = group.fit;
+  return fmt::format("{} {}, {} {}", all.threshold_name,
+                     with_unit(fmt::format("{:.4g}", fit.threshold.value), all.table.unit),
+                     all.steepness_name,
+                     with_unit(fmt::format("{:.4g}", group.steepness.value), all.steepness_unit));
 }
 
 std::vector<ResultFigure> answers_figures(const AnswersFit& all) {
@@ -242,10 +232,12 @@ std::vector<ResultPicture> answers_pictures(const AnswersFit& all) {
     const std::string title = group.by.empty() ? "Answers and fitted function" : group.by.front();
     auto found = std::ranges::find(pictures, title, &ResultPicture::title);
     if (found == pictures.end()) {
-      const std::string unit = all.unit.empty() ? "" : " (" + all.unit + ")";
-      found = pictures.insert(
-          found,
-          {title, all.level_name + unit, fmt::format("proportion of '{}'", all.columns.yes), false, {}});
+      const std::string unit = all.table.unit.empty() ? "" : " (" + all.table.unit + ")";
+      found = pictures.insert(found, {title,
+                                      all.table.level_name + unit,
+                                      fmt::format("proportion of '{}'", all.table.columns.yes),
+                                      false,
+                                      {}});
     }
     add_group(*found, group);
   }
@@ -253,7 +245,8 @@ std::vector<ResultPicture> answers_pictures(const AnswersFit& all) {
 }
 
 schema::Result<std::string> answers_page(const std::string& file, const AnswersFit& all) {
-  return page_of(file, answers_verdict(all), answers_figures(all), answers_pictures(all), groups_table(all));
+  return page_of(file, answers_verdict(all), answers_figures(all), answers_pictures(all),
+                 html_table(groups_table(all)));
 }
 
 std::string preferences_verdict(const std::vector<ScaledGroup>& scales) {

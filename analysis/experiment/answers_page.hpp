@@ -26,6 +26,9 @@ std::string preferences_verdict(const std::vector<ScaledGroup>& scales);
 std::vector<schema::ResultFigure> answers_figures(const AnswersFit& fit);
 std::vector<schema::ResultFigure> preferences_figures(const std::vector<ScaledGroup>& scales);
 
+/// A head and a row per group: columns of --by, threshold, steepness, lapses, p.
+std::vector<std::vector<std::string>> groups_table(const AnswersFit& fit);
+
 /// One picture per person, or per group of preferences.
 std::vector<schema::ResultPicture> answers_pictures(const AnswersFit& fit);
 std::vector<schema::ResultPicture> preferences_pictures(const std::vector<ScaledGroup>& scales);

@@ -112,10 +112,12 @@ bool is_before(const std::string& a, const std::string& b) {
 }
 
 template <class Row>
-void sort_groups(std::vector<AnswerGroup<Row>>& groups) {
+Result<void> sort_groups(std::vector<AnswerGroup<Row>>& groups, const std::string& file) {
+  if (groups.empty()) return fail(ErrorKind::unsuitable, "has no answers: all their numbers are 0", file);
   std::ranges::sort(groups, [](const AnswerGroup<Row>& a, const AnswerGroup<Row>& b) {
     return std::ranges::lexicographical_compare(a.by, b.by, is_before);
   });
+  return {};
 }
 
 bool counts_trials(const std::string& name) {
@@ -198,7 +200,7 @@ Result<AnswersTable> read_answers(const std::string& file, const AnswerColumns& 
     TACTO_TRY(count);
     if (count->trials > 0) group_of(answers.groups, table->texts[row]).push_back(*count);
   }
-  sort_groups(answers.groups);
+  TACTO_TRY(sort_groups(answers.groups, file));
   return answers;
 }
 
@@ -221,7 +223,7 @@ Result<std::vector<AnswerGroup<Preference>>> read_preferences(const std::string&
     if (const double count = table->rows[row][0]; count > 0)
       group_of(groups, {cells.begin() + 2, cells.end()}).push_back({cells[0], cells[1], count});
   }
-  sort_groups(groups);
+  TACTO_TRY(sort_groups(groups, file));
   return groups;
 }
 
