@@ -27,8 +27,8 @@ const cli::VerbGroup kGroups[] = {
      {&playback::kRenderVerb, &playback::kPlayVerb, &playback::kCtlVerb, &playback::kSessionVerb,
       &playback::kReplayVerb, &playback::kExplainVerb, &analysis::kLiveVerb}},
     {"Ask",
-     {&analysis::kIdentifyVerb, &analysis::kFidelityVerb, &analysis::kCompareVerb, &analysis::kReportVerb,
-      &analysis::kTradeVerb, &analysis::kExtremesVerb, &analysis::kDemoVerb}},
+     {&analysis::kIdentifyVerb, &analysis::kFidelityVerb, &analysis::kCompareVerb, &analysis::kExperimentVerb,
+      &analysis::kReportVerb, &analysis::kTradeVerb, &analysis::kExtremesVerb, &analysis::kDemoVerb}},
 };
 
 constexpr std::array<const cli::HelpTopic*, 1> kTopics = {&firmware_host::kSimTopic};

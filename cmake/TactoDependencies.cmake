@@ -31,6 +31,9 @@ find_path(EIGEN_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 add_library(tacto_eigen INTERFACE)
 target_include_directories(tacto_eigen SYSTEM INTERFACE ${EIGEN_INCLUDE_DIR})
 
+# Boost.Math is headers only, in the compiler's own path; this says what is missing before the compiler does.
+find_path(BOOST_MATH_INCLUDE_DIR boost/math/distributions.hpp REQUIRED)
+
 # Valijson is headers only.
 find_path(VALIJSON_INCLUDE_DIR valijson/validator.hpp REQUIRED)
 add_library(tacto_valijson INTERFACE)

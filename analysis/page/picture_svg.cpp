@@ -35,7 +35,7 @@ spatial::LineFigure figure_of(const schema::ResultPicture& picture, const std::s
     // A curve without a name continues the previous one and has its colour.
     if (!curve.name.empty() && !figure.series.empty()) ++colour;
     figure.series.push_back(
-        {curve.name, curve.x, curve.y, spatial::series_colour(colour), 1.2, curve.dashed});
+        {curve.name, curve.x, curve.y, spatial::series_colour(colour), 1.2, curve.dashed, curve.marks});
   }
   return figure;
 }

@@ -47,7 +47,7 @@ double scatter_within(std::span<const double> samples, const std::vector<double>
 }  // namespace
 
 double coverage_factor_95(double degrees_of_freedom) {
-  return schema::student_t(degrees_of_freedom, schema::kNormal95);
+  return schema::student_t(degrees_of_freedom, schema::kTwoSided95);
 }
 
 double step_of(std::span<const double> samples) {

@@ -13,8 +13,7 @@ struct Uncertain {
   double degrees_of_freedom = std::numeric_limits<double>::infinity();
 };
 
-/// The factor from a standard uncertainty to a 95 % interval: Student's t, exact for 1 and 2 degrees of
-/// freedom, otherwise the series of Fisher and Cornish in 1/nu (Abramowitz and Stegun 26.7.5), within 0.2 %.
+/// The factor from a standard uncertainty to a 95 % interval: Student's t.
 double coverage_factor_95(double degrees_of_freedom);
 
 /// The mean of samples whose noise may be correlated over up to a twentieth of them. Type A: from the scatter

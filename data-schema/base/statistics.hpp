@@ -8,9 +8,6 @@
 
 namespace tacto::schema {
 
-inline constexpr double kNormal95 = 1.959964;          ///< of the normal distribution, 95 %, two-sided
-inline constexpr double kNormal95OneSided = 1.644854;  ///< the same, one-sided
-
 /// The middle value; of an even number of values the upper of the two. Reorders the values. Precondition: at
 /// least one value.
 template <class Value>
@@ -20,9 +17,10 @@ Value upper_median(std::span<Value> values) {
   return *middle;
 }
 
-/// Quantile of Student's t at the probability of the normal distribution's quantile `normal`, by the series
-/// of Cornish and Fisher in 1/freedom (Abramowitz and Stegun 26.7.5). Two-sided 95 %: within 0.2 % from 3
-/// degrees of freedom on, exact for 1 and 2.
-double student_t(double freedom, double normal);
+/// Quantile of Student's t distribution; of the normal one for infinite freedom. Freedom below 1 counts as 1.
+/// NaN for a freedom that is NaN. Precondition: 0 < probability < 1.
+double student_t(double freedom, double probability);
+
+inline constexpr double kTwoSided95 = 0.975, kOneSided95 = 0.95;  ///< probabilities for student_t()
 
 }  // namespace tacto::schema

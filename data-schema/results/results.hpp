@@ -19,6 +19,7 @@ struct ResultCurve {
   std::string name;  ///< for the legend
   std::vector<double> x, y;
   bool dashed = false;
+  bool marks = false;  ///< a mark at each point instead of a curve
 };
 
 struct ResultPicture {

@@ -16,6 +16,7 @@ constexpr std::string_view kResultsKind = "results";
 
 Json curve_body(const ResultCurve& curve) {
   Json body = {{"name", curve.name}, {"dashed", curve.dashed}, {"x", Json::array()}, {"y", Json::array()}};
+  if (curve.marks) body["marks"] = true;
   for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i) {
     if (!std::isfinite(curve.x[i]) || !std::isfinite(curve.y[i])) continue;
     body["x"].push_back(curve.x[i]);
@@ -26,7 +27,7 @@ Json curve_body(const ResultCurve& curve) {
 
 ResultCurve curve_from(const Json& body) {
   return {text_or(body, "name"), body["x"].get<std::vector<double>>(), body["y"].get<std::vector<double>>(),
-          body.value("dashed", false)};
+          body.value("dashed", false), body.value("marks", false)};
 }
 
 Json picture_body(const ResultPicture& picture) {

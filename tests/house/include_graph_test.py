@@ -31,7 +31,8 @@ WALLS = {
     r"nettle/": ["data-schema/base"],
     r"opencv2/|cairo|pango|png": ["spatial/picture/engine"],
     r"pugixml": ["capture/import"],
-    r"Eigen/|unsupported/Eigen": ["analysis/compare", "analysis/identify"],
+    r"Eigen/|unsupported/Eigen": ["analysis/compare", "analysis/identify", "analysis/psychometrics"],
+    r"boost/": ["analysis/psychometrics", "data-schema/base"],
     r"CLI/": ["data-schema/command"],
     r"libwebsockets": ["analysis/live/server"],
 }

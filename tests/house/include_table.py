@@ -112,7 +112,7 @@ MAY_INCLUDE = {
         "render/reference session}",
     "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":
-        "analysis/{compare demo extremes fidelity identify/fit identify/measure identify/report live report trade "
+        "analysis/{compare demo experiment extremes fidelity identify/fit identify/measure identify/report live page report trade "
         "trade/rows} data-schema/{base command files kinds report results scene texture} playback/{model player "
         "session} spatial/{cli picture}",
     "analysis/compare":
@@ -121,6 +121,7 @@ MAY_INCLUDE = {
     "analysis/demo":
         "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
         "sim/bench} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
+    "analysis/experiment": "analysis/{page psychometrics} capture/table data-schema/{base results}",
     "analysis/extremes":
         "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/recording "
         "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram}",
@@ -140,6 +141,7 @@ MAY_INCLUDE = {
         "link} playback/{control model player prepare wasm} spatial/dsp/fourier",
     "analysis/live/server": "",
     "analysis/page": "data-schema/{base results} spatial/picture",
+    "analysis/psychometrics": "data-schema/base",
     "analysis/report":
         "analysis/{identify/measure page} data-schema/{base calibration check device files kinds recording results "
         "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "

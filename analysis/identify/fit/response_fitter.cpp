@@ -62,10 +62,9 @@ double ResponseFitter::spread(double hz) const {
 }
 
 double ResponseFitter::times_95() const {
-  if (uneven_freedom_ > 0) return schema::student_t(uneven_freedom_, schema::kNormal95);
-  if (!data_.noise_is_measured()) return schema::student_t(freedom(), schema::kNormal95);
-  return data_.noise_freedom > 0 ? schema::student_t(data_.noise_freedom, schema::kNormal95)
-                                 : schema::kNormal95;
+  if (uneven_freedom_ > 0) return schema::student_t(uneven_freedom_, schema::kTwoSided95);
+  if (!data_.noise_is_measured()) return schema::student_t(freedom(), schema::kTwoSided95);
+  return schema::student_t(data_.noise_freedom > 0 ? data_.noise_freedom : INFINITY, schema::kTwoSided95);
 }
 
 std::string ResponseFitter::ended() const {

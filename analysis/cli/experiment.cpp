@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "analysis/cli/results_output.hpp"
+#include "analysis/cli/verbs.hpp"
+#include "analysis/experiment/answers_page.hpp"
+#include "analysis/page/picture_svg.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/report/progress.hpp"
+#include "spatial/picture/figure.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using cli::Report;
+using schema::ErrorKind;
+using schema::Result;
+
+struct FitOptions {
+  std::string file;
+  AnswerColumns columns;
+  PsychometricOptions fit;
+  bool pairs = false;
+  std::vector<std::string> outputs;
+  schema::Existing existing = schema::Existing::keep;
+};
+
+constexpr const char* kFitHelp =
+    "Columns: those that no option names are, in this order, the level, the number of answers 'yes' "
+    "(correct, "
+    "faster) and, where there is a third, the number of other answers, or of trials if its name is trials, "
+    "n, "
+    "total or count. Without a third, each row is one trial with the answer 0 or 1. Rows with equal levels "
+    "are "
+    "added.\n--by: the first column is the person, the others are conditions. Each group of rows has its own "
+    "function; two conditions are compared by a paired t test of the logarithms of the JNDs.\nWithout "
+    "--guess "
+    "two stimuli are compared: PSE is the level that seems equal to the standard (50 %), JND the distance "
+    "from "
+    "there to the level at which the function without lapses is 75 %. With --guess, threshold is the level "
+    "half-way between guessing and the upper end, width the distance between the levels at 5 and 95 % of the "
+    "way. Estimates are the most probable values; with --lapse 0% they are those of probit regression.\n"
+    "--pairs: columns winner, loser and count; a scale by Bradley and Terry.";
+
+void add_estimate(Report& row, const std::string& key, const Estimate& estimate) {
+  row.add(key, estimate.value).add(key + "_low", estimate.low).add(key + "_high", estimate.high);
+}
+
+void add_by(Report& row, const std::vector<std::string>& columns, const std::vector<std::string>& by) {
+  for (std::size_t i = 0; i < columns.size(); ++i) row.add(columns[i], by[i]);
+}
+
+void add_test(Report& row, double deviance, std::size_t freedom, double p) {
+  row.add("deviance", deviance).add("degrees_of_freedom", freedom).add("p", p);
+}
+
+Report fit_row(const AnswersFit& all, const FittedGroup& group) {
+  Report row;
+  add_by(row, all.table.columns.by, group.by);
+  add_estimate(row, all.options.guess ? "threshold" : "pse", group.fit.threshold);
+  add_estimate(row, all.steepness_name == "JND" ? "jnd" : all.steepness_name, group.steepness);
+  row.add("lapse", group.fit.function.lapse);
+  if (!all.options.lapse) row.add("lapse_high", group.fit.lapse_high);
+  if (all.options.overdispersed)
+    row.add("overdispersion", group.fit.overdispersion)
+        .add("overdispersion_high", group.fit.overdispersion_high);
+  add_test(row, group.fit.deviance, group.fit.freedom, group.fit.p);
+  return row;
+}
+
+Report people_row(const AnswersFit& all, const OverPeople& over) {
+  std::vector<Report> rows;
+  for (const ConditionOverPeople& each : over.conditions) {
+    Report& row = rows.emplace_back();
+    add_by(row, {all.table.columns.by.begin() + 1, all.table.columns.by.end()}, each.condition);
+    row.add("people", each.people.size()).add("mean", each.mean);
+    add_estimate(row, "geometric_mean", each.geometric);
+  }
+  Report report;
+  report.add("conditions", std::move(rows));
+  if (over.test)
+    report.add("t", over.test->t).add("degrees_of_freedom", over.test->freedom).add("p", over.test->p);
+  return report;
+}
+
+// All values, for --json and results.
+Report answers_report(const AnswersFit& all) {
+  Report report;
+  report.add("verdict", answers_verdict(all))
+      .add("level", all.table.columns.level)
+      .add("unit", all.table.unit);
+  report.add("yes", all.table.columns.yes);
+  std::vector<Report> rows;
+  for (const FittedGroup& group : all.groups) rows.push_back(fit_row(all, group));
+  report.add("fits", std::move(rows));
+  if (all.over_people) report.add("over_people", std::vector<Report>{people_row(all, *all.over_people)});
+  if (all.without_lapses)
+    report.add("without_lapses", std::vector<Report>{people_row(all, *all.without_lapses)});
+  return report;
+}
+
+Report preferences_report(const FitOptions& o, const std::vector<ScaledGroup>& scales) {
+  Report report;
+  report.add("verdict", preferences_verdict(scales));
+  std::vector<Report> groups;
+  for (const ScaledGroup& each : scales) {
+    Report& group = groups.emplace_back();
+    add_by(group, o.columns.by, each.by);
+    std::vector<Report> items;
+    for (const ScaledItem& item : each.scale.items) {
+      items.emplace_back().add("item", item.name);
+      add_estimate(items.back(), "ability", item.ability);
+    }
+    group.add("items", std::move(items)).add("comparisons", each.scale.comparisons);
+    add_test(group, each.scale.deviance, each.scale.freedom, each.scale.p);
+  }
+  return report.add("scales", std::move(groups));
+}
+
+// For the terminal: the figures, then a row per group if there are several.
+Report brief_report(const std::vector<schema::ResultFigure>& figures) {
+  Report report;
+  for (const schema::ResultFigure& figure : figures) report.add(figure.name, figure.value);
+  return report;
+}
+
+Report brief_answers(const AnswersFit& all) {
+  Report report = brief_report(answers_figures(all));
+  if (all.groups.size() == 1) return report;
+  const auto table = groups_table(all);
+  std::vector<Report> rows(table.size() - 1);
+  for (std::size_t row = 0; row < rows.size(); ++row) add_by(rows[row], table.front(), table[row + 1]);
+  return report.add("fits", std::move(rows));
+}
+
+schema::Results experiment_results(const FitOptions& o, std::vector<schema::ResultFigure> figures,
+                                   std::vector<schema::ResultPicture> pictures) {
+  schema::Results results;
+  results.verb = "experiment fit";
+  results.inputs = {o.file};
+  results.figures = std::move(figures);
+  results.pictures = std::move(pictures);
+  return results;
+}
+
+Result<std::string> picture_svg(const std::vector<schema::ResultPicture>& pictures) {
+  if (pictures.size() == 1) return spatial::to_svg(figure_of(pictures.front(), ""));
+  return schema::fail(ErrorKind::usage, fmt::format("there are {} pictures", pictures.size()), "--output",
+                      "name a page (.html), which shows all");
+}
+
+// Writes the outputs and adds them to what is printed.
+Result<Report> write_fit(const FitOptions& o, schema::Results results, const Report& details, Report printed,
+                         const std::function<Result<std::string>()>& page) {
+  const std::vector<schema::ResultPicture> pictures = results.pictures;
+  const OutputKind svg{".svg", [](std::string_view) { return true; }, [&] { return picture_svg(pictures); }};
+  TACTO_TRY(write_outputs(o.outputs, o.existing, std::move(results), details, page, {&svg, 1}));
+  return o.outputs.empty() ? printed : printed.add("written", o.outputs);
+}
+
+Result<Report> fit_levels(const FitOptions& o, bool json) {
+  auto table = read_answers(o.file, o.columns);
+  TACTO_TRY(table);
+  cli::Progress progress("fitting");
+  auto fit = fit_answers(std::move(*table), o.fit, [&](double part) { progress.update(part); });
+  if (!fit) fit.error().where = o.file + (fit.error().where.empty() ? "" : ": " + fit.error().where);
+  TACTO_TRY(fit);
+  const Report details = answers_report(*fit);
+  return write_fit(o, experiment_results(o, answers_figures(*fit), answers_pictures(*fit)), details,
+                   json ? details : brief_answers(*fit), [&] { return answers_page(o.file, *fit); });
+}
+
+Result<Report> fit_pairs(const FitOptions& o, bool json) {
+  const auto groups = read_preferences(o.file, o.columns.by);
+  TACTO_TRY(groups);
+  std::vector<ScaledGroup> scales;
+  for (const auto& group : *groups) {
+    auto scale = fit_preferences(group.rows);
+    if (!scale) scale.error().where = group.by.empty() ? o.file : o.file + ": " + group_name(group.by);
+    TACTO_TRY(scale);
+    scales.push_back({group.by, std::move(*scale)});
+  }
+  const Report details = preferences_report(o, scales);
+  const auto figures = preferences_figures(scales);
+  return write_fit(o, experiment_results(o, figures, preferences_pictures(scales)), details,
+                   json ? details : brief_report(figures), [&] { return preferences_page(o.file, scales); });
+}
+
+Result<Report> run_fit(const FitOptions& o, bool json) {
+  if (o.fit.guess && !(*o.fit.guess >= 0 && *o.fit.guess < 1))
+    return schema::fail(ErrorKind::usage, "is not from 0 % to below 100 %", "--guess",
+                        "give the share that is right by guessing: 50% for two alternatives");
+  if (o.fit.lapse && !(*o.fit.lapse >= 0 && *o.fit.lapse < (1 - o.fit.guess.value_or(0)) / 2))
+    return schema::fail(ErrorKind::usage, "is not from 0 % to half of what guessing leaves", "--lapse",
+                        "give for example 2%");
+  const OutputKind svg{".svg", [](std::string_view) { return true; }, {}};
+  TACTO_TRY(check_outputs(o.outputs, o.existing, {&svg, 1}));
+  return o.pairs ? fit_pairs(o, json) : fit_levels(o, json);
+}
+
+cli::Action declare_fit(CLI::App& app) {
+  auto options = std::make_shared<FitOptions>();
+  app.add_option("FILE", options->file, "Table of answers (CSV)")->required();
+  app.add_option("--by", options->columns.by,
+                 "Columns whose values divide the rows into groups: PERSON,CONDITION")
+      ->delimiter(',');
+  cli::add_quantity(app, "--guess", options->fit.guess, schema::Dimension::share,
+                    "Share of answers that are right by guessing; default: two stimuli are compared");
+  cli::add_quantity(app, "--lapse", options->fit.lapse, schema::Dimension::share,
+                    "Fix the lapse rate; default: fitted, with the prior Beta(1, 19)");
+  app.add_flag("--overdispersed", options->fit.overdispersed,
+               "Answers at one level scatter more than independent ones: beta-binomial");
+  cli::add_choice<Shape>(
+      app, "--function", options->fit.shape,
+      {{"normal", Shape::normal}, {"logistic", Shape::logistic}, {"weibull", Shape::weibull}},
+      "Psychometric function");
+  app.add_option("--level", options->columns.level, "Column of the level");
+  CLI::Option* yes = app.add_option("--yes", options->columns.yes, "Column of the answers that are counted");
+  CLI::Option* no = app.add_option("--no", options->columns.no, "Column of the other answers");
+  CLI::Option* trials = app.add_option("--trials", options->columns.trials, "Column of the number of trials");
+  no->excludes(trials);
+  CLI::Option* pairs = app.add_flag("--pairs", options->pairs, "The table has paired comparisons");
+  for (const char* name : {"--guess", "--lapse", "--overdispersed", "--function", "--level"})
+    pairs->excludes(app.get_option(name));
+  pairs->excludes(yes)->excludes(no)->excludes(trials);
+  app.add_option(
+      "-o,--output", options->outputs,
+      "Output: a page (.html), results for 'report' (.results.json), or a single picture (.svg); may "
+      "be repeated");
+  cli::declare_force(app, options->existing);
+  app.footer(kFitHelp);
+  CLI::App* const verb = app.get_parent();
+  return [options, verb] { return run_fit(*options, verb->count("--json") > 0); };
+}
+
+cli::Action declare_experiment(CLI::App& app) {
+  CLI::App* const fit =
+      app.add_subcommand("fit", "Fit psychometric functions, or a scale, to a table of answers");
+  auto action = std::make_shared<cli::Action>(declare_fit(*fit));
+  fit->fallthrough();  // --json and --rows are options of the verb
+  app.require_subcommand(1);
+  return [action] { return (*action)(); };
+}
+
+}  // namespace
+
+const cli::Verb kExperimentVerb{"experiment",
+                                "Psychophysics: fit thresholds and scales to the answers of people",
+                                "tactograph experiment fit answers.csv --guess 50% -o answers.html\n"
+                                "  tactograph experiment fit answers.csv --by participant,vibration_hz\n"
+                                "  tactograph experiment fit --pairs preferences.csv",
+                                declare_experiment};
+
+}  // namespace tacto::analysis

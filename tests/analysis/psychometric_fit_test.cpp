@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fits of psychometric functions: psignifit's published example, exact proportions, and answers that give
+// only a bound.
+#include "analysis/psychometrics/psychometric_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tacto::analysis {
+namespace {
+
+PsychometricOptions guessing(double guess) {
+  PsychometricOptions options;
+  options.guess = guess;
+  return options;
+}
+
+double width_of(const PsychometricFit& fit) {
+  return fit.function.level_at(0.95) - fit.function.level_at(0.05);
+}
+
+// The MATLAB version of psignifit 4 (shared/data/psychophysics/README.md). Bars of issue 36: 0.1 % and 1 % of
+// the estimates, whose prior of the lapse differs, and 1.5 % of the ends of the intervals.
+TEST(PsychometricFit, PsignifitsExampleAsPublished) {
+  PsychometricOptions options = guessing(0.5);
+  options.overdispersed = true;
+  const auto fit = fit_psychometric({{0.001, 45, 90},
+                                     {0.0015, 50, 90},
+                                     {0.002, 44, 90},
+                                     {0.0025, 44, 90},
+                                     {0.003, 52, 90},
+                                     {0.0035, 53, 90},
+                                     {0.004, 62, 90},
+                                     {0.0045, 64, 90},
+                                     {0.005, 76, 90},
+                                     {0.006, 79, 90},
+                                     {0.007, 88, 90},
+                                     {0.008, 90, 90},
+                                     {0.01, 90, 90}},
+                                    options);
+  ASSERT_TRUE(fit) << fit.error().what;
+  EXPECT_NEAR(fit->threshold.value, 0.00464485, 1e-3 * 0.00464485);
+  EXPECT_NEAR(width_of(*fit), 0.00468384, 1e-2 * 0.00468384);
+  EXPECT_NEAR(fit->threshold.low, 0.00428294, 1.5e-2 * 0.00428294);
+  EXPECT_NEAR(fit->threshold.high, 0.00496425, 1.5e-2 * 0.00496425);
+  const double per_spread = width_of(*fit) / fit->spread.value;
+  EXPECT_NEAR(fit->spread.low * per_spread, 0.00353217, 1.5e-2 * 0.00353217);
+  EXPECT_NEAR(fit->spread.high * per_spread, 0.00604091, 1.5e-2 * 0.00604091);
+}
+
+// Counts in proportion to a function have their maximum there, if the priors of lapse and overdispersion do
+// not pull: with the lapse fixed at its own value. The counts are no whole numbers.
+TEST(PsychometricFit, FindsTheFunctionOfExactProportions) {
+  for (const Shape shape : {Shape::normal, Shape::logistic, Shape::weibull})
+    for (const std::optional<double> guess : {std::optional<double>(), std::optional<double>(0.5)}) {
+      const PsychometricFunction truth{shape, std::log(4), 0.6, 0.03, guess};
+      std::vector<LevelCount> levels;
+      for (const double level : {0.3, 0.9, 1.4, 2.0, 3.0, 4.4, 7.0})
+        levels.push_back({level, 40 * truth(level), 40});
+      PsychometricOptions options{shape, guess, 0.03, false};
+      const auto fit = fit_psychometric(levels, options);
+      ASSERT_TRUE(fit) << fit.error().what;
+      EXPECT_NEAR(fit->function.centre, truth.centre, 1e-7);
+      EXPECT_NEAR(fit->function.spread, truth.spread, 1e-7);
+      EXPECT_NEAR(fit->deviance, 0, 1e-10);
+      EXPECT_EQ(fit->freedom, 5U);
+      EXPECT_LT(fit->threshold.low, fit->threshold.value);
+      EXPECT_GT(fit->threshold.high, fit->threshold.value);
+    }
+}
+
+// Answers that scatter with the variance of a beta-binomial distribution of eta 0.2, exactly: at each level
+// half of the blocks one standard deviation above and half below.
+TEST(PsychometricFit, OverdispersionWidensTheIntervals) {
+  const PsychometricFunction truth{Shape::normal, 0, 1, 0, {}};
+  std::vector<LevelCount> levels;
+  for (int i = -8; i <= 8; ++i) {
+    const double level = 0.3 * i, p = truth(level), sigma = std::sqrt(40 * p * (1 - p) * (1 + 39 * 0.04));
+    levels.push_back({level, std::clamp(40 * p + (i % 2 == 0 ? sigma : -sigma), 0.0, 40.0), 40});
+  }
+  PsychometricOptions options;
+  const auto binomial = fit_psychometric(levels, options);
+  options.overdispersed = true;
+  const auto scattered = fit_psychometric(levels, options);
+  ASSERT_TRUE(binomial && scattered);
+  EXPECT_LT(binomial->p, 0.01);
+  EXPECT_NEAR(scattered->overdispersion, 0.2, 0.07);  // 17 levels: a variance within 35 %
+  EXPECT_GT(scattered->overdispersion_high, scattered->overdispersion);
+  EXPECT_GT(scattered->threshold.high - scattered->threshold.low,
+            1.3 * (binomial->threshold.high - binomial->threshold.low));
+}
+
+TEST(PsychometricFit, LevelsAreAddedAndSorted) {
+  const auto fit = fit_psychometric({{3, 9, 10}, {1, 1, 10}, {2, 2, 5}, {2, 4, 5}}, {});
+  ASSERT_TRUE(fit);
+  ASSERT_EQ(fit->levels.size(), 3U);
+  EXPECT_EQ(fit->levels[1].level, 2);
+  EXPECT_EQ(fit->levels[1].yes, 6);
+  EXPECT_EQ(fit->levels[1].trials, 10);
+}
+
+TEST(PsychometricFit, ABoundIsNoThreshold) {
+  const std::vector<std::vector<LevelCount>> kBounds = {
+      {{1, 10, 10}, {2, 10, 10}},                                // all yes
+      {{1, 0, 10}, {2, 0, 10}},                                  // all no
+      {{1, 0, 10}, {2, 0, 10}, {3, 10, 10}, {4, 10, 10}},        // a step
+      {{1, 9, 10}, {2, 5, 10}, {3, 2, 10}},                      // falls
+      {{1, 5, 10}},                                              // one level
+      {{1, 50, 100}, {2, 50, 100}, {3, 51, 100}},                // depends too little on the level
+      {{1, 1, 1000}, {2, 2, 1000}, {3, 4, 1000}, {4, 7, 1000}},  // threshold far beyond the levels
+  };
+  for (const auto& levels : kBounds) {
+    const auto fit = fit_psychometric(levels, {});
+    ASSERT_FALSE(fit) << levels.size();
+    EXPECT_EQ(fit.error().kind, schema::ErrorKind::unsuitable);
+  }
+  PsychometricOptions weibull;
+  weibull.shape = Shape::weibull;
+  EXPECT_FALSE(fit_psychometric({{0, 1, 10}, {1, 5, 10}, {2, 9, 10}}, weibull));
+}
+
+}  // namespace
+}  // namespace tacto::analysis
