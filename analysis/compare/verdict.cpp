@@ -108,9 +108,8 @@ Bands weights_of(const Bands& scatter, double tolerance_db) {
 void judge_level(Evidence& evidence, const std::vector<Bands>& draws, const Bands& weights) {
   std::vector<double> levels;
   for (const Bands& draw : draws) levels.push_back(weighted_mean(draw, weights));
-  const double reach =
-      schema::student_t(static_cast<double>(evidence.segments - 1), schema::kOneSided95) *
-      root_mean_square(levels);
+  const double reach = schema::student_t(static_cast<double>(evidence.segments - 1), schema::kOneSided95) *
+                       root_mean_square(levels);
   evidence.level_db = weighted_mean(evidence.band_db, weights);
   evidence.level_low_db = evidence.level_db - reach;
   evidence.level_high_db = evidence.level_db + reach;

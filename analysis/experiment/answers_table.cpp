@@ -7,10 +7,10 @@
 #include <cmath>
 #include <optional>
 
-#include "capture/table/column_unit.hpp"
 #include "capture/table/csv_number.hpp"
 #include "capture/table/source.hpp"
 #include "capture/table/text_columns.hpp"
+#include "data-schema/base/column_unit.hpp"
 #include "data-schema/base/nearest_word.hpp"
 
 namespace tacto::analysis {
@@ -152,14 +152,14 @@ Result<AnswerColumns> used_columns(const capture::Source& source, const AnswerCo
 }
 
 // "speed (cm/s)" and "speed_cm_per_s" are "speed" in "cm/s".
-capture::NameWithUnit level_in_words(const capture::Source& source, std::size_t column) {
+schema::NameWithUnit level_in_words(const capture::Source& source, std::size_t column) {
   const std::string& name = source.columns[column];
-  capture::NameWithUnit split = capture::split_unit(name);
+  schema::NameWithUnit split = schema::split_unit(name);
   if (split.unit.empty() && column < source.units.size()) split.unit = source.units[column];
   for (auto at = name.find('_'); split.unit.empty() && at != name.npos; at = name.find('_', at + 1)) {
     std::string unit = name.substr(at + 1);
     if (const auto per = unit.find("_per_"); per != unit.npos) unit.replace(per, 5, "/");
-    if (capture::is_known_unit(unit)) split = {name.substr(0, at), unit};
+    if (schema::is_known_unit(unit)) split = {name.substr(0, at), unit};
   }
   return split;
 }

@@ -11,8 +11,8 @@
 
 namespace tacto::analysis {
 
-/// Writes <, >, & and quotes as entities, bytes that are not UTF-8 as U+FFFD, and between a number and its unit
-/// a space that does not break; um, us and uV after a number as people print them.
+/// Writes <, >, & and quotes as entities, bytes that are not UTF-8 as U+FFFD, and between a number and its
+/// unit a space that does not break; um, us and uV after a number as people print them.
 std::string escaped(std::string_view text);
 
 /// An <img> with its SVG as a data: URI; `alternative` is the text for readers without pictures.

@@ -50,8 +50,7 @@ void declare_options(CLI::App& app, RecordOptions& options) {
       ->excludes(name);
   cli::add_quantity(app, "--time", request.time_s, Dimension::time,
                     "Duration; default: until --strokes are made, or Ctrl-C");
-  app.add_option("--strokes", request.strokes, "End after this number of strokes")
-      ->check(cli::from_one());
+  app.add_option("--strokes", request.strokes, "End after this number of strokes")->check(cli::from_one());
   app.add_flag("--allow-gaps", options.allow_gaps, "Exit code 0 even if frames are lost");
   app.add_option("--calibration", options.calibration,
                  "Calibration file of the device, if not the one that 'tactograph calibrate' stores");

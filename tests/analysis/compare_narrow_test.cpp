@@ -50,7 +50,7 @@ double white(double) {
 
 // A spectral shape: density in dB at frequencies in 1/mm, linear between them on a logarithmic axis.
 template <std::size_t N>
-double amplitude_of(const std::array<std::pair<double, double>, N>& shape, double per_mm) {
+double shape_amplitude(const std::array<std::pair<double, double>, N>& shape, double per_mm) {
   if (per_mm <= shape.front().first) return std::pow(10, shape.front().second / 20);
   for (std::size_t i = 1; i < N; ++i)
     if (const auto [high, high_db] = shape[i]; per_mm < high) {
@@ -73,7 +73,7 @@ double like_a(double per_mm) {
                                                                  {5.72, 10.2},
                                                                  {7.15, 3.4},
                                                                  {8.94, 0}}};
-  return amplitude_of(kShape, per_mm);
+  return shape_amplitude(kShape, per_mm);
 }
 double like_d(double per_mm) {
   constexpr std::array<std::pair<double, double>, 12> kShape = {{{0.39, 8.6},
@@ -88,7 +88,7 @@ double like_d(double per_mm) {
                                                                  {5.72, 8.3},
                                                                  {7.15, 2.8},
                                                                  {8.94, 0}}};
-  return amplitude_of(kShape, per_mm);
+  return shape_amplitude(kShape, per_mm);
 }
 
 schema::Texture texture_of(std::vector<double> values) {

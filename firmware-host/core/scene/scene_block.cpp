@@ -20,7 +20,8 @@ bool sound(const ScenePatch& patch) noexcept {
   const float square = patch.cosine * patch.cosine + patch.sine * patch.sine;
   return within(patch.centre_x_m, -kFarthestPatch_m, kFarthestPatch_m) &&
          within(patch.centre_y_m, -kFarthestPatch_m, kFarthestPatch_m) &&
-         within(square, 1 - kUnitRounding, 1 + kUnitRounding) && within(patch.half_width_m, 0, kFarthestPatch_m) &&
+         within(square, 1 - kUnitRounding, 1 + kUnitRounding) &&
+         within(patch.half_width_m, 0, kFarthestPatch_m) &&
          within(patch.half_height_m, 0, kFarthestPatch_m) && patch.adds <= 1;
 }
 
