@@ -86,11 +86,9 @@ Report people_row(const AnswersFit& all, const OverPeople& over) {
 }
 
 // All values, for --json and results.
-Report answers_report(const AnswersFit& all) {
+Report answers_report(const AnswersFit& all, const std::string& verdict) {
   Report report;
-  report.add("verdict", answers_verdict(all))
-      .add("level", all.table.columns.level)
-      .add("unit", all.table.unit);
+  report.add("verdict", verdict).add("level", all.table.columns.level).add("unit", all.table.unit);
   report.add("yes", all.table.columns.yes);
   std::vector<Report> rows;
   for (const FittedGroup& group : all.groups) rows.push_back(fit_row(all, group));
@@ -101,9 +99,10 @@ Report answers_report(const AnswersFit& all) {
   return report;
 }
 
-Report preferences_report(const FitOptions& o, const std::vector<ScaledGroup>& scales) {
+Report preferences_report(const FitOptions& o, const std::vector<ScaledGroup>& scales,
+                          const std::string& verdict) {
   Report report;
-  report.add("verdict", preferences_verdict(scales));
+  report.add("verdict", verdict);
   std::vector<Report> groups;
   for (const ScaledGroup& each : scales) {
     Report& group = groups.emplace_back();
@@ -120,29 +119,14 @@ Report preferences_report(const FitOptions& o, const std::vector<ScaledGroup>& s
 }
 
 // For the terminal: the figures, then a row per group if there are several.
-Report brief_report(const std::vector<schema::ResultFigure>& figures) {
+Report brief_report(const Findings& findings) {
   Report report;
-  for (const schema::ResultFigure& figure : figures) report.add(figure.name, figure.value);
-  return report;
-}
-
-Report brief_answers(const AnswersFit& all) {
-  Report report = brief_report(answers_figures(all));
-  if (all.groups.size() == 1) return report;
-  const auto table = groups_table(all);
-  std::vector<Report> rows(table.size() - 1);
-  for (std::size_t row = 0; row < rows.size(); ++row) add_by(rows[row], table.front(), table[row + 1]);
+  for (const schema::ResultFigure& figure : findings.figures) report.add(figure.name, figure.value);
+  if (findings.groups.size() < 3) return report;
+  std::vector<Report> rows(findings.groups.size() - 1);
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    add_by(rows[row], findings.groups.front(), findings.groups[row + 1]);
   return report.add("fits", std::move(rows));
-}
-
-schema::Results experiment_results(const FitOptions& o, std::vector<schema::ResultFigure> figures,
-                                   std::vector<schema::ResultPicture> pictures) {
-  schema::Results results;
-  results.verb = "experiment fit";
-  results.inputs = {o.file};
-  results.figures = std::move(figures);
-  results.pictures = std::move(pictures);
-  return results;
 }
 
 Result<std::string> picture_svg(const std::vector<schema::ResultPicture>& pictures) {
@@ -151,12 +135,21 @@ Result<std::string> picture_svg(const std::vector<schema::ResultPicture>& pictur
                       "name a page (.html), which shows all");
 }
 
-// Writes the outputs and adds them to what is printed.
-Result<Report> write_fit(const FitOptions& o, schema::Results results, const Report& details, Report printed,
-                         const std::function<Result<std::string>()>& page) {
-  const std::vector<schema::ResultPicture> pictures = results.pictures;
-  const OutputKind svg{".svg", [](std::string_view) { return true; }, [&] { return picture_svg(pictures); }};
-  TACTO_TRY(write_outputs(o.outputs, o.existing, std::move(results), details, page, {&svg, 1}));
+OutputKind svg_output(const Findings& findings) {
+  return {".svg", [](std::string_view) { return true; }, [&] { return picture_svg(findings.pictures); }};
+}
+
+// Writes the outputs; `details` is for --json and results.
+Result<Report> write_fit(const FitOptions& o, const Findings& findings, Report details, bool json) {
+  schema::Results results;
+  results.verb = "experiment fit";
+  results.inputs = {o.file};
+  results.figures = findings.figures;
+  results.pictures = findings.pictures;
+  const OutputKind svg = svg_output(findings);
+  TACTO_TRY(write_outputs(o.outputs, o.existing, std::move(results), details,
+                          [&] { return findings_page(o.file, findings); }, {&svg, 1}));
+  Report printed = json ? std::move(details) : brief_report(findings);
   return o.outputs.empty() ? printed : printed.add("written", o.outputs);
 }
 
@@ -167,9 +160,8 @@ Result<Report> fit_levels(const FitOptions& o, bool json) {
   auto fit = fit_answers(std::move(*table), o.fit, [&](double part) { progress.update(part); });
   if (!fit) fit.error().where = o.file + (fit.error().where.empty() ? "" : ": " + fit.error().where);
   TACTO_TRY(fit);
-  const Report details = answers_report(*fit);
-  return write_fit(o, experiment_results(o, answers_figures(*fit), answers_pictures(*fit)), details,
-                   json ? details : brief_answers(*fit), [&] { return answers_page(o.file, *fit); });
+  const Findings findings = findings_of(*fit);
+  return write_fit(o, findings, answers_report(*fit, findings.verdict()), json);
 }
 
 Result<Report> fit_pairs(const FitOptions& o, bool json) {
@@ -182,10 +174,8 @@ Result<Report> fit_pairs(const FitOptions& o, bool json) {
     TACTO_TRY(scale);
     scales.push_back({group.by, std::move(*scale)});
   }
-  const Report details = preferences_report(o, scales);
-  const auto figures = preferences_figures(scales);
-  return write_fit(o, experiment_results(o, figures, preferences_pictures(scales)), details,
-                   json ? details : brief_report(figures), [&] { return preferences_page(o.file, scales); });
+  const Findings findings = findings_of(scales);
+  return write_fit(o, findings, preferences_report(o, scales, findings.verdict()), json);
 }
 
 Result<Report> run_fit(const FitOptions& o, bool json) {
@@ -195,7 +185,8 @@ Result<Report> run_fit(const FitOptions& o, bool json) {
   if (o.fit.lapse && !(*o.fit.lapse >= 0 && *o.fit.lapse < (1 - o.fit.guess.value_or(0)) / 2))
     return schema::fail(ErrorKind::usage, "is not from 0 % to half of what guessing leaves", "--lapse",
                         "give for example 2%");
-  const OutputKind svg{".svg", [](std::string_view) { return true; }, {}};
+  const Findings nothing_yet;
+  const OutputKind svg = svg_output(nothing_yet);
   TACTO_TRY(check_outputs(o.outputs, o.existing, {&svg, 1}));
   return o.pairs ? fit_pairs(o, json) : fit_levels(o, json);
 }

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <functional>
 
 #include "analysis/page/html.hpp"
 #include "analysis/page/picture_svg.hpp"
@@ -29,6 +28,10 @@ std::string fit_in_words(double deviance, std::size_t freedom, double p) {
   if (freedom == 0) return "too few levels to test it";
   return fmt::format("deviance {:.4g} with {} degrees of freedom, p {:.2g}: {}", deviance, freedom, p,
                      p < kUsualP ? kMisfit : kNoMisfit);
+}
+
+std::string in_words(const Estimate& estimate, const std::string& unit) {
+  return with_unit(fmt::format("{:.4g} [{:.4g}, {:.4g}]", estimate.value, estimate.low, estimate.high), unit);
 }
 
 std::string share(double part) {
@@ -165,18 +168,6 @@ void add_group(ResultPicture& picture, const FittedGroup& group) {
   picture.curves.push_back(std::move(curve));
 }
 
-schema::Result<std::string> page_of(const std::string& file, const std::string& verdict,
-                                    const std::vector<ResultFigure>& figures,
-                                    const std::vector<ResultPicture>& pictures, const std::string& table) {
-  const auto drawn = pictures_html(pictures, "");
-  TACTO_TRY(drawn);
-  const std::string body =
-      fmt::format("<h1>{}</h1>\n", escaped(file)) + answer(verdict) + figures_html(figures) + *drawn + table;
-  return html_document(fmt::format("{}: {}", file, verdict), body);
-}
-
-}  // namespace
-
 std::vector<std::vector<std::string>> groups_table(const AnswersFit& all) {
   std::vector<std::vector<std::string>> rows = {all.table.columns.by};
   for (const std::string& name :
@@ -190,10 +181,6 @@ std::vector<std::vector<std::string>> groups_table(const AnswersFit& all) {
     row.push_back(fmt::format("{:.2g}", group.fit.p));
   }
   return rows;
-}
-
-std::string in_words(const Estimate& estimate, const std::string& unit) {
-  return with_unit(fmt::format("{:.4g} [{:.4g}, {:.4g}]", estimate.value, estimate.low, estimate.high), unit);
 }
 
 std::string answers_verdict(const AnswersFit& all) {
@@ -227,7 +214,6 @@ std::vector<ResultFigure> answers_figures(const AnswersFit& all) {
 
 std::vector<ResultPicture> answers_pictures(const AnswersFit& all) {
   std::vector<ResultPicture> pictures;
-  std::string person;
   for (const FittedGroup& group : all.groups) {
     const std::string title = group.by.empty() ? "Answers and fitted function" : group.by.front();
     auto found = std::ranges::find(pictures, title, &ResultPicture::title);
@@ -242,11 +228,6 @@ std::vector<ResultPicture> answers_pictures(const AnswersFit& all) {
     add_group(*found, group);
   }
   return pictures;
-}
-
-schema::Result<std::string> answers_page(const std::string& file, const AnswersFit& all) {
-  return page_of(file, answers_verdict(all), answers_figures(all), answers_pictures(all),
-                 html_table(groups_table(all)));
 }
 
 std::string preferences_verdict(const std::vector<ScaledGroup>& scales) {
@@ -298,10 +279,23 @@ std::vector<ResultPicture> preferences_pictures(const std::vector<ScaledGroup>& 
   return pictures;
 }
 
-schema::Result<std::string> preferences_page(const std::string& file,
-                                             const std::vector<ScaledGroup>& scales) {
-  return page_of(file, preferences_verdict(scales), preferences_figures(scales), preferences_pictures(scales),
-                 "");
+}  // namespace
+
+Findings findings_of(const AnswersFit& all) {
+  return {answers_figures(all), answers_pictures(all), groups_table(all)};
+}
+
+Findings findings_of(const std::vector<ScaledGroup>& scales) {
+  return {preferences_figures(scales), preferences_pictures(scales), {}};
+}
+
+schema::Result<std::string> findings_page(const std::string& file, const Findings& findings) {
+  const auto drawn = pictures_html(findings.pictures, "");
+  TACTO_TRY(drawn);
+  std::string body = fmt::format("<h1>{}</h1>\n", escaped(file)) + answer(findings.verdict()) +
+                     figures_html(findings.figures) + *drawn;
+  if (!findings.groups.empty()) body += html_table(findings.groups);
+  return html_document(fmt::format("{}: {}", file, findings.verdict()), body);
 }
 
 }  // namespace tacto::analysis

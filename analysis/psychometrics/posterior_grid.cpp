@@ -2,6 +2,7 @@
 #include "analysis/psychometrics/posterior_grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <numbers>

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <functional>
 
 #include "analysis/psychometrics/deviance.hpp"
 
