@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "analysis/cli/verbs.hpp"
 #include "analysis/demo/demo.hpp"
 #include "data-schema/report/progress.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -36,8 +39,10 @@ schema::Result<cli::Report> demonstrate(const DemoOptions& options) {
   for (const DemoSurface& surface : summary->surfaces) rows.push_back(row_of(surface));
   cli::Report report;
   report.add("simulated", summary->simulated).add("surfaces", std::move(rows)).add("page", summary->page);
-  report.add("next", "open " + summary->page + " in a browser; describe a file with: tactograph info " +
-                         options.folder + "/C");
+  report.add("recording", summary->recording);
+  report.add("next",
+             fmt::format("open {} in a browser; then: tactograph spatial {} --list (analysis/GUIDE.md)",
+                         summary->page, cli::shell_word(summary->recording)));
   return report;
 }
 
@@ -51,9 +56,10 @@ cli::Action declare_demo(CLI::App& app) {
 
 }  // namespace
 
-const cli::Verb kDemoVerb{
-    "demo",
-    "Record five emulated surfaces, make textures and pictures, replay them, and write one page about it",
-    "tactograph demo -o demo", declare_demo};
+const cli::Verb kDemoVerb{"demo",
+                          "Record five emulated surfaces, make textures and pictures, replay them, and write "
+                          "one page about it; and "
+                          "make a recording to work on",
+                          "tactograph demo -o demo", declare_demo};
 
 }  // namespace tacto::analysis

@@ -15,8 +15,8 @@
 #include "data-schema/spectrogram/spectrogram.hpp"
 #include "data-schema/texture/texture.hpp"
 #include "data-schema/version.hpp"
+#include "firmware-host/device_to_record.hpp"
 #include "firmware-host/link/device.hpp"
-#include "firmware-host/open_device.hpp"
 #include "firmware-host/sim/bench/actuated_tray.hpp"
 #include "playback/render/render.hpp"
 #include "spatial/picture/line_plot.hpp"
@@ -47,6 +47,11 @@ constexpr std::array<Sample, 5> kSamples = {{
 constexpr const char* kNotes = "made by tactograph demo";
 constexpr double kRecordSpeedMps = 50e-3;
 constexpr double kRecordTimeS = 1.0;
+// A recording to work on, of the surface whose own period (0.5 mm: 2 /mm) is within the valid band at this
+// speed: 1.5 to 10 /mm over a whole stroke. The periods of B and C (1.5 and 3 mm) are below it.
+constexpr const char* kFingerSurface = "E";
+constexpr const char* kFingerStem = "/finger";
+constexpr double kFingerTimeS = 3.8;  // four strokes
 constexpr double kReplayTimeS = 1.6;
 constexpr double kSettleS = 0.1;  // the comparison leaves out onset, end, and the tray's ringing
 
@@ -95,15 +100,16 @@ Result<void> check_replaceable(const std::string& stem) {
   return {};
 }
 
-Result<schema::Recording> recorded(const Sample& sample, const std::string& stem) {
-  auto device = firmware_host::open_device(
-      fmt::format("sim:surface={},speed={}mm/s,seed=1", sample.surface, kRecordSpeedMps * 1e3));
+Result<schema::Recording> recorded(const char* surface, double time_s, const std::string& stem) {
+  remove_earlier(stem);
+  auto device = firmware_host::open_device_to_record(
+      fmt::format("sim:surface={},speed={}mm/s,seed=1", surface, kRecordSpeedMps * 1e3));
   TACTO_TRY(device);
   capture::RecordRequest request;
   request.name = stem;
-  request.time_s = kRecordTimeS;
+  request.time_s = time_s;
   request.notes = kNotes;
-  auto done = capture::record(**device, request);
+  auto done = capture::record(*device->device, request);
   TACTO_TRY(done);
   return std::move(done->recording);
 }
@@ -132,8 +138,7 @@ void describe_spectrogram(const Made& made, DemoSurface& row) {
 }
 
 Result<Made> surface_made(const Sample& sample, const std::string& stem, DemoSurface& row) {
-  remove_earlier(stem);
-  const auto recording = recorded(sample, stem);
+  const auto recording = recorded(sample.surface, kRecordTimeS, stem);
   TACTO_TRY(recording);
   auto texture = first_texture(*recording);
   TACTO_TRY(texture);
@@ -214,6 +219,7 @@ Result<void> replayed(const Made& made, const schema::Transducer& transducer, De
 Result<void> check_folder(const std::string& folder, const std::string& page) {
   for (const Sample& sample : kSamples)
     if (auto free = check_replaceable(folder + "/" + sample.surface); !free) return free;
+  if (auto free = check_replaceable(folder + kFingerStem); !free) return free;
   std::error_code ignored;
   const bool again = is_of_a_demo(folder + "/" + kSamples.front().surface);
   if (again || !fs::exists(page, ignored)) return {};
@@ -248,6 +254,8 @@ Result<DemoSummary> run_demo(const std::string& folder, const std::function<void
     TACTO_TRY(replayed(*made, *transducer, row));
     summary.surfaces.push_back(std::move(row));
   }
+  summary.recording = folder + kFingerStem;
+  TACTO_TRY(recorded(kFingerSurface, kFingerTimeS, summary.recording));
   TACTO_TRY(write_page(summary));
   return summary;
 }

@@ -7,6 +7,7 @@
 #include <complex>
 #include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <numbers>
 
 #include "analysis/extremes/extreme.hpp"
@@ -18,6 +19,7 @@
 #include "capture/record/record_header.hpp"
 #include "capture/table/csv_number.hpp"
 #include "data-schema/recording/clock_fit.hpp"
+#include "spatial/strokes/touch_record.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -184,19 +186,49 @@ std::int32_t wrapped(std::int64_t count) {
 
 // Three strokes back and forth at 53 mm/s; no step equals a step of 0.1 mm.
 constexpr int kStroke = 377, kCountsAFrame = 53;
-std::vector<schema::StrokeFigures> strokes_from(std::int64_t first_count) {
-  const schema::RecordingHeader header = encoder_header(1e-6);
-  capture::LiveFigures figures(header);
+struct FoundStroke {
+  int direction = 0;
+  std::size_t frames = 0;
+  double length_m = 0, mean_speed_mps = 0;
+};
+
+// Positions in stored counts.
+class CountSource : public spatial::TouchSource {
+ public:
+  CountSource(schema::Channel position, std::vector<std::int32_t> codes)
+      : position_(std::move(position)), codes_(std::move(codes)) {}
+  const schema::Channel* channel(spatial::Track track) const override {
+    return track == spatial::Track::normal_force ? nullptr : &position_;
+  }
+  schema::Result<void> read_stored(spatial::Track, std::size_t first, std::span<double> out) override {
+    std::copy_n(codes_.begin() + static_cast<std::ptrdiff_t>(first), out.size(), out.begin());
+    return {};
+  }
+
+ private:
+  schema::Channel position_;
+  std::vector<std::int32_t> codes_;
+};
+
+std::vector<FoundStroke> strokes_from(std::int64_t first_count) {
+  schema::RecordingHeader header = encoder_header(1e-6);
+  std::vector<std::int32_t> codes;
   constexpr int kRest = 200;
   std::int64_t count = first_count;
   for (int stroke = 0; stroke < 3; ++stroke)
     for (int frame = 0; frame < kStroke + kRest; ++frame) {
       if (frame < kStroke) count += stroke % 2 == 0 ? kCountsAFrame : -kCountsAFrame;
-      const std::int32_t code = wrapped(count);
-      figures.add(std::span(&code, 1));
+      codes.push_back(wrapped(count));
     }
-  figures.finish();
-  return figures.stroke_figures();
+  header.frames = codes.size();
+  auto source = std::make_unique<CountSource>(header.channels.front(), std::move(codes));
+  const auto record = spatial::TouchRecord::open(std::move(source), header, "strokes");
+  std::vector<FoundStroke> found;
+  if (!record) return found;
+  for (const spatial::Stroke& stroke : record->strokes())
+    found.push_back(
+        {stroke.direction, stroke.frames.size(), record->length_m(stroke), record->mean_speed_mps(stroke)});
+  return found;
 }
 
 double wrapped_strokes_error() {

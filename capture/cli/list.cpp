@@ -21,7 +21,7 @@ bool in_both_bands(const schema::StrokeFigures& stroke) {
          (!stroke.mean_normal_n || schema::kTargetLoad_n.holds(*stroke.mean_normal_n));
 }
 
-// Figures of the strokes that were counted while recording; none if no strokes were counted.
+// Figures of the strokes that the sidecar stores.
 void add_strokes(cli::Report& row, const schema::RecordingHeader& header) {
   if (header.strokes.empty()) return;
   const auto count = static_cast<double>(header.strokes.size());
@@ -71,6 +71,7 @@ schema::Result<cli::Report> run_list(const std::string& folder) {
 cli::Action declare_list(CLI::App& app) {
   auto folder = std::make_shared<std::string>(".");
   app.add_option("FOLDER", *folder, "Folder of the recordings");
+  cli::explain_strokes(app);
   return [folder] { return run_list(*folder); };
 }
 

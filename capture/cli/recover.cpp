@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "capture/cli/verbs.hpp"
+#include "capture/record/store_strokes.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/files/leftover_files.hpp"
 #include "data-schema/recording/live_recording.hpp"
@@ -42,7 +43,8 @@ cli::Report report_on_nothing() {
 schema::Result<cli::Report> run_recover(const std::string& name) {
   const std::string stem = schema::stem_of(name, "");
   const auto removed = schema::remove_ended(schema::leftovers_of(stem));
-  const auto recovered = schema::recover_recording(name);
+  auto recovered = schema::recover_recording(name);
+  if (recovered) TACTO_TRY(store_strokes(recovered->recording));
   const bool nothing_else = !removed.empty() && !schema::is_file(stem + ".events.jsonl");
   if (!recovered && !nothing_else) return schema::forward_error(recovered);
   cli::Report report = recovered ? report_on(*recovered) : report_on_nothing();

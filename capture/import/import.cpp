@@ -15,6 +15,7 @@
 #include "capture/import/outlier_mask.hpp"
 #include "capture/import/plausibility.hpp"
 #include "capture/import/uniform_clock.hpp"
+#include "capture/record/store_strokes.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -320,6 +321,7 @@ Result<Imported> Import::close() {
   add_warnings(header);
   auto recording = writer_->close();
   TACTO_TRY(recording);
+  TACTO_TRY(store_strokes(*recording));
   Imported imported{std::move(*recording), {}, plan_.source.format, outliers(), mask_.count()};
   if (decimal_comma_) imported.format += ", decimal commas";
   for (std::size_t k = 0; k < measured_.size(); ++k) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "firmware-host/link/encoder_counts.hpp"
@@ -30,9 +29,7 @@ LiveFigures::LiveFigures(const schema::RecordingHeader& header)
       normal_(channel_of(header, "normal_force")),
       statistics_(header.channels.size()),
       recent_(header.channels.size()),
-      counter_(header.sample_rate_hz) {
-  std::ranges::transform(header.channels, std::back_inserter(ranges_), firmware_host::code_range);
-}
+      counter_(header.sample_rate_hz) {}
 
 double LiveFigures::physical(std::span<const std::int32_t> codes, std::size_t frame,
                              std::size_t channel) const {
@@ -49,12 +46,6 @@ void LiveFigures::add(std::span<const std::int32_t> codes) {
       recent_[channel].add(value);
     }
   add_motion(codes);
-}
-
-std::uint64_t LiveFigures::clipped_in(std::span<const std::int32_t> frame) const {
-  std::uint64_t clipped = 0;
-  for (std::size_t i = 0; i < frame.size(); ++i) clipped += ranges_[i].clips(frame[i]) ? 1 : 0;
-  return clipped;
 }
 
 double LiveFigures::next_position_m(std::int32_t code) {
@@ -74,28 +65,9 @@ void LiveFigures::add_motion(std::span<const std::int32_t> codes) {
     if (begun_) moved_m_ += position_m - last_position_m_;
     last_position_m_ = position_m;
     begun_ = true;
-    counter_.add(position_m, normal_n, clipped_in(codes.subspan(frame * ranges_.size(), ranges_.size())));
+    counter_.add(position_m);
   }
   recent_frames_ += frames;
-}
-
-schema::StrokeFigures LiveFigures::figures_of(const CountedStroke& stroke) const {
-  std::uint64_t lost = 0;
-  for (const schema::Gap& gap : header_.gaps)
-    if (gap.frame > stroke.first_frame && gap.frame < stroke.first_frame + stroke.frames) lost += gap.count;
-  schema::StrokeFigures figures{
-      stroke.first_frame,     stroke.frames, stroke.length_m, stroke.direction, 0, {},
-      stroke.clipped_samples, lost};
-  figures.mean_speed_mps =
-      stroke.length_m / static_cast<double>(stroke.frames + lost) * header_.sample_rate_hz;
-  if (normal_) figures.mean_normal_n = stroke.mean_normal_n;
-  return figures;
-}
-
-std::vector<schema::StrokeFigures> LiveFigures::stroke_figures() const {
-  std::vector<schema::StrokeFigures> all;
-  for (const CountedStroke& stroke : counter_.strokes()) all.push_back(figures_of(stroke));
-  return all;
 }
 
 LiveView LiveFigures::take_view() {

@@ -11,8 +11,6 @@
 #include "capture/record/stroke_counter.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/recording/statistics.hpp"
-#include "data-schema/recording/stroke_figures.hpp"
-#include "firmware-host/link/code_range.hpp"
 
 namespace tacto::capture {
 
@@ -42,18 +40,12 @@ class LiveFigures {
   void add(std::span<const std::int32_t> codes);
   const schema::RecordingHeader& header() const { return header_; }
   const std::vector<schema::Statistics>& statistics() const { return statistics_; }
-  std::size_t strokes() const { return counter_.strokes().size(); }
-  /// After the last frame: counts a stroke whose motion has stopped.
-  void finish() { counter_.finish(); }
-  /// The strokes so far in the form of the sidecar, with their missing frames by the header's gaps.
-  std::vector<schema::StrokeFigures> stroke_figures() const;
+  std::size_t strokes() const { return counter_.strokes(); }
   /// The figures since the last call; the caller adds time, losses and disk space.
   LiveView take_view();
 
  private:
   void add_motion(std::span<const std::int32_t> codes);
-  std::uint64_t clipped_in(std::span<const std::int32_t> frame) const;
-  schema::StrokeFigures figures_of(const CountedStroke& stroke) const;
   double physical(std::span<const std::int32_t> codes, std::size_t frame, std::size_t channel) const;
   // Continues when the 32-bit counter overflows.
   double next_position_m(std::int32_t code);
@@ -61,7 +53,6 @@ class LiveFigures {
   const schema::RecordingHeader& header_;
   std::optional<std::size_t> position_, normal_;
   std::vector<schema::Statistics> statistics_, recent_;
-  std::vector<firmware_host::CodeRange> ranges_;
   StrokeCounter counter_;
   std::uint64_t recent_frames_ = 0;
   std::int32_t last_code_ = 0;

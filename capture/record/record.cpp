@@ -12,6 +12,7 @@
 
 #include "capture/record/disk_writer.hpp"
 #include "capture/record/record_header.hpp"
+#include "capture/record/store_strokes.hpp"
 #include "capture/table/text_encoding.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/files/files.hpp"
@@ -192,14 +193,14 @@ Result<Recorded> Capture::finish(schema::LiveRecording& live) {
     return schema::fail(ErrorKind::device, "the device sent no frames", device_.capabilities().uri);
   }
   schema::RecordingHeader& header = live.header();
-  figures_.finish();
-  header.strokes = figures_.stroke_figures();
   if (failure_) header.ended = failure_->what;
   const std::uint64_t due = stream_ended_ && request_.time_s ? target_ : 0;
   for (std::string& warning : stream_warnings(counts, due)) header.warnings.push_back(std::move(warning));
   if (failure_) header.warnings.push_back("the recording ended early: " + schema::message(*failure_));
   auto recording = live.close();
   TACTO_TRY(recording);
+  if (const auto stored = store_strokes(*recording); !stored)
+    recording->header.warnings.push_back("its strokes are not listed: " + schema::message(stored.error()));
   return Recorded{std::move(*recording), figures_.statistics(), counts, failure_};
 }
 

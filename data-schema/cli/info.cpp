@@ -73,6 +73,7 @@ cli::Action declare_info(CLI::App& app) {
   app.add_option("FILE", options->names,
                  "Recordings, textures, scenes, devices ...: by stem, in full, or a preset's name")
       ->required();
+  cli::explain_strokes(app);
   return [options] { return run_info(*options); };
 }
 

@@ -95,7 +95,7 @@ struct RecordingHeader {
   std::vector<Gap> gaps;
   std::vector<Mark> marks;
   std::vector<ClockPair> clock_pairs;
-  std::vector<StrokeFigures> strokes;                 ///< counted while it was recorded
+  std::vector<StrokeFigures> strokes;                 ///< those that `spatial` finds in it
   std::optional<double> clock_drift_ppm;              ///< device's clock against the host's; above 0: fast
   std::optional<double> clock_drift_uncertainty_ppm;  ///< standard
   std::optional<double> clock_offset_s;               ///< device's minus host's clock at the first pair
@@ -131,6 +131,10 @@ Result<Recording> open_recording(const std::string& name);
 
 /// Checks that its samples are those of the sidecar. Errors: malformed, if their SHA-256 differs; not_found.
 Result<void> check_samples_sum(const Recording& recording);
+
+/// Writes the sidecar of a recording again, with the header that it has now; the samples stay. Errors:
+/// cannot_write; unsuitable, as RecordingWriter::create().
+Result<void> write_sidecar(const Recording& recording);
 
 /// The path of the samples.
 std::string wav_path(const Recording& recording);

@@ -40,9 +40,6 @@ void forget_beyond_end(RecordingHeader& header) {
   if (gaps + marks > 0)
     header.warnings.push_back(fmt::format(
         "{} marks and {} gaps are beyond its last frame, {}, and were removed", marks, gaps, header.frames));
-  std::erase_if(header.strokes, [&](const StrokeFigures& stroke) {
-    return stroke.first_frame + stroke.frames > header.frames;
-  });
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "data-schema/base/creation_time.hpp"
+#include "data-schema/files/event_file.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/recording/recording_json.hpp"
 #include "data-schema/version.hpp"
@@ -39,6 +40,16 @@ Result<void> check_storable(const RecordingHeader& header) {
   complete.gaps.clear();  // they would be checked against frames that do not exist yet
   const auto text = recording_text(complete);
   return text ? Result<void>{} : forward_error(text);
+}
+
+Result<void> write_sidecar(const Recording& recording) {
+  const auto text = recording_text(recording.header);
+  TACTO_TRY(text);
+  const std::string path = recording.stem + ".json";
+  PendingFiles pending;
+  TACTO_TRY(pending.write(path, *text));
+  TACTO_TRY(pending.commit());
+  return sync_path(folder_of(path));
 }
 
 Result<std::string> completed_sidecar(RecordingHeader& header, const std::string& wav) {

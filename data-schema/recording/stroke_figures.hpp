@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is measured of a stroke during recording, kept in the recording's sidecar.
+// What a recording's sidecar stores of a stroke.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace tacto::schema {
 
-/// A stroke as it was detected during recording; `spatial` finds strokes on its own. Frames are stored ones.
+/// A stroke (stroke_rule.hpp), found when the recording was complete. Frames are stored ones.
 struct StrokeFigures {
   std::uint64_t first_frame = 0, frames = 0;
   double length_m = 0;
@@ -15,7 +15,7 @@ struct StrokeFigures {
   double mean_speed_mps = 0;
   std::optional<double> mean_normal_n;  ///< none where no normal force is recorded
   std::uint64_t clipped_samples = 0;    ///< over all channels
-  std::uint64_t lost_frames = 0;        ///< missing within it
+  std::uint64_t lost_frames = 0;        ///< missing directly before or after it
 };
 
 /// The range that the finger should keep (Wiertlewski 2011, section IV-A5: 50 mm/s, 0.5 N).

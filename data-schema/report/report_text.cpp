@@ -44,8 +44,7 @@ std::optional<Lines> table_of(const std::vector<Report>& rows, std::size_t colum
   constexpr std::size_t kMostColumns = 20;
   const auto keys = keys_of(rows);
   if (keys.size() > kMostColumns || std::ranges::any_of(rows, is_nested)) return std::nullopt;
-  TextRow header;
-  for (const auto& key : keys) header.push_back(label_of(key));
+  TextRow header = labels_of(keys);
   std::vector<TextRow> cells;
   for (const Report& row : rows) {
     cells.emplace_back();
@@ -99,22 +98,26 @@ Lines list_lines(const std::vector<Report>& rows, std::size_t columns, std::size
   return lines;
 }
 
-std::size_t label_width_of(const Report& report) {
+std::size_t label_width_of(const std::vector<std::string>& labels) {
   std::size_t width = 0;
-  for (const auto& [key, value] : ReportPrinter::entries(report))
-    width = std::max(width, width_of(label_of(key)));
+  for (const std::string& label : labels) width = std::max(width, width_of(label));
   return width + 2;
 }
 
 Lines all_lines(const Report& report, std::size_t columns, std::size_t most_rows) {
-  const std::size_t width = label_width_of(report);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : ReportPrinter::entries(report)) keys.push_back(key);
+  const auto labels = labels_of(keys);
+  const std::size_t width = label_width_of(labels);
   Lines lines;
+  std::size_t i = 0;
   for (const auto& [key, value] : ReportPrinter::entries(report)) {
+    const std::string& label = labels[i++];
     if (const auto* rows = std::get_if<std::vector<Report>>(&value)) {
-      lines.push_back(label_of(key));
+      lines.push_back(label);
       append(lines, list_lines(*rows, columns, most_rows));
     } else {
-      append(lines, figure_lines(label_of(key), cell_text(key, value), width, columns));
+      append(lines, figure_lines(label, cell_text(key, value), width, columns));
     }
   }
   return lines;

@@ -65,13 +65,28 @@ std::string number_for_people(std::string_view key, double value) {
   return fmt::format("{:.4g} {}", value, suffix->unit);
 }
 
-}  // namespace
-
 std::string label_of(std::string_view key) {
   if (const Suffix* suffix = suffix_of(key)) key.remove_suffix(suffix->text.size());
   std::string label(key);
   std::ranges::replace(label, '_', ' ');
   return label;
+}
+
+std::string_view unit_of(const Suffix& suffix) {
+  return suffix.dimension ? schema::si_symbol(*suffix.dimension) : suffix.unit;
+}
+
+}  // namespace
+
+std::vector<std::string> labels_of(const std::vector<std::string>& keys) {
+  std::vector<std::string> plain, labels;
+  for (const std::string& key : keys) plain.push_back(label_of(key));
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Suffix* suffix = suffix_of(keys[i]);
+    const bool alone = suffix == nullptr || std::ranges::count(plain, plain[i]) == 1;
+    labels.push_back(alone ? plain[i] : fmt::format("{} ({})", plain[i], unit_of(*suffix)));
+  }
+  return labels;
 }
 
 std::string cell_text(const std::string& key, const ReportPrinter::Value& value) {

@@ -4,13 +4,15 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "data-schema/report/report_entries.hpp"
 
 namespace tacto::cli {
 
-/// The key without the ending of its unit: "force_rms_n" is "force rms".
-std::string label_of(std::string_view key);
+/// The keys without the endings of their units: "force_rms_n" is "force rms". Keys that would be equal get
+/// the unit, too: "from_s" and "from_m" are "from (s)" and "from (m)".
+std::vector<std::string> labels_of(const std::vector<std::string>& keys);
 
 /// The value with its unit and four digits. Empty for a list of reports.
 std::string cell_text(const std::string& key, const ReportPrinter::Value& value);

@@ -107,6 +107,28 @@ void warn_grouped(std::span<const std::string> sentences) {
   warn_grouped(warnings);
 }
 
+std::vector<schema::Error> by_cause(std::span<const schema::Error> errors) {
+  struct Cause {
+    schema::Error first;
+    std::vector<std::string> places;
+  };
+  std::vector<Cause> causes;
+  std::map<std::string, std::size_t> known;
+  for (const schema::Error& error : errors) {
+    const auto [place, is_new] =
+        known.try_emplace(without_numbers(error.what + "\n" + error.remedy), causes.size());
+    if (is_new) causes.push_back({error, {}});
+    causes[place->second].places.push_back(error.where);
+  }
+  std::vector<schema::Error> all;
+  for (Cause& cause : causes) {
+    if (cause.places.size() > 1)
+      cause.first.where = fmt::format("{} files ({})", cause.places.size(), fmt::join(cause.places, ", "));
+    all.push_back(std::move(cause.first));
+  }
+  return all;
+}
+
 std::vector<std::string> all_warnings() {
   const std::lock_guard lock(kept().mutex);
   return kept().warnings;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "data-schema/base/error.hpp"
+
 namespace tacto::cli {
 
 /// A warning about one of several things. Warnings of one `kind` differ in size only; a warning without a
@@ -30,6 +32,9 @@ void warn_grouped(std::span<const Warning> warnings);
 /// The same for sentences: those that differ only in their numbers are of one kind, of which the first is
 /// printed.
 void warn_grouped(std::span<const std::string> sentences);
+
+/// Errors that differ only in place and numbers become one, the first, with all their places.
+std::vector<schema::Error> by_cause(std::span<const schema::Error> errors);
 
 /// All warnings of this run, each of them, in order: what --json lists.
 std::vector<std::string> all_warnings();

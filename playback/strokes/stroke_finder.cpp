@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data-schema/base/stroke_rule.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
 #include "playback/session/session_limits.hpp"
 
@@ -108,7 +109,7 @@ void StrokeFinder::end() {
   if (direction_ == 0) return;
   const double length_m = std::abs(way_m(so_far_.first, so_far_.last));
   longest_way_m_ = std::max(longest_way_m_, length_m);
-  if (length_m >= kShortestStrokeM) found_(so_far_);
+  if (length_m >= schema::kShortestStroke_m) found_(so_far_);
   direction_ = 0;
 }
 

@@ -49,12 +49,10 @@ struct StrokeSums {
   void add(const StrokeSums& later);
 };
 
-inline constexpr double kShortestStrokeM = 5e-3;
-
 /// A stroke is a movement of the finger without turning (a way back below 0.2 mm is not a turn), during
-/// playback, at least 5 mm long. It ends at the farthest place in its direction, and is found when the finger
-/// has gone back from there. A blind tick, in which the finger's place is unknown, ends it too, and the next
-/// one begins at a tick with a known place.
+/// playback, at least kShortestStroke_m long. It ends at the farthest place in its direction, and is found
+/// when the finger has gone back from there. A blind tick, in which the finger's place is unknown, ends it
+/// too, and the next one begins at a tick with a known place.
 class StrokeFinder {
  public:
   explicit StrokeFinder(std::function<void(const StrokeSums&)> found) : found_(std::move(found)) {}

@@ -144,7 +144,7 @@ std::string note_of_none(const StrokeFinder& strokes, bool lost) {
       "no stroke: the finger's longest motion in one direction during playback is {}, a stroke is at least "
       "{}",
       longest_m > 0 ? schema::length_for_people(longest_m) : "under 0.2 mm",
-      schema::length_for_people(kShortestStrokeM));
+      schema::length_for_people(schema::kShortestStroke_m));
 }
 
 std::string note_of_unwanted(std::uint64_t unwanted, std::uint64_t all) {

@@ -25,14 +25,16 @@ Result<Report> act_on_one(const SpatialOptions& options) {
   const auto outcome = spatial_recording(options, options.recordings.front(), stems->front(),
                                          [&](double fraction) { progress.update(fraction); });
   cli::warn_grouped(outcome.warnings);
+  const std::vector too_short{outcome.too_short};
+  if (const auto said = too_short_sentence(too_short); said && outcome.report) cli::warn(*said);
   return outcome.report;
 }
 
 cli::Action declare_spatial(CLI::App& app) {
   const auto options = std::make_shared<SpatialOptions>();
   declare_spatial(app, *options);
-  return
-      [options] { return options->recordings.size() == 1 ? act_on_one(*options) : spatial_batch(*options); };
+  cli::explain_strokes(app);
+  return [options] { return is_batch(*options) ? spatial_batch(*options) : act_on_one(*options); };
 }
 
 }  // namespace
@@ -44,7 +46,7 @@ const cli::Verb kSpatialVerb{
     "  tactograph spatial oak --list\n"
     "  tactograph spatial oak --average --align correlation -o oak-mean\n"
     "  tactograph spatial oak-1 oak-2 oak-3 --average -o oak-mean\n"
-    "  tactograph spatial *.json --jobs 2 -o textures/",
+    "  tactograph spatial study-3 --jobs 2 -o textures/",
     declare_spatial};
 
 }  // namespace tacto::spatial

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <filesystem>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "spatial/job/spatial_recording.hpp"
 #include "spatial/job/spatial_takes.hpp"
 #include "spatial/job/texture_names.hpp"
+#include "spatial/job/too_short.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -24,9 +26,44 @@ using cli::Report;
 using schema::ErrorKind;
 using schema::Result;
 
+namespace fs = std::filesystem;
+
 struct Sorted {
   std::vector<std::string> recordings, skipped;
 };
+
+// By name. A damaged sidecar is recognised by the WAV beside it, and fails with its own message.
+Result<std::vector<std::string>> recordings_in(const std::string& folder) {
+  std::error_code failed, ignored;
+  std::vector<std::string> found;
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
+    if (at->path().extension() != ".json") continue;
+    const std::string path = at->path().string();
+    const auto files = schema::stored_files(path);
+    if (files ? files->front().kind == schema::FileKind::recording
+              : fs::exists(fs::path(path).replace_extension(".wav"), ignored))
+      found.push_back(path);
+  }
+  if (failed) return schema::fail(ErrorKind::not_found, "cannot be listed: " + failed.message(), folder);
+  if (found.empty()) return schema::fail(ErrorKind::unsuitable, "contains no recording", folder);
+  std::ranges::sort(found);
+  return found;
+}
+
+Result<std::vector<std::string>> without_folders(const std::vector<std::string>& names) {
+  std::error_code ignored;
+  std::vector<std::string> all;
+  for (const std::string& name : names) {
+    if (!fs::is_directory(name, ignored)) {
+      all.push_back(name);
+      continue;
+    }
+    const auto inside = recordings_in(name);
+    TACTO_TRY(inside);
+    all.insert(all.end(), inside->begin(), inside->end());
+  }
+  return all;
+}
 
 // Names of files of another kind are skipped; a name without a file is kept, so that it fails with its own
 // message.
@@ -86,12 +123,15 @@ class Batch {
 Report report_of(const std::vector<SpatialOutcome>& outcomes, const std::vector<std::string>& skipped) {
   std::vector<Report> made;
   std::vector<std::string> failed;
+  std::vector<std::string> too_short;
   std::optional<ErrorKind> fault;
   for (const SpatialOutcome& outcome : outcomes) {
+    if (outcome.too_short.any()) too_short.push_back(words_of(outcome.too_short));
     if (outcome.report) {
       made.push_back(*outcome.report);
       continue;
     }
+    if (outcome.too_short.nothing_left) continue;
     failed.push_back(schema::message(outcome.report.error()));
     fault = fault.value_or(outcome.report.error().kind);
   }
@@ -99,14 +139,22 @@ Report report_of(const std::vector<SpatialOutcome>& outcomes, const std::vector<
   report.add("done", made.size());
   report.add("recordings", std::move(made));
   if (!skipped.empty()) report.add("skipped", skipped);
+  if (!too_short.empty()) report.add("too_short", std::move(too_short));
   if (fault) report.add("failed", std::move(failed)).ends_with(*fault);
   return report;
 }
 
 }  // namespace
 
+bool is_batch(const SpatialOptions& options) {
+  std::error_code ignored;
+  return options.recordings.size() > 1 || fs::is_directory(options.recordings.front(), ignored);
+}
+
 Result<Report> spatial_batch(const SpatialOptions& options) {
-  const Sorted files = sorted(options.recordings);
+  const auto names = without_folders(options.recordings);
+  TACTO_TRY(names);
+  const Sorted files = sorted(*names);
   if (!files.skipped.empty())
     cli::warn(fmt::format("skipped because they are not recordings: {}", fmt::join(files.skipped, ", ")));
   if (files.recordings.empty())
@@ -121,8 +169,17 @@ Result<Report> spatial_batch(const SpatialOptions& options) {
   for (const SpatialOutcome& outcome : outcomes)
     warnings.insert(warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
   cli::warn_grouped(warnings);
-  for (const SpatialOutcome& outcome : outcomes)
-    if (!outcome.report) cli::warn("failed: " + schema::message(outcome.report.error()));
+  std::vector<TooShort> too_short;
+  std::vector<schema::Error> failures;
+  for (const SpatialOutcome& outcome : outcomes) {
+    too_short.push_back(outcome.too_short);
+    if (!outcome.report && !outcome.too_short.nothing_left) failures.push_back(outcome.report.error());
+  }
+  const auto said = too_short_sentence(too_short);
+  if (std::ranges::all_of(too_short, &TooShort::nothing_left))
+    return schema::fail(ErrorKind::unsuitable, *said);
+  if (said) cli::warn(*said);
+  for (const schema::Error& error : cli::by_cause(failures)) cli::warn("failed: " + schema::message(error));
   return report_of(outcomes, files.skipped);
 }
 

@@ -7,9 +7,14 @@
 
 namespace tacto::spatial {
 
-/// Files of other kinds are skipped and reported. A recording that fails does not stop the others. It is
-/// reported at the end, and the process has its exit code (the first one's, of several). Errors: usage, of
-/// names; unsuitable, if there is no recording among the files.
+/// Whether there are several recordings, or a folder of them.
+bool is_batch(const SpatialOptions& options);
+
+/// A folder stands for its recordings, without its subfolders. Files of other kinds are skipped and reported,
+/// and so are strokes and recordings that are too short for a texture: one warning for all of them. A
+/// recording that fails does not stop the others. It is reported at the end, in one warning for each cause,
+/// and the process has its exit code (the first one's, of several). Errors: usage, of names; not_found;
+/// unsuitable, if there is no recording among the files, or if all of them are too short.
 schema::Result<cli::Report> spatial_batch(const SpatialOptions& options);
 
 }  // namespace tacto::spatial

@@ -107,7 +107,8 @@ void declare_filter(CLI::App& app, SpatialOptions& options) {
 }  // namespace
 
 void declare_spatial(CLI::App& app, SpatialOptions& options) {
-  app.add_option("recording", options.recordings, "Recordings, by name or file")->required();
+  app.add_option("recording", options.recordings, "Recordings, by name or file, or folders of them")
+      ->required();
   app.add_option(
       "-o,--output", options.output,
       "Name of the texture; of several strokes, NAME-01, NAME-02 ... (default: name of the recording). For "

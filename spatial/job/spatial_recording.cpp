@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/base/stroke_rule.hpp"
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/recording/recording.hpp"
@@ -26,8 +28,12 @@ using schema::Result;
 class Run {
  public:
   Run(const SpatialOptions& options, std::string stem, const std::function<void(double)>& progress,
-      std::vector<cli::Warning>& warnings)
-      : options_(options), stem_(std::move(stem)), progress_(progress), warnings_(warnings) {}
+      std::vector<cli::Warning>& warnings, TooShort& too_short)
+      : options_(options),
+        stem_(std::move(stem)),
+        progress_(progress),
+        warnings_(warnings),
+        too_short_(too_short) {}
 
   Result<Report> on(const std::string& name);
   Result<Take> take(const std::string& name);
@@ -46,7 +52,7 @@ class Run {
   Result<Report> averages(TextureMaker& maker, const std::vector<StrokeJob>& jobs);
   Result<void> check_names(const std::vector<std::string>& stems);
   void warn(const std::string& text) { warnings_.push_back({"", text}); }
-  void warn_of_short_runs(const TouchRecord& record);
+  Result<void> leave_out_short(const TextureMaker& maker, std::vector<StrokeJob>& jobs);
   void warn_of_jumps(const TouchRecord& record);
   void warn_of(const std::string& what, const schema::Texture& texture);
 
@@ -54,6 +60,7 @@ class Run {
   std::string stem_;
   const std::function<void(double)>& progress_;
   std::vector<cli::Warning>& warnings_;
+  TooShort& too_short_;
 };
 
 Result<Report> Run::list(const TouchRecord& record) const {
@@ -64,7 +71,7 @@ Result<Report> Run::list(const TouchRecord& record) const {
   report.add("recording", record.where());
   add_position(report, record);
   report.add("found", rows.size());
-  if (record.short_runs() > 0) report.add("shorter_passed_over", record.short_runs());
+  if (record.short_runs() > 0) report.add("too_short_for_a_stroke", record.short_runs());
   if (!record.jumps().empty()) report.add("position_jumps", jump_rows(record));
   if (!rows.empty()) report.add("strokes", std::move(rows));
   return report;
@@ -75,12 +82,20 @@ Result<std::vector<StrokeJob>> Run::one_job(const Result<Stroke>& stroke, int nu
   return std::vector<StrokeJob>{{*stroke, number, stem_}};
 }
 
-void Run::warn_of_short_runs(const TouchRecord& record) {
-  if (record.short_runs() == 0) return;
-  warn(fmt::format(
-      "{}: {} shorter than 5 % of the longest stroke {} no texture; select one with --from and --to",
-      record.where(), record.short_runs() == 1 ? "a run" : fmt::format("{} runs", record.short_runs()),
-      record.short_runs() == 1 ? "makes" : "make"));
+// Of the strokes that were found, not of one that the user selected: that is refused with its own message.
+Result<void> Run::leave_out_short(const TextureMaker& maker, std::vector<StrokeJob>& jobs) {
+  if (options_.stroke || options_.from_s || options_.to_s) return {};
+  std::erase_if(jobs, [&](const StrokeJob& job) {
+    const bool is_short = !maker.is_long_enough(job.stroke);
+    if (is_short) too_short_.strokes.push_back(job.number);
+    return is_short;
+  });
+  if (!jobs.empty()) return {};
+  too_short_.nothing_left = true;
+  return schema::fail(ErrorKind::unsuitable,
+                      "no stroke is long enough for a texture: each lasts less than one period of the band's "
+                      "lowest frequency",
+                      maker.record().where(), "use a higher --low, or --band off");
 }
 
 // Positions after a jump do not match those before it on the bench.
@@ -114,10 +129,15 @@ Result<std::vector<StrokeJob>> Run::found_strokes(const TouchRecord& record) {
   std::vector<StrokeJob> all;
   for (const Stroke& stroke : record.strokes())
     all.push_back({stroke, static_cast<int>(all.size()) + 1, stem_});
+  too_short_.motions = record.short_runs();
+  too_short_.nothing_left = all.empty() && record.short_runs() > 0;
   if (all.empty())
-    return schema::fail(ErrorKind::unsuitable, "no stroke was found", record.where(),
-                        "select a time range with --from and --to");
-  warn_of_short_runs(record);
+    return schema::fail(
+        ErrorKind::unsuitable,
+        fmt::format("no stroke was found; the longest motion is {}",
+                    schema::length_for_people(record.longest_m())),
+        record.where(),
+        fmt::format("a stroke is {}; select a shorter motion with --from and --to", schema::kStrokeRule));
   warn_of_jumps(record);
   std::vector<StrokeJob> jobs = down_only(record, std::move(all));
   if (jobs.empty())
@@ -254,10 +274,12 @@ Result<Take> Run::take(const std::string& name) {
   TACTO_TRY(target);
   auto record = opened(name, *target);
   TACTO_TRY(record);
+  too_short_.recording = record->where();
   auto chosen = jobs(*record);
   TACTO_TRY(chosen);
   auto maker = ready(std::move(*record), *target);
   TACTO_TRY(maker);
+  TACTO_TRY(leave_out_short(*maker, *chosen));
   return Take{std::move(*maker), std::move(*chosen)};
 }
 
@@ -268,7 +290,8 @@ Result<Report> Run::on(const std::string& name) {
   TACTO_TRY(record);
   if (options_.list) return list(*record);
   const std::size_t said = warnings_.size();
-  const auto chosen = jobs(*record);
+  too_short_.recording = record->where();
+  auto chosen = jobs(*record);
   TACTO_TRY(chosen);
   const auto choice = texture_choice(*target, *record, *chosen);
   TACTO_TRY(choice);
@@ -277,6 +300,7 @@ Result<Report> Run::on(const std::string& name) {
     warnings_.resize(said);  // discard warnings about strokes that make no texture
     return schema::forward_error(maker);
   }
+  TACTO_TRY(leave_out_short(*maker, *chosen));
   auto report = options_.average ? averages(*maker, *chosen) : textures(*maker, *chosen);
   if (report && options_.chosen_by.budget.asked()) report->add("chosen", std::vector<Report>{choice->report});
   return report;
@@ -287,15 +311,15 @@ Result<Report> Run::on(const std::string& name) {
 SpatialOutcome spatial_recording(const SpatialOptions& options, const std::string& recording,
                                  const std::string& stem, const std::function<void(double)>& progress) {
   SpatialOutcome outcome;
-  outcome.report = Run(options, stem, progress, outcome.warnings).on(recording);
+  outcome.report = Run(options, stem, progress, outcome.warnings, outcome.too_short).on(recording);
   return outcome;
 }
 
 Result<Take> open_take(const SpatialOptions& options, const std::string& recording,
-                       std::vector<std::string>& warnings) {
+                       std::vector<std::string>& warnings, TooShort& too_short) {
   const std::function<void(double)> nothing = [](double) {};
   std::vector<cli::Warning> said;
-  auto take = Run(options, "", nothing, said).take(recording);
+  auto take = Run(options, "", nothing, said, too_short).take(recording);
   for (const cli::Warning& warning : said) warnings.push_back(cli::sentence(warning));
   return take;
 }

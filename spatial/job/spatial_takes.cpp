@@ -77,7 +77,9 @@ class Takes {
   std::vector<Mean> means_;
   std::vector<Origin> origins_;
   std::vector<Report> takes_;
-  std::vector<std::string> warnings_;
+  std::vector<std::string> warnings_;  // of the recording that is added
+  std::vector<TooShort> too_short_;
+  std::vector<schema::Error> excluded_;
 };
 
 Result<void> Takes::check_origin(const std::string& recording, const schema::RecordingHeader& header) {
@@ -90,10 +92,11 @@ Result<void> Takes::check_origin(const std::string& recording, const schema::Rec
 // All warnings of a recording contain its name.
 Result<void> Takes::add(const std::string& recording, const std::function<void(double)>& progress) {
   warnings_.clear();
-  auto take = open_take(options_, recording, warnings_);
+  TooShort& too_short = too_short_.emplace_back();
+  auto take = open_take(options_, recording, warnings_, too_short);
   if (!take && take.error().kind != ErrorKind::unsuitable) return schema::forward_error(take);
   std::size_t strokes = 0;
-  if (!take) warnings_.push_back("excluded: " + schema::message(take.error()));
+  if (!take && !too_short.nothing_left) excluded_.push_back(take.error());
   if (take) TACTO_TRY(check_origin(recording, take->maker.record().header()));
   if (take)
     for (const AverageGroup& group : average_groups(take->jobs, options_.both_ways, "")) {
@@ -117,6 +120,9 @@ std::string Takes::stem_of(const Mean& mean) const {
 }
 
 Result<Report> Takes::finish() {
+  if (const auto said = too_short_sentence(too_short_)) cli::warn(*said);
+  for (const schema::Error& error : cli::by_cause(excluded_))
+    cli::warn("excluded: " + schema::message(error));
   schema::PendingFiles pending;
   std::vector<Report> rows;
   for (const Mean& mean : means_) {

@@ -5,18 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "data-schema/base/stroke_rule.hpp"
 #include "spatial/strokes/smoothed_speed.hpp"
 
 namespace tacto::spatial {
 namespace {
 
-constexpr double kPauseS = 0.1;              // a finger that sticks slips before that
 constexpr double kSlowest = 0.1;             // of the stroke's own travelling speed: it starts and ends there
 constexpr double kReachedShare = 0.5;        // share of it that a stroke reaches at least once
 constexpr double kRest = 1e-4;               // of the record's travelling speed: creep of a resting stage
 constexpr double kRestResolutions = 3;       // per window: dither of a resting encoder, 5 sigma of noise
 constexpr double kSlowestFinger_mps = 1e-3;  // the slowest speed that the longer window searches for
-constexpr double kShortestOfLongest = 0.05;
 constexpr double kShortestResolutions = 20;
 constexpr double kShortestRun = 3;  // resolutions: longer than dither, shorter than a slip between two sticks
 constexpr double kReboundShare = 0.05;  // of the distance before or after: a rebound, not a reversal
@@ -38,7 +37,7 @@ class Search {
   schema::Result<Strokes> strokes() const;
 
  private:
-  std::size_t pause() const { return static_cast<std::size_t>(std::ceil(kPauseS * rate_hz_)); }
+  std::size_t pause() const { return static_cast<std::size_t>(std::ceil(schema::kStrokePause_s * rate_hz_)); }
   double shortest_run_m() const { return kShortestRun * facts_.resolution_m(); }
   schema::Result<Strokes> runs_above(FrameRange range, double threshold_mps, double shortest_m,
                                      std::vector<double>* fastest_mps) const;
@@ -143,7 +142,7 @@ schema::Result<Strokes> Search::strokes() const {
   auto runs = runs_above(stretch_, rest_mps(), shortest_run_m(), nullptr);
   if (!runs) return runs;
   Strokes strokes = joined(*runs);
-  const double shortest = kShortestOfLongest * longest_of(strokes);
+  const double shortest = schema::kShortestOfLongest * longest_of(strokes);
   std::erase_if(strokes, [&](const Stroke& run) { return run.advance_m() < shortest; });
   Strokes found;
   for (const Stroke& run : strokes) TACTO_TRY(append_strokes(run, found));
@@ -172,7 +171,7 @@ schema::Result<Strokes> strokes_in(const ReadFrames& read, FrameRange piece, dou
   const Search search(read, piece, sample_rate_hz, facts, window);
   auto strokes = search.strokes();
   if (!strokes || search.rest_mps() < kSlowestFinger_mps / 2 || longer <= window) return strokes;
-  const auto pause = static_cast<std::size_t>(std::ceil(kPauseS * sample_rate_hz));
+  const auto pause = static_cast<std::size_t>(std::ceil(schema::kStrokePause_s * sample_rate_hz));
   for (const FrameRange& rest : between(piece, *strokes, pause)) {
     const auto more = Search(read, rest, sample_rate_hz, facts, longer).strokes();
     if (!more) return more;
@@ -209,8 +208,10 @@ schema::Result<FoundStrokes> find_strokes(const ReadFrames& read, std::span<cons
     return std::erase_if(strokes, [&](const Stroke& stroke) { return stroke.advance_m() < shortest_m; });
   };
   drop_below(kShortestResolutions * facts.resolution_m());
-  const std::size_t short_runs = drop_below(kShortestOfLongest * longest_of(strokes));
-  return FoundStrokes{std::move(strokes), short_runs};
+  const double longest_m = longest_of(strokes);
+  const std::size_t short_runs =
+      drop_below(std::max(schema::kShortestStroke_m, schema::kShortestOfLongest * longest_m));
+  return FoundStrokes{std::move(strokes), short_runs, longest_m};
 }
 
 double backward_travel(std::span<const double> position_m, int direction) {

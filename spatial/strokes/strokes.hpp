@@ -30,16 +30,18 @@ struct Stroke {
 /// The stretches of a record between its gaps. `gaps` are sorted by frame, as in recordings.
 std::vector<FrameRange> pieces_between_gaps(std::size_t frames, std::span<const schema::Gap> gaps);
 
-/// Strokes by time. A stroke is a run above a tenth of its own travelling speed that reaches half of it. A
-/// reversal, a gap or a pause of 0.1 s ends it. Shorter pauses belong to the stroke, so a finger that sticks
-/// and slips makes one stroke; so do short movements back (5 % of the distance before or after) within such a
-/// pause. A run shorter than 5 % of the longest stroke, or than 20 resolutions of the position, is not a
-/// stroke. If the position is so coarse that a speed of 1 mm/s is not visible, the parts between strokes are
-/// searched again with a longer window. Memory: a chunk, a window of at most 0.5 s, and the list. Errors: of
-/// reading.
+/// Strokes by time, by the rule of stroke_rule.hpp; the only place where it is applied to a recording. A
+/// stroke begins and ends at a tenth of its own travelling speed, and reaches half of it. A reversal, a gap
+/// or a pause of kStrokePause_s ends it. Shorter pauses belong to the stroke, so a finger that sticks and
+/// slips makes one stroke; so do short movements back (5 % of the distance before or after) within such a
+/// pause. A run shorter than kShortestStroke_m, than kShortestOfLongest of the longest run, or than 20
+/// resolutions of the position, is not a stroke. If the position is so coarse that a speed of 1 mm/s is not
+/// visible, the parts between strokes are searched again with a longer window. Memory: a chunk, a window of
+/// at most 0.5 s, and the list. Errors: of reading.
 struct FoundStrokes {
   std::vector<Stroke> strokes;
-  std::size_t short_runs = 0;  ///< over 20 resolutions, but shorter than 5 % of the longest
+  std::size_t short_runs = 0;  ///< over 20 resolutions, but too short for a stroke
+  double longest_m = 0;        ///< of the strokes and short runs
 };
 schema::Result<FoundStrokes> find_strokes(const ReadFrames& read, std::span<const FrameRange> pieces,
                                           double sample_rate_hz, const PositionFacts& facts);

@@ -9,6 +9,7 @@
 #include <ranges>
 
 #include "data-schema/base/quantity.hpp"
+#include "data-schema/base/stroke_rule.hpp"
 #include "spatial/strokes/finger_contact.hpp"
 
 namespace tacto::spatial {
@@ -23,7 +24,6 @@ constexpr double kBackwardSigmas = 10;  // noise between the largest and the sma
 constexpr double kBackwardOfWay = 0.002;
 // A shorter movement is dither, or the creep of a resting finger.
 constexpr double kShortestTravelResolutions = 20;
-constexpr double kNearJump_s = 0.1;  // the pause that ends a stroke
 // A frame includes half a sample period on each side, so that a time with few digits still selects it.
 constexpr double kWithinFrame = 0.5;
 
@@ -72,6 +72,7 @@ schema::Result<void> TouchRecord::survey() {
   TACTO_TRY(strokes);
   strokes_ = std::move(strokes->strokes);
   short_runs_ = strokes->short_runs;
+  longest_m_ = strokes->longest_m;
   mark_cut_strokes();
   if (source_->channel(Track::normal_force) == nullptr) return {};
   for (Stroke& stroke : strokes_)
@@ -84,7 +85,7 @@ schema::Result<void> TouchRecord::survey() {
 // Marks strokes that begin or end near a jump of the position: the finger moved on there, so they are not
 // complete.
 void TouchRecord::mark_cut_strokes() {
-  const auto near = static_cast<std::size_t>(kNearJump_s * header_.sample_rate_hz) + 1;
+  const auto near = static_cast<std::size_t>(schema::kStrokePause_s * header_.sample_rate_hz) + 1;
   for (Stroke& stroke : strokes_)
     for (const PositionJump& jump : jumps_)
       if (jump.frame + near > stroke.frames.begin && jump.frame < stroke.frames.end + near)

@@ -41,8 +41,10 @@ class TouchRecord {
 
   /// Strokes by time; may be empty.
   const std::vector<Stroke>& strokes() const { return strokes_; }
-  /// Number of runs that are not strokes because they are shorter than 5 % of the longest.
+  /// Number of motions that are too short for a stroke.
   std::size_t short_runs() const { return short_runs_; }
+  /// The longest motion, a stroke or not, m.
+  double longest_m() const { return longest_m_; }
   /// The force below which the finger is up; absent without a normal force.
   std::optional<double> finger_up_below_n() const { return up_below_n_; }
   /// The steps of the position that are too fast for a finger.
@@ -87,6 +89,7 @@ class TouchRecord {
   std::vector<PositionJump> jumps_;
   std::vector<Stroke> strokes_;
   std::size_t short_runs_ = 0;
+  double longest_m_ = 0;
   std::optional<double> up_below_n_;
 };
 

@@ -88,12 +88,8 @@ class RecordingSource : public TouchSource {
   std::array<MaybeIndex, 3> indices_;  // by Track
 };
 
-}  // namespace
-
-schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Recording& recording,
-                                                               const std::string& value) {
-  const auto index = value_channel(recording, value);
-  TACTO_TRY(index);
+schema::Result<std::unique_ptr<TouchSource>> open_source(const schema::Recording& recording,
+                                                         MaybeIndex value) {
   const MaybeIndex position = channel_of(recording.header, "position");
   if (!position)
     return schema::fail(
@@ -103,7 +99,20 @@ schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Rec
   TACTO_TRY(frames);
   return std::make_unique<RecordingSource>(
       std::move(*frames), recording.header.channels,
-      std::array{position, MaybeIndex(*index), channel_of(recording.header, "normal_force")});
+      std::array{position, value ? value : position, channel_of(recording.header, "normal_force")});
+}
+
+}  // namespace
+
+schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Recording& recording,
+                                                               const std::string& value) {
+  const auto index = value_channel(recording, value);
+  TACTO_TRY(index);
+  return open_source(recording, *index);
+}
+
+schema::Result<std::unique_ptr<TouchSource>> open_position_source(const schema::Recording& recording) {
+  return open_source(recording, std::nullopt);
 }
 
 }  // namespace tacto::spatial

@@ -41,4 +41,8 @@ class TouchSource {
 schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Recording& recording,
                                                                const std::string& value);
 
+/// The same for strokes alone: the value is the position, too. Errors: unsuitable, without a position; of
+/// opening the file.
+schema::Result<std::unique_ptr<TouchSource>> open_position_source(const schema::Recording& recording);
+
 }  // namespace tacto::spatial

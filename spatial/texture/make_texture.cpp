@@ -76,10 +76,18 @@ schema::Result<void> TextureMaker::choose_equaliser() {
   return {};
 }
 
+double TextureMaker::lowest_hz() const {
+  return options_.filter.passed(record_.header().sample_rate_hz).low_hz;
+}
+
+bool TextureMaker::is_long_enough(const Stroke& stroke) const {
+  const double low_hz = lowest_hz();
+  return low_hz == 0 || (record_.to_s(stroke) - record_.from_s(stroke)) * low_hz >= 1;
+}
+
 schema::Result<void> TextureMaker::check_duration(const Stroke& stroke) const {
-  const double low_hz = options_.filter.passed(record_.header().sample_rate_hz).low_hz;
-  const double duration_s = record_.to_s(stroke) - record_.from_s(stroke);
-  if (duration_s * low_hz >= 1 || low_hz == 0) return {};
+  if (is_long_enough(stroke)) return {};
+  const double low_hz = lowest_hz(), duration_s = record_.to_s(stroke) - record_.from_s(stroke);
   return schema::fail(ErrorKind::unsuitable,
                       fmt::format("the stroke at {:.4g} s lasts {:.3g} s, less than one period of {:g} Hz",
                                   record_.from_s(stroke), duration_s, low_hz),

@@ -44,6 +44,8 @@ class TextureMaker {
   static schema::Result<TextureMaker> open(TouchRecord record, const TextureOptions& options);
 
   const TouchRecord& record() const { return record_; }
+  /// Whether a stroke lasts at least one period of the band's lowest frequency; make() refuses a shorter one.
+  bool is_long_enough(const Stroke& stroke) const;
 
   /// The texture of a stroke or stretch of record(). The whole piece between two gaps is filtered, then the
   /// stroke is resampled; strokes ordered by time are fast. Position 0 is a multiple of the pitch on the
@@ -57,6 +59,7 @@ class TextureMaker {
   TextureMaker(TouchRecord record, TextureOptions options);
   schema::Result<void> prepare();
   schema::Result<void> choose_equaliser();
+  double lowest_hz() const;
   schema::Result<void> check_duration(const Stroke& stroke) const;
   schema::Result<void> check_band(double usual_mps) const;
   schema::Result<MonotonePath> path_of(const Stroke& stroke, double shift_m) const;

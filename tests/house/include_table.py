@@ -51,8 +51,9 @@ MAY_INCLUDE = {
         "capture/{calibrate doctor import record} data-schema/{base cli command files recording report} "
         "firmware-host/{. sim/device}",
     "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. link}",
-    "capture/import": "capture/{calibrate table} data-schema/{base calibration files recording texture}",
-    "capture/record": "capture/table data-schema/{base calibration files kinds recording} firmware-host/link",
+    "capture/import": "capture/{calibrate record table} data-schema/{base calibration files recording texture}",
+    "capture/record":
+        "capture/table data-schema/{base calibration files kinds recording} firmware-host/link spatial/strokes",
     "capture/table": "data-schema/{base files recording wav}",
     "spatial/certificate": "data-schema/{base texture} spatial/features",
     "spatial/cli":
@@ -124,7 +125,7 @@ MAY_INCLUDE = {
     "analysis/experiment": "analysis/{page psychometrics} capture/table data-schema/{base results}",
     "analysis/extremes":
         "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/recording "
-        "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram}",
+        "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram strokes}",
     "analysis/fidelity":
         "analysis/{compare page} data-schema/{base results texture transducer} firmware-host/{sim/bench "
         "sim/device sim/physics} playback/{model player render/reference session} spatial/{dsp/filter "

@@ -81,7 +81,7 @@ TEST(Strokes, EachIsJudgedByItsOwnSpeed) {
 
 TEST(Strokes, ACoarseEncoderMakesNoFalseOnes) {
   for (const double quantum_m : {0.1e-6, 1e-6, 10e-6}) {
-    const Path path = Path(quantum_m, quantum_m / 2).rest(2).go(0.001, 5).rest(60).go(-0.005, 1).rest(2);
+    const Path path = Path(quantum_m, quantum_m / 2).rest(2).go(0.001, 6).rest(60).go(-0.006, 1).rest(2);
     const auto strokes = strokes_of(path.position_m, kStrokeRate_hz);
     ASSERT_EQ(strokes.size(), 2U) << quantum_m;
     EXPECT_EQ(strokes[0].direction, 1);
