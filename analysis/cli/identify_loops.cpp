@@ -9,6 +9,7 @@
 #include "analysis/identify/report/identify_results.hpp"
 #include "analysis/identify/report/loop_figure.hpp"
 #include "data-schema/command/stop_signals.hpp"
+#include "data-schema/command/verb.hpp"
 #include "data-schema/report/progress.hpp"
 
 namespace tacto::analysis {
