@@ -58,9 +58,15 @@ void declare_source(CLI::App& app, IdentifyOptions& o) {
 }
 
 void declare_model(CLI::App& app, IdentifyOptions& o) {
-  app.add_flag("--second-mode", o.model.second_mode,
-               "The model has a second resonance, and its anti-resonance");
-  app.add_flag("--lag", o.model.lag, "The model lags by the same angle at all frequencies, for a hysteresis");
+  app.add_flag(
+      "--second-mode", o.model.second_mode,
+      "The model is one mode and a second resonance with its anti-resonance. Default: the model with the "
+      "smallest error on frequencies left out of the fit, of one mode, a second one, a delay, a "
+      "reconstruction filter, their combinations, and a lag");
+  app.add_flag(
+      "--lag", o.model.lag,
+      "The model lags by the same angle at all frequencies, for a hysteresis. On a device: of a sweep "
+      "alone");
   app.add_flag("--finger", o.model.finger,
                "A finger rests on the tray of a known transducer (--start-from): find its stiffness, damping "
                "and mass");
@@ -188,19 +194,18 @@ Result<BodeData> response_of(const IdentifyOptions& o, IdentifySource& asked) {
 Result<Report> identify_response(const IdentifyOptions& o, IdentifySource& asked) {
   auto data = response_of(o, asked);
   TACTO_TRY(data);
-  add_model_conditions(o, *data);
   ModelChoice choice = o.model;
   choice.direction = data->direction;
   const auto sound = check_measured(*data, choice, asked.base, {o.phase_sign < 0, o.invert});
   TACTO_TRY(sound);
   const ResponseFit fit = fit_response(*data, choice, asked.base);
-  TACTO_TRY(check_fitted(o, fit, choice, asked.base));
+  TACTO_TRY(check_fitted(o, fit, asked.base));
   const schema::Transducer found = identified(fit, asked.base, transducer_name_of(o));
   TACTO_TRY(schema::write_transducer(o.stem, found));
-  Report report = response_report(fit, choice, asked.base, found, transducer_file_of(o));
+  Report report = response_report(fit, asked.base, found, transducer_file_of(o));
   TACTO_TRY(draw_identified(o, BodeFigure(fit), report));
   return with_identify_results(
-      o, [&] { return identify_results(fit, choice, asked.base, found); }, std::move(report));
+      o, [&] { return identify_results(fit, asked.base, found); }, std::move(report));
 }
 
 Result<Report> identify_taps(const IdentifyOptions& o, const IdentifySource& asked) {
@@ -265,7 +270,11 @@ cli::Action declare_identify(CLI::App& app) {
   declare_model(app, *options);
   declare_measuring(app, *options);
   declare_tables(app, *options);
-  return [options] { return run_identify(*options); };
+  return [options] {
+    ModelChoice& model = options->model;
+    model.open = !(model.second_mode || model.lag || model.finger);
+    return run_identify(*options);
+  };
 }
 
 }  // namespace
@@ -274,8 +283,7 @@ const cli::Verb kIdentifyVerb{
     "identify", "Find a transducer's parameters, with their uncertainty, from a device or measured data",
     "tactograph identify -d sim:tray_sensor=on,hysteresis=0.16 -o bench --picture bench.svg --results "
     "bench.results.json\n"
-    "  tactograph identify -d sim:tray_sensor=on,hysteresis=0.16,second_mode=800Hz,finger_load=on "
-    "--second-mode -o loaded\n"
+    "  tactograph identify -d sim:tray_sensor=on,hysteresis=0.16,second_mode=800Hz,finger_load=on -o loaded\n"
     "  tactograph identify response.csv --start-from wiertlewski2011 -o mine\n"
     "  tactograph record -d sim:force=chirp,force_amplitude=30mN -o pull --time 8s\n"
     "  tactograph identify pull --input applied_force --output-channel tangential_force -o sensor\n"

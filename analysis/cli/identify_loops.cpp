@@ -9,6 +9,7 @@
 #include "analysis/identify/report/identify_results.hpp"
 #include "analysis/identify/report/loop_figure.hpp"
 #include "data-schema/command/stop_signals.hpp"
+#include "data-schema/command/verb.hpp"
 #include "data-schema/report/progress.hpp"
 
 namespace tacto::analysis {
@@ -85,12 +86,11 @@ Result<SweepAndLoops> measured_both(const IdentifyOptions& o, IdentifySource& so
 
 Result<JointFit> joint_fit_of(const IdentifyOptions& o, SweepAndLoops& both, const schema::Transducer& base) {
   BodeData& data = both.sweep.data;
-  add_model_conditions(o, data);
   TACTO_TRY(check_measured(data, o.model, base, {}));
   auto fit = fit_jointly(data, both.sweep.drive, both.loops, o.model, base);
   if (!fit) return fit;
   TACTO_TRY(check_upright(fit->loops, data.source));
-  TACTO_TRY(check_fitted(o, fit->response, o.model, base));
+  TACTO_TRY(check_fitted(o, fit->response, base));
   return fit;
 }
 
@@ -127,10 +127,10 @@ Result<Report> identify_jointly(const IdentifyOptions& o, IdentifySource& source
   TACTO_TRY(fit);
   const schema::Transducer found = identified(*fit, source.base, transducer_name_of(o));
   TACTO_TRY(schema::write_transducer(o.stem, found));
-  Report report = joint_report(*fit, o.model, source.base, found, transducer_file_of(o));
+  Report report = joint_report(*fit, source.base, found, transducer_file_of(o));
   TACTO_TRY(draw_identified(o, BodeFigure(fit->response), report));
   return with_identify_results(
-      o, [&] { return identify_results(*fit, o.model, source.base, found); }, std::move(report));
+      o, [&] { return identify_results(*fit, source.base, found); }, std::move(report));
 }
 
 }  // namespace tacto::analysis

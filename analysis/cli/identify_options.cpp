@@ -27,12 +27,6 @@ std::string transducer_file_of(const IdentifyOptions& o) {
   return schema::stem_of(o.stem, ".transducer") + ".transducer.json";
 }
 
-void add_model_conditions(const IdentifyOptions& o, BodeData& data) {
-  if (o.model.lag) data.conditions += ", with a constant lag";
-  if (o.model.finger) data.conditions += ", a finger on the tray";
-  if (o.model.second_mode) data.conditions += ", with a second mode";
-}
-
 Result<void> draw_identified(const IdentifyOptions& o, const spatial::Figure& figure, Report& report) {
   if (o.picture.empty()) return {};
   if (auto drawn = spatial::write_figure(o.picture, figure); !drawn) return drawn;
@@ -53,9 +47,8 @@ Result<Report> with_identify_results(const IdentifyOptions& o, const std::functi
   return report.add("results", o.results);
 }
 
-Result<void> check_fitted(const IdentifyOptions& o, const ResponseFit& fit, const ModelChoice& choice,
-                          const schema::Transducer& base) {
-  if (const auto level = check_levels(fit, choice, base); !level || o.implausible) return level;
+Result<void> check_fitted(const IdentifyOptions& o, const ResponseFit& fit, const schema::Transducer& base) {
+  if (const auto level = check_levels(fit, base); !level || o.implausible) return level;
   if (const auto sized = check_size(fit, base); !sized) return sized;
   return check_frequencies(fit, base);
 }

@@ -42,7 +42,6 @@ struct IdentifySource {
 ExcitationPlan plan_on(const IdentifyOptions& options, const firmware_host::Device& device, double usual_v);
 std::string transducer_name_of(const IdentifyOptions& options);
 std::string transducer_file_of(const IdentifyOptions& options);
-void add_model_conditions(const IdentifyOptions& options, BodeData& data);
 /// Draws a picture if one was requested. Errors: those of write_figure.
 schema::Result<void> draw_identified(const IdentifyOptions& options, const spatial::Figure& figure,
                                      cli::Report& report);
@@ -52,6 +51,6 @@ schema::Result<cli::Report> with_identify_results(const IdentifyOptions& options
                                                   cli::Report report);
 /// Checks a response before and after its fit (plausibility.hpp).
 schema::Result<void> check_fitted(const IdentifyOptions& options, const ResponseFit& fit,
-                                  const ModelChoice& choice, const schema::Transducer& base);
+                                  const schema::Transducer& base);
 
 }  // namespace tacto::analysis

@@ -58,6 +58,21 @@ bool table_hides_an_interval(const ResponseFit& fit) {
          });
 }
 
+void add_model(Report& report, const ResponseFit& fit) {
+  report.add("model", name_of(fit.choice));
+  if (!fit.choice_words.empty()) report.add("choice", fit.choice_words);
+  std::vector<Report> rows;
+  for (const TriedModel& model : fit.tried) {
+    Report row;
+    row.add("model", model.name).add("parameters", model.parameters);
+    row.add("left_out_error_percent", 100 * model.left_out);
+    if (fit.data.noise_is_measured()) row.add("left_out_error_over_noise", model.left_out_over_noise);
+    row.add("converged", model.converged).add("misfit", model.misfit);
+    rows.push_back(std::move(row));
+  }
+  if (!rows.empty()) report.add("tried", std::move(rows));
+}
+
 std::vector<Report> parameter_rows(const ResponseFit& fit) {
   std::vector<Report> rows;
   const bool in_full = table_hides_an_interval(fit);
@@ -110,15 +125,15 @@ void add_paper(Report& report, const schema::Transducer& found, const ResponseFi
 
 }  // namespace
 
-Report response_report(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+Report response_report(const ResponseFit& fit, const schema::Transducer& base,
                        const schema::Transducer& found, const std::string& file) {
   Report report;
   add_head(report, found, file);
+  add_model(report, fit);
   report.add("parameters", parameter_rows(fit));
-  std::vector<std::string> held = held_words(choice, base);
+  std::vector<std::string> held = held_words(fit.choice, base);
   held.insert(held.end(), fit.notes.begin(), fit.notes.end());
   report.add("not_identifiable", std::move(held));
-  if (!fit.suggestion.empty()) report.add("model_one_mode_short", fit.one_mode_short);
   add_quality(report, fit);
   add_found(report, found);
   if (is_the_papers(base)) add_paper(report, found, fit);
@@ -133,9 +148,9 @@ Report loop_report(const LoopFit& fit, const schema::Transducer& found, const st
   return report;
 }
 
-Report joint_report(const JointFit& fit, const ModelChoice& choice, const schema::Transducer& base,
-                    const schema::Transducer& found, const std::string& file) {
-  Report report = response_report(fit.response, choice, base, found, file);
+Report joint_report(const JointFit& fit, const schema::Transducer& base, const schema::Transducer& found,
+                    const std::string& file) {
+  Report report = response_report(fit.response, base, found, file);
   report.add("rounds", fit.rounds);
   add_loop_rows(report, fit.loops);
   report.add("load", kLoadWords);

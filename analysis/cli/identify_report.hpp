@@ -8,11 +8,11 @@
 namespace tacto::analysis {
 
 /// Each function gives the report of one kind of identification; `file` is the written file.
-cli::Report response_report(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+cli::Report response_report(const ResponseFit& fit, const schema::Transducer& base,
                             const schema::Transducer& found, const std::string& file);
 cli::Report loop_report(const LoopFit& fit, const schema::Transducer& found, const std::string& file);
-cli::Report joint_report(const JointFit& fit, const ModelChoice& choice, const schema::Transducer& base,
-                         const schema::Transducer& found, const std::string& file);
+cli::Report joint_report(const JointFit& fit, const schema::Transducer& base, const schema::Transducer& found,
+                         const std::string& file);
 cli::Report taps_report(const TapsFit& fit, const TapsPrediction& predicted, const schema::Transducer& found,
                         const std::string& file);
 

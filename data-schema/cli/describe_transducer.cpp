@@ -39,6 +39,7 @@ void add_electronics(Report& report, const Transducer& t) {
 
 void add_extras(Report& report, const Transducer& t) {
   if (t.hysteresis) report.add("hysteresis_thresholds", t.hysteresis->thresholds_v.size());
+  if (t.reconstruction_cutoff_hz) report.add("reconstruction_cutoff_hz", *t.reconstruction_cutoff_hz);
   if (!t.second_mode) return;
   report.add("second_mode_hz", t.second_mode->frequency_hz);
   report.add("second_mode_damping_ratio", t.second_mode->damping_ratio);

@@ -41,6 +41,8 @@ struct Transducer {
   std::string origin;               ///< paper and equation, identification and date
   std::optional<Hysteresis> hysteresis;
   std::optional<ModeAbove> second_mode;
+  /// Cutoff of an analog filter in front of the amplifier (butterworth3_response), as the paper's of 600 Hz.
+  std::optional<double> reconstruction_cutoff_hz;
   std::optional<Identification> identification;
   std::string extra_json;
   std::string newer_version;
@@ -55,8 +57,8 @@ double piezo_coefficient_m_per_v(const Transducer& transducer);
 std::complex<double> sensor_response(const Transducer& transducer, double frequency_hz);
 
 /// H_a = 2 beta k_p G_a / ((1 + 2 R_a C_p s)(m s^2 + b_r s + k_r + k_p)) x actuator_scale, m/V. Equations
-/// (5), (6): with the factor 2 that the printed H_a lacks; a second mode adds its compliance. A hysteresis is
-/// not part of it: no transfer function has one.
+/// (5), (6): with the factor 2 that the printed H_a lacks; a second mode and a filter multiply it. A
+/// hysteresis is not part of it: no transfer function has one.
 std::complex<double> actuator_response(const Transducer& transducer, double frequency_hz);
 
 /// Unit-gain analog Butterworth low-pass of order 3, as the paper's reconstruction filter (600 Hz), 1.

@@ -89,6 +89,8 @@ Json transducer_body(const Transducer& transducer) {
   put_text(body, "origin", transducer.origin);
   if (transducer.hysteresis) body["hysteresis"] = hysteresis_body(*transducer.hysteresis);
   if (transducer.second_mode) body["second_mode"] = second_mode_body(*transducer.second_mode);
+  if (transducer.reconstruction_cutoff_hz)
+    body["reconstruction_cutoff_hz"] = *transducer.reconstruction_cutoff_hz;
   if (transducer.identification) body["identification"] = identification_body(*transducer.identification);
   return body;
 }
@@ -102,6 +104,8 @@ Transducer transducer_from(const Json& body) {
   transducer.origin = text_or(body, "origin");
   if (body.contains("hysteresis")) transducer.hysteresis = hysteresis_from(body["hysteresis"]);
   if (body.contains("second_mode")) transducer.second_mode = second_mode_from(body["second_mode"]);
+  if (body.contains("reconstruction_cutoff_hz"))
+    transducer.reconstruction_cutoff_hz = body["reconstruction_cutoff_hz"].get<double>();
   if (body.contains("identification"))
     transducer.identification = identification_from(body["identification"]);
   return transducer;

@@ -61,7 +61,7 @@ constexpr PlausibleMember kPlausible[] = {
     {"slew_limit_v_per_s", &Transducer::slew_limit_v_per_s, {1e-6, 1e12}},
 };
 
-constexpr Range kModeHz{0.1, 1e7};             // the tray's own resonances, wide
+constexpr Range kModeHz{0.1, 1e7};             // the tray's own resonances and filters, wide
 constexpr Range kModeDamping{1e-6, 1e3};       // a quartz crystal to a thick fluid
 constexpr Range kThresholdV{1e-9, 1e5, true};  // of hysteresis, as the drive
 constexpr Range kWeight{1e-9, 1e6, true};
@@ -90,6 +90,8 @@ std::vector<NamedNumber> numbers_of(const Transducer& transducer) {
   std::vector<NamedNumber> numbers;
   for (const auto& [name, member, range] : kPlausible) numbers.push_back({name, transducer.*member, range});
   if (transducer.second_mode) add_mode(numbers, *transducer.second_mode);
+  if (transducer.reconstruction_cutoff_hz)
+    numbers.push_back({"reconstruction_cutoff_hz", *transducer.reconstruction_cutoff_hz, kModeHz});
   if (!transducer.hysteresis) return numbers;
   const auto& [thresholds_v, weights] = *transducer.hysteresis;
   for (std::size_t i = 0; i < thresholds_v.size(); ++i)

@@ -63,7 +63,10 @@ Complex sensor_response(const Transducer& t, double frequency_hz) {
 Complex actuator_response(const Transducer& t, double frequency_hz) {
   const Complex s = laplace(frequency_hz);
   const double size = 2 * piezo_coefficient_m_per_v(t) * t.bender_stiffness_n_per_m * t.amplifier_gain;
-  return size * t.actuator_scale * compliance(t, s) /
+  const Complex filter = t.reconstruction_cutoff_hz
+                             ? butterworth3_response(*t.reconstruction_cutoff_hz, frequency_hz)
+                             : Complex(1);
+  return size * t.actuator_scale * filter * compliance(t, s) /
          electrics(t.amplifier_resistance_ohm, t.capacitance_f, s);
 }
 

@@ -46,7 +46,7 @@ Result<void> check_hysteresis(const schema::Transducer& transducer, const Prepar
   };
   if (!options.undo_hysteresis)
     return refused("the bender's hysteresis is not inverted", "play without --keep-hysteresis");
-  if (options.reconstruction != Reconstruction::none)
+  if (options.reconstruction != Reconstruction::none || transducer.reconstruction_cutoff_hz)
     return refused(
         "the filter behind the converter removes the corners of the drive that invert the hysteresis",
         "play without the filter, or without a budget");

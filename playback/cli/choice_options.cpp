@@ -24,7 +24,8 @@ void declare_path(CLI::App& app, PlaybackChoices& c, const std::string& of) {
                "What the drive inverts of the transducer: amplitude and phase (default), amplitude, the gain "
                "at rest, or nothing");
   add_word(app, "--reconstruction", c.reconstruction, {"none", "butterworth3"},
-           of + "Analog filter behind the device's converter, inverted as well; default: none");
+           of + "Analog filter behind the device's converter, inverted as well; default: that of the "
+                "transducer's file, or none");
   cli::add_quantity(app, "--cutoff", c.cutoff_hz, Dimension::frequency,
                     of + "Cut-off of butterworth3 (needs --reconstruction); default: 600Hz, as in the paper");
   add_word(app, "--hold", c.hold, {"none", "zero-order"},

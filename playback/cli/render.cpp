@@ -126,7 +126,8 @@ void add_model(CLI::App& app, RenderVerbOptions& verb) {
   verb.named.reconstruction = cli::add_choice<Reconstruction>(
       app, "--reconstruction", o.reconstruction,
       {{"none", Reconstruction::none}, {"butterworth3", Reconstruction::butterworth3}},
-      "Analog filter behind the converter, inverted as well");
+      "Analog filter behind the converter, inverted as well; butterworth3 replaces the filter of the "
+      "transducer's file");
   verb.named.cutoff = cli::add_quantity(app, "--cutoff", o.reconstruction_cutoff_hz, Dimension::frequency,
                                         "Cut-off of butterworth3")
                           ->needs(verb.named.reconstruction);

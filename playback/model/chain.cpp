@@ -13,9 +13,12 @@ std::complex<double> hold_response(const Chain& chain, double frequency_hz) {
   return std::polar(std::sin(half_angle) / half_angle, -half_angle);
 }
 
+// actuator_response contains the filter of the transducer's file.
 std::complex<double> filter_response(const Chain& chain, double frequency_hz) {
   if (chain.reconstruction == Reconstruction::none) return 1;
-  return schema::butterworth3_response(chain.reconstruction_cutoff_hz, frequency_hz);
+  const auto named = schema::butterworth3_response(chain.reconstruction_cutoff_hz, frequency_hz);
+  const auto& own_hz = chain.transducer.reconstruction_cutoff_hz;
+  return own_hz ? named / schema::butterworth3_response(*own_hz, frequency_hz) : named;
 }
 
 }  // namespace

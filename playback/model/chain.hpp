@@ -8,7 +8,7 @@
 
 namespace tacto::playback {
 
-/// The analog filter after the converter.
+/// The analog filter after the converter. A filter that is named here replaces that of the transducer's file.
 enum class Reconstruction { none, butterworth3 };
 /// Whether samples are points of a band-limited signal, or the converter holds each one until the next.
 enum class Hold { none, zero_order };

@@ -18,7 +18,7 @@ def played(transducer, *options):
 
 
 def identified(name, device, *options, code=0):
-    return tacto.run("identify", "-d", device, "--second-mode", "-o", name, *options, code=code)
+    return tacto.run("identify", "-d", device, "-o", name, *options, code=code)
 
 
 def row(key, words, errors):
@@ -47,8 +47,8 @@ def a_bench_is_identified_alone_and_played():
     identified("free", BENCH)
     late = row("no_finger", "identified without the finger that it is played with", played("free"))
     assert -32 < max(late) < -24, late
-    said = tacto.run_json("identify", "-d", LOADED, "--second-mode", "-o", "said")
-    assert said["verdict"] == "fits" and "added later" in said["load"], said
+    said = tacto.run_json("identify", "-d", LOADED, "-o", "said")
+    assert said["verdict"] == "fits" and said["model"] == "second mode" and "added later" in said["load"], said
     assert abs(said["loop_opening_percent"] - 16) < 0.3, said
     tacto.run("render", "c-01", "--finger-path", path_of_a_finger(), "--transducer", "joint", "-o", "drive.wav", "--over-limit", "clip")
 

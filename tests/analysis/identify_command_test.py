@@ -102,9 +102,9 @@ def quick_methods_agree():
         said = tacto.run_json("identify", "-d", "sim:tray_sensor=on,seed=3", "--method", method, "-o", method)
         assert said["verdict"] == "fits" and "third_harmonic_percent" not in said, said
         assert abs(values(said)["resonance_hz"]["value"] / 547.73 - 1) < 2e-3
-        for lacks, short in (("hysteresis=0.16", False), ("second_mode=850Hz", True)):
-            said = json.loads(tacto.run("identify", "-d", f"sim:tray_sensor=on,seed=3,{lacks}", "--method", method, "-o", f"{method}-{short}", "--json", code=5)[0])
-            assert said["verdict"].startswith("MISFIT") and said["model_one_mode_short"] is short and said["r_squared"] > 0.9, said
+        for has, code in (("hysteresis=0.16", 5), ("second_mode=850Hz", 0)):
+            said = json.loads(tacto.run("identify", "-d", f"sim:tray_sensor=on,seed=3,{has}", "--method", method, "-o", f"{method}-{code}", "--json", code=code)[0])
+            assert said["verdict"].startswith("MISFIT" if code else "fits") and (said["model"] == "second mode") == (code == 0) and said["r_squared"] > 0.9, said
 
 
 def scipy_finds_the_same():
@@ -131,7 +131,7 @@ def a_misfit_is_refused_unless_forced():
     said = json.loads(tacto.run("identify", "-d", "sim:tray_sensor=on,hysteresis=0.16", "--method", "sweep", "--amplitude", "2V",
                                 *SWEEP, "-o", "wrong", "--json", code=5)[0])
     assert said["verdict"].startswith("MISFIT") and said["r_squared"] > 0.99
-    assert "--method joint" in said["words"] and said["model_one_mode_short"] is False, said["words"]
+    assert "--method joint" in said["words"] and "second mode" not in said["model"] and all(row["misfit"] for row in said["tried"]), said
     followed = json.loads(tacto.run("identify", "-d", "sim:tray_sensor=on,hysteresis=0.16", "--method", "sweep", "--second-mode", "-o", "two",
                                     "--json", code=5)[0])
     assert followed["verdict"].startswith("DID NOT") and "second_mode_zero" in followed["words"], followed["words"]
@@ -195,6 +195,9 @@ def loops_are_held_to_what_a_sweep_is():
     f = np.geomspace(10, 1000, 40)
     h = response(f) * np.exp(-0.1j)
     write_table("lag.csv", f, h, 1e-9)
+    said = tacto.run_json("identify", "lag.csv", "-o", "lag")
+    assert said["model"] == "lag" and abs(values(said)["lag_rad"]["value"] - 0.1) < 1e-3 and "--method joint" in said["words"], said
+    write_table("lag.csv", f, h * (1 + 0.1 * np.exp(-1j * f / 30)), 1e-9)  # an echo that no model has
     tacto.run("identify", "lag.csv", "-o", "wrong", code=5)
     said = json.loads(tacto.run("identify", "loop.csv", "--method", "loop", "--start-from", "wrong", "-o", "still", "--json",
                                 code=5)[0])
@@ -221,13 +224,15 @@ def stopped_leaving_nothing(*arguments):
     assert not list(scratch.iterdir()), list(scratch.iterdir())
 
 
-def second_mode_is_told_and_found():
+def a_model_can_be_requested():
     args = ["identify", "-d", "sim:tray_sensor=on,second_mode=800Hz", *SWEEP]
-    said = json.loads(tacto.run(*args, "-o", "one", "--json", code=5)[0])
-    assert said["model_one_mode_short"] is True and "lacks one mode" in said["words"], said
     two = tacto.run_json(*args, "--second-mode", "-o", "two")
-    assert two["verdict"] == "fits" and abs(values(two)["second_mode_hz"]["value"] / 800 - 1) < 0.02, two
-    assert "second_mode" in json.load(open("two.transducer.json"))
+    assert two["verdict"] == "fits" and two["model"] == "second mode" and "tried" not in two, two
+    chosen = tacto.run_json(*args, "-o", "chosen")
+    assert chosen["model"] == "second mode" and len(chosen["tried"]) == 8, chosen
+    for name, row in values(two).items():
+        assert abs(values(chosen)[name]["value"] / row["value"] - 1) < 1e-4, (name, row)
+    assert json.load(open("two.transducer.json"))["second_mode"].keys() == json.load(open("chosen.transducer.json"))["second_mode"].keys()
 
 
 def bad_input_is_one_clear_error():
@@ -390,6 +395,6 @@ def a_sensor_by_a_known_force():
 
 
 for test in (table_one_comes_back, quick_methods_agree, scipy_finds_the_same, a_misfit_is_refused_unless_forced,
-             hysteresis_is_written, loops_are_held_to_what_a_sweep_is, what_is_identified_is_undone, a_sensor_by_a_known_force, second_mode_is_told_and_found,
+             hysteresis_is_written, loops_are_held_to_what_a_sweep_is, what_is_identified_is_undone, a_sensor_by_a_known_force, a_model_can_be_requested,
              another_unit_is_named_with_its_option, intervals_are_printed_with_digits_that_show_them, bad_input_is_one_clear_error):
     tacto.in_folder(test)

@@ -84,6 +84,40 @@ TEST_P(IdentifyCoverage, IntervalsCoverInNineteenOfTwenty) {
 INSTANTIATE_TEST_SUITE_P(Directions, IdentifyCoverage,
                          testing::Values(Direction::actuator, Direction::sensor));
 
+// The model is chosen by the data: one mode, or two where there are two. Of 200 draws of 95 % fewer than 178
+// or more than 199 cover in 5 of 10,000 (binomial). A larger model than the plant's: see model_choice.hpp.
+class IdentifyChosen : public testing::TestWithParam<bool> {};
+
+TEST_P(IdentifyChosen, IntervalsCoverInNineteenOfTwenty) {
+  const int chosen_draws = draws(200, 5), fewest = 178, most = 199, most_larger = 2;
+  std::mt19937_64 random(2032);
+  const schema::Transducer base = schema::read_transducer("wiertlewski2011").value();
+  const std::string model = GetParam() ? "second mode" : "one mode";
+  CoverageTally tally;
+  int right = 0;
+  for (int draw = 0; draw < chosen_draws; ++draw) {
+    schema::Transducer plant = base;
+    plant.damping_n_s_per_m *= std::exp(std::normal_distribution<double>(0, 0.2)(random));
+    if (GetParam()) plant.second_mode = schema::ModeAbove{850, 0.05, 730, 0.04};
+    const BodeData data = measured(plant, Direction::actuator, octaves(10, 1000, 60), 0.003, random);
+    const ResponseFit fit = fit_response(data, {.open = true}, base);
+    right += name_of(fit.choice) == model;
+    if (name_of(fit.choice) != model) continue;
+    count_all(plant, Direction::actuator, fit, tally);
+    if (GetParam() && fit.claims_intervals()) count("second_mode_hz", 850, fit, tally);
+  }
+  std::printf("  %s: chosen in %d of %d, %d misfits\n", model.c_str(), right, chosen_draws, tally.misfits);
+  EXPECT_GE(right, chosen_draws - most_larger);
+  EXPECT_LE(tally.misfits, most_larger);
+  for (const auto& [name, covered] : tally.covered) {
+    std::printf("  %s: covered in %d of %d\n", name.c_str(), covered, tally.claimed);
+    EXPECT_TRUE(sanitized() || (covered >= fewest && covered <= most)) << name << " " << covered;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, IdentifyChosen, testing::Bool(),
+                         [](const auto& two) { return two.param ? "TwoModes" : "OneMode"; });
+
 // Tables without a column of noise: the noise is estimated from the residuals.
 struct UnknownNoise {
   const char* name;

@@ -112,6 +112,7 @@ TEST_F(TransducerFile, KeepsWhatWasIdentified) {
   Transducer found = preset_;
   found.hysteresis = Hysteresis{{0, 0.5, 2}, {0.75, 0.2, 0.1}};
   found.second_mode = ModeAbove{803.5, 0.03, 740.25, 0.02};
+  found.reconstruction_cutoff_hz = 612.5;
   found.identification = Identification{
       "2026-11-22T05:00:00Z", "no load, 0.2 V", "sim:", "test", true, true, "misfit", 0.99, 10, 900};
   written(found, "found");
@@ -121,6 +122,7 @@ TEST_F(TransducerFile, KeepsWhatWasIdentified) {
   EXPECT_EQ(read->hysteresis->weights, found.hysteresis->weights);
   EXPECT_EQ(read->second_mode->frequency_hz, 803.5);
   EXPECT_EQ(read->second_mode->zero_hz, 740.25);
+  EXPECT_EQ(read->reconstruction_cutoff_hz, 612.5);
   EXPECT_TRUE(read->identification->misfit);
   EXPECT_FALSE(read->identification->usable());
   EXPECT_EQ(read->identification->conditions, "no load, 0.2 V");

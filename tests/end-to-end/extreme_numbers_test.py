@@ -18,7 +18,7 @@ PRESET = json.loads((pathlib.Path(__file__).parents[2] / "data-schema/presets/wi
 EXTRAS = {"second_mode": {"frequency_hz": 2000.0, "damping_ratio": 0.02, "zero_hz": 1900.0, "zero_damping_ratio": 0.02},
           "hysteresis": {"thresholds_v": [0, 1, 2], "weights": [0.9, 0.1, 0.1]}}
 MEMBERS = [(name,) for name, value in PRESET.items() if isinstance(value, float | int) and name != "converter_bits"]
-MEMBERS += [("second_mode", name) for name in EXTRAS["second_mode"]]
+MEMBERS += [("reconstruction_cutoff_hz",)] + [("second_mode", name) for name in EXTRAS["second_mode"]]
 VALUES = (1e-300, 1e-9, 1e9, 1e300)
 NOT_FINITE = re.compile(r"\b(nan|inf|infinity)\b", re.IGNORECASE)
 

@@ -56,6 +56,16 @@ TEST(Chain, IsActuatorTimesFilterTimesHold) {
   expect_close(chain_response(chain, 300), actuator(300), 1e-4);
 }
 
+// A filter in the transducer's file is part of the chain; a named one replaces it.
+TEST(Chain, ATransducersFilterIsInIt) {
+  const Complex without = chain_response(full_chain(), 300) / butterworth(300);
+  Chain chain = full_chain();
+  chain.transducer.reconstruction_cutoff_hz = 250;
+  expect_close(chain_response(chain, 300), without * butterworth(300), 1e-12);
+  chain.reconstruction = Reconstruction::none;
+  expect_close(chain_response(chain, 300), without * schema::butterworth3_response(250, 300), 1e-12);
+}
+
 TEST(Chain, FullInverseUndoesAllOfIt) {
   const Chain chain = full_chain();
   for (const double f : {15.0, 143.0, 500.0})

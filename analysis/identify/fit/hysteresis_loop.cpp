@@ -250,7 +250,8 @@ void put_quality(const LoopTable& table, std::span<const double> v, std::span<co
   fit.explains_more =
       squares_of(left_by_line) - squares_of(left) >
       std::pow(fit.errors.noise * size, 2) * play_operators * highest_chi_squared(play_operators);
-  fit.usable = fit.residual_part < std::max(kSmallResidual, fit.linear_residual_part / 3);
+  // White noise of the sensor is no fault of the operator.
+  fit.usable = fit.errors.misfit < kSmallResidual || fit.residual_part < fit.linear_residual_part / 3;
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ struct LoopFit {
   std::vector<double> loop_v, loop_m, loop_model_m;  ///< the largest loop, and the operator's response in it
   OperatorErrors errors;  ///< of `hysteresis`, with its scaling; noise and misfit relative, as residual_part
   bool explains_more = false;  ///< the operator's improvement over a line is larger than noise would cause
-  bool usable = false;  ///< the operator's residual is at most a third of the line's, or both are small
+  bool usable = false;  ///< the operator's residual is at most a third of the line's, or a hundredth of the
+                        ///< loop beyond noise
 };
 
 /// Prandtl-Ishlinskii by non-negative least squares: displacement = offset + gain x sum_i w_i

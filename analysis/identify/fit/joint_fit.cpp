@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <utility>
 
 #include "analysis/identify/measure/angles.hpp"
 #include "analysis/identify/measure/excitation.hpp"
@@ -21,11 +22,34 @@ constexpr double kPoleStep = 1e-3;  // relative step of the finite difference
 constexpr double kRoughPart =
     0.5;  // then the residuals of the emulated bender (32 play operators) have the noise's size
 
-// Behind the pole, only the mechanics cause a lag of a slow drive.
-double mechanical_delay_s(const schema::Transducer& t) {
-  const Complex behind =
-      schema::actuator_response(t, kLoopHz) * Complex(1, kLoopHz / schema::actuator_pole_hz(t));
-  return -std::arg(behind) / (kTurn * kLoopHz);
+// What a round assumes: the fit of the round before.
+struct Assumed {
+  schema::Transducer transducer;
+  double delay_s = 0;
+
+  double pole_hz() const { return schema::actuator_pole_hz(transducer); }
+  double filter_at(double hz) const {
+    const auto& cutoff_hz = transducer.reconstruction_cutoff_hz;
+    return cutoff_hz ? std::abs(schema::butterworth3_response(*cutoff_hz, hz)) : 1;
+  }
+  // Of a slow drive, except by the pole. A pure delay before the operator acts as one behind it.
+  double slow_delay_s() const {
+    const Complex rest = schema::actuator_response(transducer, kLoopHz) * Complex(1, kLoopHz / pole_hz());
+    return delay_s - std::arg(rest) / (kTurn * kLoopHz);
+  }
+};
+
+Assumed found_by(const ResponseFit& fit) {
+  const FittedParameter* const delay = fit.find("delay_ms");
+  return {fit.transducer, delay != nullptr ? 1e-3 * delay->value : 0};
+}
+
+bool settled_at(const Assumed& now, const Assumed& before) {
+  const auto same = [](double a, double b) { return std::abs(a / b - 1) < kPoleSettled; };
+  const auto &filter_hz = now.transducer.reconstruction_cutoff_hz,
+             &filter_before_hz = before.transducer.reconstruction_cutoff_hz;
+  return same(now.pole_hz(), before.pole_hz()) && filter_hz.has_value() == filter_before_hz.has_value() &&
+         (!filter_hz || same(*filter_hz, *filter_before_hz));
 }
 
 double largest(std::span<const double> v) {
@@ -47,29 +71,31 @@ struct OperatorBehind {
   std::vector<Complex> left;
 };
 
-Result<OperatorBehind> operator_behind(const schema::Transducer& t, const JointMeasurement& of) {
-  const double pole_hz = schema::actuator_pole_hz(t);
-  SweptOperator swept(of.drive, pole_hz);
+Result<OperatorBehind> operator_behind(const Assumed& assumed, const JointMeasurement& of) {
+  const double pole_hz = assumed.pole_hz();
+  std::vector<double> filter;
+  for (const double hz : of.sweep.frequency_hz) filter.push_back(assumed.filter_at(hz));
+  SweptOperator swept(of.drive, pole_hz, filter);
   const auto charge_v = charge_of(of.loops.drive_v, pole_hz, of.loops.rate_hz);
-  auto loops =
-      fit_loops(charge_v, of.loops.displacement_m, of.loops.rate_hz, mechanical_delay_s(t), t.drive_limit_v,
-                thresholds_finer_below(swept.largest_charge_v(), largest(charge_v)));
+  auto loops = fit_loops(charge_v, of.loops.displacement_m, of.loops.rate_hz, assumed.slow_delay_s(),
+                         assumed.transducer.drive_limit_v,
+                         thresholds_finer_below(swept.largest_charge_v(), largest(charge_v)));
   TACTO_TRY(loops);
   auto left = swept.left_by(loops->hysteresis);
   return OperatorBehind{std::move(swept), std::move(*loops), std::move(left)};
 }
 
-schema::Transducer with_pole_times(schema::Transducer t, double times) {
-  t.amplifier_resistance_ohm /= times;
-  return t;
+Assumed with_pole_times(Assumed assumed, double times) {
+  assumed.transducer.amplifier_resistance_ohm /= times;
+  return assumed;
 }
 
 // Relative errors of the sweep after the division by the describing function.
-Result<PoleDependence> dependence_on_pole(const schema::Transducer& t, const OperatorBehind& here,
+Result<PoleDependence> dependence_on_pole(const Assumed& assumed, const OperatorBehind& here,
                                           const JointMeasurement& of) {
-  const auto there = operator_behind(with_pole_times(t, 1 + kPoleStep), of);
+  const auto there = operator_behind(with_pole_times(assumed, 1 + kPoleStep), of);
   TACTO_TRY(there);
-  PoleDependence slope{schema::actuator_pole_hz(t), {}};
+  PoleDependence slope{assumed.pole_hz(), {}};
   for (std::size_t i = 0; i < here.left.size(); ++i)
     slope.log_slope.push_back(-std::log(there->left[i] / here.left[i]) / std::log1p(kPoleStep));
   return slope;
@@ -104,7 +130,7 @@ void add_rough(std::size_t misfits, BodeData& data) {
 void say_unsettled(JointFit& joint) {
   if (joint.settled) return;
   joint.response.converged = false;
-  joint.response.ended = fmt::format("pole and hysteresis did not converge in {} rounds", joint.rounds);
+  joint.response.ended = fmt::format("model and hysteresis did not converge in {} rounds", joint.rounds);
 }
 
 // If the loops are not a hysteresis of this kind, the linear part is wrong, too.
@@ -128,15 +154,16 @@ BodeData without_hysteresis(BodeData data, OperatorBehind& behind) {
   return data;
 }
 
-// One round: the sweep of the linear part, on the assumption that the pole is the transducer's.
-Result<BodeData> linear_sweep(const schema::Transducer& t, const JointMeasurement& of, JointFit& joint) {
-  auto behind = operator_behind(t, of);
+// One round: the sweep of the linear part, on the assumption that its pole, filter and delay are these.
+Result<BodeData> linear_sweep(const Assumed& assumed, const JointMeasurement& of, JointFit& joint) {
+  auto behind = operator_behind(assumed, of);
   TACTO_TRY(behind);
   joint.has_hysteresis = shows_hysteresis(behind->loops);
   BodeData linear = of.sweep;
+  linear.loops_measured = true;
   if (joint.has_hysteresis) {
     linear = without_hysteresis(std::move(linear), *behind);
-    auto slope = dependence_on_pole(t, *behind, of);
+    auto slope = dependence_on_pole(assumed, *behind, of);
     TACTO_TRY(slope);
     linear.by_pole = std::move(*slope);
   }
@@ -149,18 +176,21 @@ Result<BodeData> linear_sweep(const schema::Transducer& t, const JointMeasuremen
 Result<JointFit> fit_jointly(const BodeData& sweep, const SweptDrive& drive, const DrivenTray& loops,
                              const ModelChoice& choice, const schema::Transducer& base) {
   JointFit joint;
-  schema::Transducer found = base;
-  BodeData linear;
+  Assumed assumed{base, 0};
+  assumed.transducer.reconstruction_cutoff_hz.reset();
+  ModelChoice model = choice;  // after the first round the one that was chosen in it, until all settles
   while (!joint.settled && joint.rounds < kMostRounds) {
-    const double pole_hz = schema::actuator_pole_hz(found);
-    auto divided = linear_sweep(found, {sweep, drive, loops}, joint);
-    TACTO_TRY(divided);
-    linear = std::move(*divided);
-    found = fit_values(linear, choice, base).transducer;
-    joint.settled =
-        ++joint.rounds > 1 && std::abs(schema::actuator_pole_hz(found) / pole_hz - 1) < kPoleSettled;
+    const auto linear = linear_sweep(assumed, {sweep, drive, loops}, joint);
+    TACTO_TRY(linear);
+    joint.response = fit_response(*linear, model, base);
+    model = joint.response.choice;
+    const Assumed found = found_by(joint.response);
+    joint.settled = ++joint.rounds > 1 && settled_at(found, assumed);
+    assumed = found;
+    if (!joint.settled || !choice.open) continue;
+    joint.response = fit_response(*linear, choice, base);
+    joint.settled = joint.response.choice == std::exchange(model, joint.response.choice);
   }
-  joint.response = fit_response(linear, choice, base);
   say_unsettled(joint);
   say_unusable(joint);
   return joint;

@@ -13,7 +13,8 @@ struct JointFit {
   ResponseFit response;        ///< of the sweep without the hysteresis
   LoopFit loops;               ///< behind the electrical pole
   bool has_hysteresis = true;  ///< false: the loops have none, and `response` is that of the unchanged sweep
-  bool settled = false;        ///< the pole changed by less than kPoleSettled, relative, in the last round
+  bool settled = false;  ///< in the last round the model stayed, and pole and filter changed by less than
+                         ///< kPoleSettled, relative
   int rounds = 0;
 };
 
@@ -25,9 +26,9 @@ inline constexpr double kLeastOpening = 5e-4;  ///< of a loop; equivalent to a l
 /// output of that operator for the sweep's charge drives the linear part. So the sweep, divided at each
 /// frequency by the operator's describing function (computed from the drive itself), is a linear response,
 /// which is fitted by fit_response(). The errors of the operator, by noise and by misfit, become
-/// BodeData::shared_errors. The first pole is the base's, then the fitted one, until it does not change.
-/// Errors: those of fit_loops(). Preconditions: check_bode(sweep), an actuator's; `drive` has a line for each
-/// of its frequencies; loops.rate_hz above 0.
+/// BodeData::shared_errors. The first pole is the base's without a filter, then pole, filter and delay are
+/// the fitted ones, until they do not change. Errors: those of fit_loops(). Preconditions: check_bode(sweep),
+/// an actuator's; `drive` has a line for each of its frequencies; loops.rate_hz above 0.
 schema::Result<JointFit> fit_jointly(const BodeData& sweep, const SweptDrive& drive, const DrivenTray& loops,
                                      const ModelChoice& choice, const schema::Transducer& base);
 

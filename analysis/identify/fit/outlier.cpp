@@ -38,16 +38,6 @@ void add_largest(std::span<const double> values, std::vector<std::size_t>& list)
   list.insert(list.end(), order.begin(), order.begin() + kTried);
 }
 
-BodeData without_value(BodeData data, std::size_t index) {
-  const auto at = static_cast<std::ptrdiff_t>(index);
-  data.frequency_hz.erase(data.frequency_hz.begin() + at);
-  data.response.erase(data.response.begin() + at);
-  if (data.has_noise()) data.noise.erase(data.noise.begin() + at);
-  for (auto& error : data.shared_errors) error.erase(error.begin() + at);
-  if (data.by_pole) data.by_pole->log_slope.erase(data.by_pole->log_slope.begin() + at);
-  return data;
-}
-
 // With two values fewer, left^((2 n - p - 2) / 2) is the probability of the F test.
 bool is_never_noise(const BodeData& data, const RestOfFit& rest, double part_left) {
   const double n = static_cast<double>(data.size()), freedom = 2 * n - kParameters - 2;
@@ -55,6 +45,13 @@ bool is_never_noise(const BodeData& data, const RestOfFit& rest, double part_lef
 }
 
 }  // namespace
+
+BodeData without_value(const BodeData& data, std::size_t index) {
+  std::vector<std::size_t> kept(data.size());
+  std::iota(kept.begin(), kept.end(), std::size_t{0});
+  std::erase(kept, index);
+  return part_of(data, kept);
+}
 
 std::optional<Outlier> outlier_of(const BodeData& data, std::span<const double> shares, double left_by_all,
                                   const LeftByFit& left_by_fit) {

@@ -22,6 +22,8 @@ struct Outlier {
   RestOfFit rest;         ///< of that fit
 };
 
+BodeData without_value(const BodeData& data, std::size_t index);
+
 using LeftByFit = std::function<RestOfFit(const BodeData&)>;
 
 /// The value without which a fit's sum of squares is less than a tenth of that of all values. Fits are made

@@ -115,7 +115,7 @@ Result<void> check_phases(const BodeData& measured, const ModelChoice& choice, c
   if (choice.finger) return {};
   const BodeData data =
       without_hold(measured, [&](double hz) { return schema::actuator_response(base, hz); });
-  const ResponseModel model({choice.direction, false, false, false}, base, data);
+  const ResponseModel model({.direction = choice.direction}, base, data);
   const double left = left_by_grid(model, data);
   if (left < kBadStart) return {};
   std::size_t step = 0;
@@ -152,7 +152,7 @@ constexpr double kMostRadians = kTurn;  // three poles lag by three quarters of 
 
 Result<void> check_units(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base) {
   if (choice.finger || !data.table_in_degrees || largest_angle(data) > kMostRadians) return {};
-  const ResponseModel model({choice.direction, false, false, false}, base, data);
+  const ResponseModel model({.direction = choice.direction}, base, data);
   const BodeData radians =
       changed(data, [](auto h) { return std::polar(std::abs(h), kDegrees * std::arg(h)); });
   if (left_by_grid(model, radians) >= kClearly * left_by_grid(model, data)) return {};
@@ -169,7 +169,7 @@ Result<void> check_measured(const BodeData& data, const ModelChoice& choice, con
   return check_phases(data, choice, base, turned);
 }
 
-Result<void> check_levels(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base) {
+Result<void> check_levels(const ResponseFit& fit, const schema::Transducer& base) {
   const double unit_si = fit.data.table_unit_si;
   if (!fit.misfit.found || !(unit_si > 0)) return {};
   BodeData levels = changed(fit.data, [&](auto h) {
@@ -177,7 +177,7 @@ Result<void> check_levels(const ResponseFit& fit, const ModelChoice& choice, con
   });
   levels.noise.clear();
   levels.noise_from_residuals = false;
-  const ResponseFit other = fit_response(levels, choice, base);
+  const ResponseFit other = fit_response(levels, fit.choice, base);
   if (!other.claims_intervals() || other.r_squared < kExplained) return {};
   return fail(ErrorKind::unsuitable, "the amplitudes fit as levels only: these are probably decibels",
               fit.data.source, "give --amplitude-unit with \"dB \" before the unit, as \"dB um/V\"");

@@ -32,9 +32,8 @@ schema::Result<void> check_measured(const BodeData& data, const ModelChoice& cho
                                     const schema::Transducer& base, Turned turned);
 
 /// After a fit. Errors: unsuitable: a table that is a misfit, whose residual is noise (R^2 above 0.99) if its
-/// amplitudes are taken as levels in decibels.
-schema::Result<void> check_levels(const ResponseFit& fit, const ModelChoice& choice,
-                                  const schema::Transducer& base);
+/// amplitudes are taken as levels in decibels and fitted by the same model.
+schema::Result<void> check_levels(const ResponseFit& fit, const schema::Transducer& base);
 
 /// Errors: unsuitable: a gain of more than 200 times the base's or less than a 200th, with the unit that
 /// would explain it.

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <optional>
 
-#include "analysis/identify/fit/misfit_reason.hpp"
+#include "analysis/identify/fit/model_choice.hpp"
 #include "analysis/identify/fit/outlier.hpp"
 #include "analysis/identify/fit/response_fitter.hpp"
 #include "analysis/identify/fit/shared_errors.hpp"
@@ -26,9 +26,9 @@ using Complex = std::complex<double>;
 constexpr int kCurvePoints = 101;
 constexpr int kNoiseRounds = 2;  // fit, then noise; a third round changes no value by a tenth of its error
 constexpr double kMostOfWhatIsLeft = 0.5;  // ratio of the residuals' squares
+constexpr std::size_t kMostStarts = 5;     // a second mode has five kinds
 constexpr double kSuspect = 0.2;           // part of the residuals in one value that starts a search
-constexpr double kSame = 1e-6;   // relative, of residual and logarithm of the pole: the same minimum
-constexpr double kSurely = 0.1;  // ratio that makes uneven residuals a misfit
+constexpr double kSame = 1e-6;  // relative, of residual and logarithm of the pole: the same minimum
 
 double r_squared_of(const BodeData& data, std::span<const Complex> modelled) {
   const Complex mean = std::accumulate(data.response.begin(), data.response.end(), Complex()) /
@@ -83,6 +83,7 @@ void put_parameters(const ResponseFitter& fitter, const ResponseModel& model, Re
 // The complete fit from one starting point, without suggestions.
 ResponseFit fitted_from(const BodeData& data, const ResponseModel& model, std::vector<double> start) {
   ResponseFit fit;
+  fit.choice = model.choice();
   fit.data = data;
   ResponseFitter fitter(fit.data, model, std::move(start));
   fitter.run();
@@ -149,16 +150,32 @@ ResponseFit best_of_one_mode(const BodeData& data, const ResponseModel& model) {
   return model.choice().finger ? *best : with_roles_swapped(data, model, std::move(*best));
 }
 
+ResponseFit best_fit(const BodeData& data, const ResponseModel& model, KnownValues& known);
+
+// The best starting points from all models with one extension less, or earlier values of this model.
+std::vector<Start> starts_by_smaller(const BodeData& data, const ResponseModel& model, KnownValues& known) {
+  if (const auto own = known.find(name_of(model.choice())); own != known.end()) return {{own->second, 0}};
+  std::vector<Start> starts;
+  for (const Extension& added : kExtensions) {
+    if (!(model.choice().*added.has)) continue;
+    ModelChoice less = model.choice();
+    less.*added.has = false;
+    const ResponseModel smaller(less, model.base(), data);
+    if (!known.contains(name_of(less))) known[name_of(less)] = values_of(best_fit(data, smaller, known));
+    std::ranges::move(extended_starts(model, data, added, smaller, known[name_of(less)]),
+                      std::back_inserter(starts));
+  }
+  std::ranges::sort(starts, {}, &Start::left);
+  starts.resize(std::min(starts.size(), kMostStarts));
+  return starts;
+}
+
 // The fit with the smallest residual of several starts.
-ResponseFit best_fit(const BodeData& data, const ResponseModel& model) {
-  if (!model.choice().second_mode) return best_of_one_mode(data, model);
-  ModelChoice one = model.choice();
-  one.second_mode = one.lag = false;
-  const ResponseModel single(one, model.base(), data);
-  const std::vector<double> first = values_of(best_of_one_mode(data, single));
+ResponseFit best_fit(const BodeData& data, const ResponseModel& model, KnownValues& known) {
+  if (model.choice().finger || name_of(model.choice()) == name_of({})) return best_of_one_mode(data, model);
   std::optional<ResponseFit> best;
-  for (const Start& start : second_mode_starts(model, data, first)) {
-    ResponseFit fit = fitted_from(data, model, start.values);
+  for (Start& start : starts_by_smaller(data, model, known)) {
+    ResponseFit fit = fitted_from(data, model, std::move(start.values));
     if (!best || left_by(fit) < left_by(*best)) best = std::move(fit);
   }
   return *best;
@@ -172,17 +189,6 @@ std::vector<double> in_order(std::vector<double> values, const ModelChoice& choi
   return values;
 }
 
-// The hold is removed with the model of the first fit, whose error causes 2e-4 of itself in the result.
-ResponseFit fit_once(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base) {
-  const ResponseModel model(choice, base, data);
-  const BodeData near = without_hold(data, [&](double hz) { return schema::actuator_response(base, hz); });
-  ResponseFit fit = best_fit(near, model);
-  const std::vector<double> values = in_order(values_of(fit), choice);
-  if (!(data.held_rate_hz > 0) && values == values_of(fit)) return fit;
-  const BodeData nearer = without_hold(data, [&](double hz) { return model.at(values, hz); });
-  return fitted_from(nearer, model, values);
-}
-
 // Removes the intervals of a fit that turned out to be a misfit.
 void claim_nothing(ResponseFit& fit) {
   fit.band.clear();
@@ -190,6 +196,19 @@ void claim_nothing(ResponseFit& fit) {
 }
 
 }  // namespace
+
+// The hold is removed with the model of the first fit, whose error causes 2e-4 of itself in the result.
+ResponseFit fit_once(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
+                     KnownValues& known) {
+  const ResponseModel model(choice, base, data);
+  const BodeData near = without_hold(data, [&](double hz) { return schema::actuator_response(base, hz); });
+  ResponseFit fit = best_fit(near, model, known);
+  const std::vector<double> values = in_order(values_of(fit), choice);
+  known[name_of(choice)] = values;
+  if (!(data.held_rate_hz > 0) && values == values_of(fit)) return fit;
+  const BodeData nearer = without_hold(data, [&](double hz) { return model.at(values, hz); });
+  return fitted_from(nearer, model, values);
+}
 
 const FittedParameter* ResponseFit::find(std::string_view name) const {
   const auto found = std::ranges::find(parameters, name, &FittedParameter::name);
@@ -212,7 +231,8 @@ std::optional<Outlier> found_outlier(const BodeData& data, const ModelChoice& ch
   const double suspect = data.noise_from_residuals ? kSuspect : kMostOfWhatIsLeft;
   if (!fit.misfit.found && *std::ranges::max_element(shares) < suspect * left) return std::nullopt;
   return outlier_of(data, shares, left, [&](const BodeData& rest) {
-    const ResponseFit other = fit_once(rest, choice, base);
+    KnownValues none;
+    const ResponseFit other = fit_once(rest, choice, base, none);
     return RestOfFit{left_by(other), other.claims_intervals(), !other.evenness.uneven};
   });
 }
@@ -223,17 +243,6 @@ void put_outlier(const Outlier& found, ResponseFit& fit) {
       fmt::format("frequency {} ({:.4g} Hz) is off: without it {:.3g} % of the residuals are left",
                   found.index + 1, fit.data.frequency_hz[found.index], 100 * found.left);
   fit.suggestion = "measure it again, or remove its line";
-}
-
-// Estimates unknown noise from the residuals, because wrong weights (constant or proportional noise) bias a
-// fit.
-BodeData with_noise_known(BodeData data, const ModelChoice& choice, const schema::Transducer& base) {
-  if (data.has_noise()) return data;
-  for (int round = 0; round < kNoiseRounds; ++round) {
-    const ResponseFit fit = fit_once(data, choice, base);
-    data = with_noise_of_residuals(std::move(data), fit.modelled, fit.parameters.size());
-  }
-  return data;
 }
 
 BodeData without_noise(BodeData data) {
@@ -249,53 +258,50 @@ void check_r_squared(ResponseFit& fit) {
   fit.misfit.words = fmt::format("R^2 is {:.3g}: some values are far from the rest", fit.r_squared);
 }
 
-void put_reason(MisfitReason reason, ResponseFit& fit) {
-  fit.suggestion = std::move(reason.words);
-  fit.one_mode_short = reason.one_mode_short;
-  if (!fit.misfit.found && fit.evenness.uneven) {
-    fit.misfit.found = true;
-    fit.misfit.words = uneven_residuals_words(fit.evenness);
-  }
+// One model, without a search for outliers.
+ResponseFit fit_alone(const BodeData& measured, const ModelChoice& choice, const schema::Transducer& base) {
+  KnownValues known;
+  return fit_once(with_noise_known(measured, choice, base, known), choice, base, known);
 }
 
-// Uneven residuals that look like noise are a misfit if an effect explains all of them except noise. An
-// outlier is not reported if an effect explains more than the outlier does.
-void explain(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
-             const std::optional<Outlier>& off, ResponseFit& fit) {
-  const bool sure_of_it = off && off->rest.is_noise && off->rest.is_even;
-  const bool doubtful = fit.misfit.found || fit.evenness.uneven || !fit.converged;
-  if (sure_of_it || !doubtful) return;
-  MisfitReason reason = misfit_reason(data, choice, base, fit);
-  const bool explains_all = reason.is_noise && reason.left < kSurely;
-  if (off ? explains_all && reason.left < off->left : explains_all || fit.misfit.found)
-    put_reason(std::move(reason), fit);
+// A larger model can follow one wrong value: the value is the reason of a misfit, and `off` stays, if the
+// rest needs no larger model.
+ResponseFit chosen_fit(const BodeData& measured, ResponseFit fit, const schema::Transducer& base,
+                       std::optional<Outlier>& off) {
+  if (off && !(off->rest.is_noise && off->rest.is_even)) {
+    const BodeData rest = without_value(measured, off->index);
+    if (best_model(rest, fit_alone(rest, fit.choice, base), base).choice != fit.choice) off.reset();
+  }
+  return off ? fit : best_model(measured, std::move(fit), base);
 }
 
 }  // namespace
 
-ResponseFit fit_from(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
-                     std::vector<double> start) {
-  return fitted_from(data, ResponseModel(choice, base, data), std::move(start));
-}
-
-ResponseFit fit_values(const BodeData& measured, const ModelChoice& choice, const schema::Transducer& base) {
-  return fit_once(with_noise_known(measured, choice, base), choice, base);
+BodeData with_noise_known(BodeData data, const ModelChoice& choice, const schema::Transducer& base,
+                          KnownValues& known) {
+  if (data.has_noise()) return data;
+  for (int round = 0; round < kNoiseRounds; ++round) {
+    const ResponseFit fit = fit_once(data, choice, base, known);
+    data = with_noise_of_residuals(std::move(data), fit.modelled, fit.parameters.size());
+  }
+  return data;
 }
 
 ResponseFit fit_response(const BodeData& measured, const ModelChoice& choice,
                          const schema::Transducer& base) {
-  const BodeData data = with_noise_known(measured, choice, base);
-  ResponseFit fit = fit_once(data, choice, base);
-  if (const double times = fit.misfit.noise_overstated; times > 0 && !data.noise_is_a_bound) {
+  ModelChoice closed = choice;
+  closed.open = false;
+  ResponseFit fit = fit_alone(measured, closed, base);
+  auto off = found_outlier(fit.data, closed, base, fit);
+  if (choice.open) fit = chosen_fit(measured, std::move(fit), base, off);
+  if (const double times = fit.misfit.noise_overstated; times > 0 && !measured.noise_is_a_bound) {
     fit = fit_response(without_noise(measured), choice, base);
     fit.noise_overstated = times;
     return fit;
   }
   const bool sound = fit.claims_intervals();
-  const auto off = found_outlier(data, choice, base, fit);
   if (!off) check_r_squared(fit);
-  explain(data, choice, base, off, fit);
-  if (off && fit.suggestion.empty()) put_outlier(*off, fit);
+  if (off) put_outlier(*off, fit);
   if (sound && fit.misfit.found) claim_nothing(fit);
   return fit;
 }

@@ -2,6 +2,7 @@
 // Fits the model to a measured response and judges the fit.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,16 @@ struct FittedParameter {
   bool held = false;         ///< not determined by the data: it keeps the base's value
 };
 
+/// A model among which one is chosen.
+struct TriedModel {
+  std::string name;
+  std::size_t parameters = 0;
+  /// Of the frequencies left out of the fit: RMS of the error over that of the response, and RMS of the error
+  /// over the noise, if that was measured. NaN if the fit did not converge.
+  double left_out = 0, left_out_over_noise = 0;
+  bool converged = false, misfit = false;
+};
+
 struct ResponseFit {
   std::vector<FittedParameter> parameters;
   bool converged = false;
@@ -27,10 +38,12 @@ struct ResponseFit {
   double r_squared = 0;  ///< of complex values, unweighted
   double condition = 0;  ///< of the Jacobian with columns of length 1
   Misfit misfit;
-  NoiseEvenness evenness;       ///< of the residuals, if the noise was not measured
-  double noise_overstated = 0;  ///< times: the given noise was too large and was ignored; 0: it was not
-  bool one_mode_short = false;  ///< a second mode explains half of a misfit's residual, and more than a lag
-  std::string suggestion;       ///< what the model lacks, if there is a misfit
+  NoiseEvenness evenness;         ///< of the residuals, if the noise was not measured
+  double noise_overstated = 0;    ///< times: the given noise was too large and was ignored; 0: it was not
+  std::string suggestion;         ///< what to do about a misfit
+  ModelChoice choice;             ///< the model
+  std::string choice_words;       ///< why this model
+  std::vector<TriedModel> tried;  ///< the models among which it was chosen, the fewest parameters first
   std::vector<std::string> notes;
   schema::Transducer transducer;  ///< the base with the values in it
   BodeData data;                  ///< without the effect of the hold
@@ -46,22 +59,28 @@ struct ResponseFit {
 
 /// Weighted non-linear least squares of complex values (Levenberg-Marquardt), weights 1 / noise^2. Without
 /// measured noise, with_noise_of_residuals() of a first, relative fit estimates it. The result is the fit
-/// with the smallest residual from one_mode_starts() or second_mode_starts() and, if its mode is overdamped,
+/// with the smallest residual from one_mode_starts() or extended_starts() and, if its mode is overdamped,
 /// from other_splits(); misfits and outliers are judged for that one. Of equal fits, the one with the pole
 /// nearest the base's. The hold is removed with the model itself. A parameter with a standard error of more
 /// than a factor e keeps the base's value, and a note says so. Intervals: from the Jacobian, normal if the
 /// noise is known, otherwise with Student's t: by the noise's degrees of freedom, or by the residuals' 2 n -
 /// p and their own variance (robust_errors() if evenness_of() says that it differs over the band). Noise that
 /// misfit_of() calls overstated is treated as not measured. No intervals if the fit did not converge or
-/// misfit_of() says that the model is wrong. Precondition: check_bode(data).
+/// misfit_of() says that the model is wrong. If choice.open, the model is chosen by best_model().
+/// Precondition: check_bode(data).
 ResponseFit fit_response(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base);
 
-/// The same values without a judgement: no search for outliers or for the reason of a misfit.
-ResponseFit fit_values(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base);
+/// Values of fitted models: starting points of others.
+using KnownValues = std::map<std::string, std::vector<double>>;
 
-/// From one starting point, values in the parameters' order. Precondition: no hold.
-ResponseFit fit_from(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
-                     std::vector<double> start);
+/// The same for this choice alone, without a search for outliers. `data` has noise, measured or from
+/// with_noise_known(). Adds its values, and those of the models that it needs, to `known`.
+ResponseFit fit_once(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
+                     KnownValues& known);
+/// Estimates unknown noise from the residuals, because wrong weights (constant or proportional noise) bias a
+/// fit.
+BodeData with_noise_known(BodeData data, const ModelChoice& choice, const schema::Transducer& base,
+                          KnownValues& known);
 
 std::vector<double> values_of(const ResponseFit& fit);
 /// Sum of the squares of the whitened residuals.

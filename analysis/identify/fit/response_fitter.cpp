@@ -16,6 +16,17 @@ constexpr double kNowhere = 0.5;  // of a pole's range
 
 }  // namespace
 
+// Divided by how the data would change with the pole: so their noise stays what it is.
+std::vector<std::complex<double>> modelled_by(const ResponseModel& model, const BodeData& data,
+                                              std::span<const double> values) {
+  std::vector<std::complex<double>> list;
+  list.reserve(data.size());
+  for (const double hz : data.frequency_hz) list.push_back(model.at(values, hz));
+  if (!data.by_pole || model.choice().finger) return list;
+  for (std::size_t i = 0; i < list.size(); ++i) list[i] /= data.by_pole->factor(i, values[kPole]);
+  return list;
+}
+
 ResponseFitter::ResponseFitter(const BodeData& data, const ResponseModel& model, std::vector<double> start)
     : data_(data), model_(model), shared_(data), values_(std::move(start)), held_(values_.size(), false) {}
 
@@ -89,18 +100,8 @@ std::vector<double> ResponseFitter::values_at(std::span<const double> coordinate
   return values;
 }
 
-// Divided by how the data would change with the pole: so their noise stays what it is.
-std::vector<std::complex<double>> ResponseFitter::modelled(std::span<const double> values) const {
-  std::vector<std::complex<double>> list;
-  list.reserve(data_.size());
-  for (const double hz : data_.frequency_hz) list.push_back(model_.at(values, hz));
-  if (!data_.by_pole || model_.choice().finger) return list;
-  for (std::size_t i = 0; i < list.size(); ++i) list[i] /= data_.by_pole->factor(i, values[kPole]);
-  return list;
-}
-
 void ResponseFitter::residuals(std::span<const double> coordinates, std::span<double> out) const {
-  const std::vector<std::complex<double>> model = modelled(values_at(coordinates));
+  const std::vector<std::complex<double>> model = modelled_by(model_, data_, values_at(coordinates));
   for (std::size_t i = 0; i < data_.size(); ++i) {
     const auto r = (data_.response[i] - model[i]) / sigma_at(data_, i);
     out[2 * i] = r.real();

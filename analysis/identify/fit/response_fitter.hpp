@@ -13,6 +13,10 @@
 
 namespace tacto::analysis {
 
+/// The model at the data's frequencies, for the pole that the data were computed with (BodeData::by_pole).
+std::vector<std::complex<double>> modelled_by(const ResponseModel& model, const BodeData& data,
+                                              std::span<const double> values);
+
 /// Data and model must outlive it. Precondition: check_bode(data), as many values as parameters.
 class ResponseFitter {
  public:
@@ -33,8 +37,7 @@ class ResponseFitter {
   double times_95() const;                     ///< standard errors in half an interval
   bool held(std::size_t i) const { return held_[i]; }
   std::string ended() const;  ///< in words
-  /// The model at the data's frequencies, for the pole that the data were computed with (BodeData::by_pole).
-  std::vector<std::complex<double>> modelled() const { return modelled(values_); }
+  std::vector<std::complex<double>> modelled() const { return modelled_by(model_, data_, values_); }
   const std::vector<double>& values() const { return values_; }
   const Solution& solution() const { return solution_; }
 
@@ -42,7 +45,6 @@ class ResponseFitter {
   double variance() const;
   std::size_t place(std::size_t parameter) const;
   std::vector<double> values_at(std::span<const double> coordinates) const;
-  std::vector<std::complex<double>> modelled(std::span<const double> values) const;
   void residuals(std::span<const double> coordinates, std::span<double> out) const;
   void solve();
   std::size_t least_determined() const;

@@ -15,6 +15,9 @@ double stiffness_of(const schema::Transducer& t) {
   return t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m;
 }
 
+constexpr double kMostCutoff = 5;    // times the band's end; a higher cutoff is a delay
+constexpr double kHighestMode = 10;  // times the band's end
+
 // 1 - r^2 + 2 i damping r.
 Complex resonator(double frequency_hz, double resonance_hz, double damping) {
   const double r = frequency_hz / resonance_hz;
@@ -53,13 +56,21 @@ void add_tray(std::vector<ModelParameter>& list, const schema::Transducer& base,
 }
 
 void add_second_mode(std::vector<ModelParameter>& list, double low_hz, double high_hz) {
-  list.push_back({"second_mode_hz", true, low_hz, 3 * high_hz, std::sqrt(low_hz * high_hz)});
+  list.push_back({"second_mode_hz", true, low_hz, kHighestMode * high_hz, std::sqrt(low_hz * high_hz)});
   list.push_back({"second_mode_damping_ratio", true, 1e-5, 3, 0.03});
-  list.push_back({"second_mode_zero_hz", true, low_hz, 3 * high_hz, std::sqrt(low_hz * high_hz)});
+  list.push_back({"second_mode_zero_hz", true, low_hz, kHighestMode * high_hz, std::sqrt(low_hz * high_hz)});
   list.push_back({"second_mode_zero_damping_ratio", true, 1e-5, 3, 0.03});
 }
 
 }  // namespace
+
+std::string name_of(const ModelChoice& choice) {
+  if (choice.finger) return "finger";
+  std::string name;
+  for (const Extension& one : kExtensions)
+    if (choice.*one.has) name += (name.empty() ? "" : ", ") + std::string(one.name);
+  return name.empty() ? "one mode" : name;
+}
 
 double ModelParameter::coordinate(double value) const {
   return logarithmic ? std::log(value) : value;
@@ -77,11 +88,19 @@ ResponseModel::ResponseModel(const ModelChoice& choice, const schema::Transducer
   if (choice.second_mode) add_second_mode(parameters_, low_hz, high_hz);
   const double most_ms = 1e3 * kMostDelayPeriods / high_hz;
   if (choice.delay) parameters_.push_back({"delay_ms", false, -most_ms, most_ms, 0});
+  if (choice.filter)
+    parameters_.push_back({"reconstruction_cutoff_hz", true, low_hz, kMostCutoff * high_hz, high_hz});
   if (choice.lag) parameters_.push_back({"lag_rad", false, -1.5, 1.5, 0});
+  delay_ = place_of("delay_ms"), filter_ = place_of("reconstruction_cutoff_hz"), lag_ = place_of("lag_rad");
   for (ModelParameter& parameter : parameters_) {
     parameter.base = parameter.start;
     parameter.start = std::clamp(parameter.start, 1.01 * parameter.low, 0.99 * parameter.high);
   }
+}
+
+std::size_t ResponseModel::place_of(std::string_view name) const {
+  return static_cast<std::size_t>(std::ranges::find(parameters_, name, &ModelParameter::name) -
+                                  parameters_.begin());
 }
 
 Complex ResponseModel::loaded(std::span<const double> v, double hz) const {
@@ -103,8 +122,9 @@ Complex ResponseModel::at(std::span<const double> v, double hz) const {
     above *= resonator(hz, v[kSecondMode + 2], v[kSecondMode + 3]);
     below *= resonator(hz, v[kSecondMode], v[kSecondMode + 1]);
   }
-  if (choice_.delay) above *= std::polar(1.0, -1e-3 * kTurn * hz * v[v.size() - (choice_.lag ? 2 : 1)]);
-  if (choice_.lag) above *= std::polar(1.0, hz < 0 ? v.back() : -v.back());
+  if (choice_.delay) above *= std::polar(1.0, -1e-3 * kTurn * hz * v[delay_]);
+  if (choice_.filter) above *= schema::butterworth3_response(v[filter_], hz);
+  if (choice_.lag) above *= std::polar(1.0, hz < 0 ? v[lag_] : -v[lag_]);
   return above / below;
 }
 
@@ -120,6 +140,8 @@ void ResponseModel::put_tray(std::span<const double> v, schema::Transducer& t) c
   scale *= v[kGain] / gain_of(t, choice_.direction);
   if (choice_.direction == Direction::sensor) return;
   t.second_mode.reset();
+  t.reconstruction_cutoff_hz.reset();
+  if (choice_.filter) t.reconstruction_cutoff_hz = v[filter_];
   if (choice_.second_mode)
     t.second_mode =
         schema::ModeAbove{v[kSecondMode], v[kSecondMode + 1], v[kSecondMode + 2], v[kSecondMode + 3]};

@@ -14,6 +14,8 @@ constexpr int kGridFrequencies = 24;
 constexpr double kGridDampings[] = {0.005, 0.02, 0.06, 0.15, 0.5, 2};
 constexpr int kGridPoles = 7;
 constexpr double kHalfAnOctave = 1.41421356;
+constexpr int kStepsOfAPeriod = 8;  // of a delay
+constexpr std::size_t kBestOfGrid = 3;
 
 double weight_of(const BodeData& data, std::size_t i) {
   return 1 / (data.has_noise() ? data.noise[i] * data.noise[i] : std::norm(data.response[i]));
@@ -92,7 +94,6 @@ Start starting_values(const ResponseModel& model, const BodeData& data) {
   if (model.choice().finger) return {values, left_of_all(model, data, values)};
   const Trial trial{model, data};
   const double low_hz = data.frequency_hz.front(), high_hz = data.frequency_hz.back();
-  if (model.choice().second_mode) values[kSecondMode + 2] = values[kSecondMode];
   for (int r = 0; r < kGridFrequencies; ++r)
     for (const double damping : kGridDampings)
       for (int p = 0; p < kGridPoles; ++p) {
@@ -153,13 +154,9 @@ void add_peaks(const ResponseModel& model, const BodeData& data, std::vector<Sta
   kinds.push_back({values, left_of_all(model, data, values)});
 }
 
-}  // namespace
-
 std::vector<Start> second_mode_starts(const ResponseModel& model, const BodeData& data,
-                                      std::span<const double> one_mode) {
+                                      std::vector<double> values) {
   std::vector<Start> kinds(4);
-  std::vector<double> values = starts_of(model);
-  std::copy_n(one_mode.begin(), kSecondMode, values.begin());
   const double low_hz = data.frequency_hz.front(), high_hz = data.frequency_hz.back();
   for (int r = 0; r < kGridFrequencies; ++r)
     for (const double damping : {0.02, 0.1})
@@ -167,14 +164,75 @@ std::vector<Start> second_mode_starts(const ResponseModel& model, const BodeData
         values[kSecondMode] = between(low_hz * kHalfAnOctave, high_hz, r, kGridFrequencies);
         values[kSecondMode + 2] = apart * values[kSecondMode];
         values[kSecondMode + 1] = values[kSecondMode + 3] = damping;
-        Start& best = kinds[(values[kSecondMode] > one_mode[kResonance] ? 2U : 0U) + (apart > 1 ? 1U : 0U)];
+        Start& best = kinds[(values[kSecondMode] > values[kResonance] ? 2U : 0U) + (apart > 1 ? 1U : 0U)];
         const double rest = left_of_all(model, data, values);
         if (rest < best.left || best.values.empty()) best = {values, rest};
       }
   std::erase_if(kinds, [](const Start& start) { return start.values.empty(); });
   add_peaks(model, data, kinds);
-  for (Start& start : kinds) keep_within(model, start);
   return kinds;
+}
+
+// The response without what the model has beyond one mode.
+BodeData without_extensions(const ResponseModel& model, BodeData data, std::span<const double> values) {
+  const ResponseModel one_mode({.direction = data.direction}, model.base(), data);
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const double hz = data.frequency_hz[i];
+    const auto factor = model.at(values, hz) / one_mode.at(values.first(kSecondMode), hz);
+    data.response[i] /= factor;
+    if (data.has_noise()) data.noise[i] /= std::abs(factor);
+  }
+  return data;
+}
+
+std::vector<double> grid_of(const ModelParameter& parameter, const BodeData& data) {
+  constexpr int kCutoffs = 16, kDelays = kMostDelayPeriods * kStepsOfAPeriod;
+  std::vector<double> grid;
+  if (parameter.name == "delay_ms")
+    for (int i = 1 - kDelays; i < kDelays; ++i) grid.push_back(parameter.high * i / kDelays);
+  else if (parameter.name == "lag_rad")
+    grid = {-0.3, -0.1, 0, 0.1, 0.3};
+  else
+    for (int i = 0; i < kCutoffs; ++i)
+      grid.push_back(
+          between(data.frequency_hz.front() * kHalfAnOctave, parameter.high / kHalfAnOctave, i, kCutoffs));
+  return grid;
+}
+
+std::vector<Start> grid_starts(const ResponseModel& model, const BodeData& data, std::size_t place,
+                               std::vector<double> values) {
+  std::vector<Start> starts;
+  const auto consider = [&](const std::vector<double>& at) {
+    starts.push_back({at, left_of_all(model, data, at)});
+  };
+  for (const double value : grid_of(model.parameters()[place], data)) {
+    values[place] = value;
+    consider(values);
+    if (model.choice().second_mode) continue;
+    if (const auto poles = poles_of_data(without_extensions(model, data, values))) {
+      std::vector<double> by_poles = values;
+      std::ranges::copy(*poles, by_poles.begin());
+      consider(by_poles);
+    }
+  }
+  std::ranges::sort(starts, {}, &Start::left);
+  starts.resize(std::min(starts.size(), kBestOfGrid));
+  return starts;
+}
+
+}  // namespace
+
+std::vector<Start> extended_starts(const ResponseModel& model, const BodeData& data, const Extension& added,
+                                   const ResponseModel& known, std::span<const double> values) {
+  std::vector<double> carried = starts_of(model);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    carried[model.place_of(known.parameters()[i].name)] = values[i];
+  std::vector<Start> starts =
+      added.has == &ModelChoice::second_mode
+          ? second_mode_starts(model, data, std::move(carried))
+          : grid_starts(model, data, model.place_of(added.parameter), std::move(carried));
+  for (Start& start : starts) keep_within(model, start);
+  return starts;
 }
 
 }  // namespace tacto::analysis

@@ -28,11 +28,14 @@ Start starting_values(const ResponseModel& model, const BodeData& data);
 /// the first. Precondition: check_bode(data), no second mode.
 std::vector<std::vector<double>> one_mode_starts(const ResponseModel& model, const BodeData& data);
 
-/// The same for the second mode with the other values given: 24 frequencies by two damping ratios by four
-/// distances of the anti-resonance (10 % and 30 % below and above). Returns the best of each kind: above or
-/// below the given mode, anti-resonance above or below its own mode; and, if |H| f has two peaks, modes at
-/// the peaks. Precondition: choice().second_mode.
-std::vector<Start> second_mode_starts(const ResponseModel& model, const BodeData& data,
-                                      std::span<const double> one_mode);
+/// Starting points of a model that extends a fitted one by one of kExtensions; the other parameters have the
+/// fitted values. A second mode: 24 frequencies by two damping ratios by four distances of the anti-resonance
+/// (10 % and 30 % below and above); the best of each kind: above or below the first mode, anti-resonance
+/// above or below its own mode; and, if |H| f has two peaks, modes at the peaks. A delay (steps of an eighth
+/// of a period of the highest frequency), a filter's cutoff or a lag: the best three of a grid; without a
+/// second mode also with poles_of_data() of the response without them. Precondition: model.choice() is
+/// known.choice() and `added`; `values` are those of `known`.
+std::vector<Start> extended_starts(const ResponseModel& model, const BodeData& data, const Extension& added,
+                                   const ResponseModel& known, std::span<const double> values);
 
 }  // namespace tacto::analysis

@@ -81,6 +81,21 @@ Result<void> check_bode(const BodeData& data) {
             "need --method loop");
 }
 
+BodeData part_of(const BodeData& data, std::span<const std::size_t> which) {
+  const auto part = [&](const auto& whole) {
+    std::remove_cvref_t<decltype(whole)> list;
+    for (const std::size_t i : which) list.push_back(whole[i]);
+    return list;
+  };
+  BodeData some = data;
+  some.frequency_hz = part(data.frequency_hz);
+  some.response = part(data.response);
+  if (data.has_noise()) some.noise = part(data.noise);
+  for (auto& error : some.shared_errors) error = part(error);
+  if (some.by_pole) some.by_pole->log_slope = part(data.by_pole->log_slope);
+  return some;
+}
+
 double sigma_at(const BodeData& data, std::size_t i) {
   return data.has_noise() ? data.noise[i] : std::abs(data.response[i]);
 }

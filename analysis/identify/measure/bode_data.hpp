@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,9 +42,11 @@ struct BodeData {
   std::vector<std::vector<std::complex<double>>> shared_errors;
   std::optional<PoleDependence> by_pole;  ///< none: the response is measured, no pole was used
   std::string source, conditions, simulated;
-  /// The largest ratio of the third harmonic to the fundamental, which only a nonlinear device causes. Empty
-  /// if it was not measured; measuring it requires one sine at a time.
+  /// The largest ratio of the third harmonic to the fundamental, which only a nonlinear device causes;
+  /// without harmonics that noise explains. Empty if it was not measured; measuring it requires one sine at a
+  /// time.
   std::optional<double> third_harmonic;
+  bool loops_measured = false;    ///< the hysteresis is known from slow loops
   bool noise_is_a_bound = false;  ///< an upper bound: residuals may be smaller than this noise
   bool of_device = false;         ///< measured on a device in this run, not read from a file
   double table_unit_si = 0;  ///< factor to SI of a table's amplitudes; 0: levels in decibels, or no table
@@ -57,6 +60,9 @@ struct BodeData {
 /// Standard deviation of the real and of the imaginary part at a frequency: the noise or, if it is unknown,
 /// the amplitude itself.
 double sigma_at(const BodeData& data, std::size_t i);
+
+/// The data at some of the frequencies, in this order.
+BodeData part_of(const BodeData& data, std::span<const std::size_t> which);
 
 inline constexpr std::size_t kLeastFrequencies = 8;  // twice the parameters of the model
 

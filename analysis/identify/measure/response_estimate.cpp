@@ -13,6 +13,9 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kHarmonics = 5;
+// Square of an amplitude over the variance of each of its parts: noise exceeds it in 5 of 10,000 sweeps of 60
+// frequencies, exp(-kSurely / 2) each.
+constexpr double kSurely = 23.4;
 constexpr std::ptrdiff_t kNeighbours = 4;  // to each side
 static_assert(kFewestNeighbours == kNeighbours + 1, "at the ends of the band");
 
@@ -23,7 +26,7 @@ double power_of(std::span<const double> x) {
 // The harmonics of a step's answer, and the remaining noise without mean and harmonics.
 struct StepAnswer {
   Complex fundamental;
-  double third = 0;
+  double third = 0;  // 0 if it is not beyond the noise
   double noise_power = 0, freedom = 0;
 };
 
@@ -40,6 +43,7 @@ StepAnswer answer_of(std::span<const double> x, double turns_per_sample) {
   }
   answer.freedom = n - lost;
   answer.noise_power = std::max(rest, 0.0) * n / answer.freedom;
+  if (answer.third * answer.third < kSurely * 2 * answer.noise_power / n) answer.third = 0;
   return answer;
 }
 

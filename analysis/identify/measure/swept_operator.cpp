@@ -91,10 +91,14 @@ SweptOperator::Line SweptOperator::fine_line(const SweptDrive& drive, std::span<
   return out;
 }
 
-SweptOperator::SweptOperator(const SweptDrive& drive, double pole_hz) {
+SweptOperator::SweptOperator(const SweptDrive& drive, double pole_hz, std::span<const double> filter) {
   const std::vector<double> charge_v = charge_of(drive.drive_v, pole_hz, drive.rate_hz);
   for (const double v : charge_v) largest_charge_v_ = std::max(largest_charge_v_, std::abs(v));
-  for (const MeasuredLine& line : drive.lines) lines_.push_back(fine_line(drive, charge_v, line, pole_hz));
+  for (const MeasuredLine& line : drive.lines) {
+    lines_.push_back(fine_line(drive, charge_v, line, pole_hz));
+    if (filter.empty()) continue;
+    for (double& v : lines_.back().charge_v) v *= filter[lines_.size() - 1];
+  }
 }
 
 void SweptOperator::follow(std::span<const schema::Hysteresis> operators) {

@@ -29,7 +29,9 @@ std::vector<double> charge_of(std::span<const double> drive_v, double pole_hz, d
 /// that they settle before the measurement.
 class SweptOperator {
  public:
-  SweptOperator(const SweptDrive& drive, double pole_hz);
+  /// `filter` is the amplitude of a filter in front of the bender at each line, 1 if it is empty: of a sine,
+  /// play operators depend on the amplitude only.
+  SweptOperator(const SweptDrive& drive, double pole_hz, std::span<const double> filter = {});
   std::vector<std::complex<double>> left_by(const schema::Hysteresis& play_operators);
   /// One result for each operator. The play operators that are not cached are computed in one pass over the
   /// drive.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/identify/fit/model_choice.hpp"
 #include "analysis/identify/measure/angles.hpp"
 #include "analysis/identify/measure/response_estimate.hpp"
 #include "data-schema/base/creation_time.hpp"
@@ -85,7 +86,11 @@ std::string verdict_of(const ResponseFit& fit) {
   const char* const fits = fit.data.noise_is_a_bound
                                ? "the residuals are within the noise and the operator's errors"
                                : "the residuals are noise";
-  std::string words = fit.misfit.found ? fit.misfit.words + "; " + fit.suggestion : fits;
+  std::string words = fits;
+  if (fit.misfit.found)
+    words = fit.misfit.words + (fit.suggestion.empty() ? "" : "; " + fit.suggestion);
+  else if (const std::string added = extension_words(fit); !added.empty())
+    words += ", with " + added;
   if (!fit.misfit.found && fit.evenness.uneven) words += ", but uneven: " + evenness_words(fit.evenness);
   return words + overstated_words(fit);
 }
@@ -170,7 +175,7 @@ schema::Transducer identified(const ResponseFit& fit, const schema::Transducer& 
   schema::Identification about;
   about.source = fit.data.source;
   about.simulated = fit.data.simulated;
-  about.conditions = fit.data.conditions;
+  about.conditions = fmt::format("{}, model: {}", fit.data.conditions, name_of(fit.choice));
   about.converged = fit.converged;
   about.misfit = fit.misfit.found;
   about.words = verdict_of(fit);

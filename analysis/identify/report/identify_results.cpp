@@ -33,13 +33,22 @@ Results begun_results(const schema::Transducer& found) {
   return results;
 }
 
-void add_identifiability(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
-                         Results& results) {
+void add_identifiability(const ResponseFit& fit, const schema::Transducer& base, Results& results) {
   for (const FittedParameter& p : fit.parameters)
     results.figures.push_back({p.name + ", 95 %", interval_words(p, fit.claims_intervals())});
-  for (const std::string& line : held_words(choice, base))
+  for (const std::string& line : held_words(fit.choice, base))
     results.figures.push_back({"not separately identifiable", line});
   for (const std::string& line : fit.notes) results.figures.push_back({"not separately identifiable", line});
+}
+
+void add_models(const ResponseFit& fit, Results& results) {
+  if (!fit.choice_words.empty()) results.figures.push_back({"model", fit.choice_words});
+  for (const TriedModel& model : fit.tried)
+    results.figures.push_back({"error on left-out frequencies: " + model.name,
+                               model.converged
+                                   ? fmt::format("{:.3g} % with {} parameters{}", 100 * model.left_out,
+                                                 model.parameters, model.misfit ? ", a misfit" : "")
+                                   : "did not converge"});
 }
 
 void add_residual_figures(const ResponseFit& fit, Results& results) {
@@ -122,10 +131,11 @@ std::vector<ResultPicture> tap_pictures(const TapsFit& fit) {
 
 }  // namespace
 
-Results identify_results(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+Results identify_results(const ResponseFit& fit, const schema::Transducer& base,
                          const schema::Transducer& found) {
   Results results = begun_results(found);
-  add_identifiability(fit, choice, base, results);
+  add_models(fit, results);
+  add_identifiability(fit, base, results);
   add_residual_figures(fit, results);
   if (is_the_papers(base)) add_paper_figures(fit, found, results);
   results.pictures = bode_pictures(fit);
@@ -138,9 +148,9 @@ Results identify_results(const LoopFit& fit, const schema::Transducer& found) {
   return results;
 }
 
-Results identify_results(const JointFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+Results identify_results(const JointFit& fit, const schema::Transducer& base,
                          const schema::Transducer& found) {
-  Results results = identify_results(fit.response, choice, base, found);
+  Results results = identify_results(fit.response, base, found);
   if (fit.has_hysteresis) add_loops(fit.loops, results);
   return results;
 }

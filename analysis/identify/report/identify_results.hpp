@@ -9,13 +9,13 @@ namespace tacto::analysis {
 
 /// Parameters with their intervals, combinations that are not separately identifiable, quality; Bode plot of
 /// data, model and inverse; residuals. If the base is the paper's, also the contradictions in the paper.
-schema::Results identify_results(const ResponseFit& fit, const ModelChoice& choice,
-                                 const schema::Transducer& base, const schema::Transducer& found);
+schema::Results identify_results(const ResponseFit& fit, const schema::Transducer& base,
+                                 const schema::Transducer& found);
 /// The loop's opening and the residual of the operator.
 schema::Results identify_results(const LoopFit& fit, const schema::Transducer& found);
 /// Both.
-schema::Results identify_results(const JointFit& fit, const ModelChoice& choice,
-                                 const schema::Transducer& base, const schema::Transducer& found);
+schema::Results identify_results(const JointFit& fit, const schema::Transducer& base,
+                                 const schema::Transducer& found);
 /// Resonance and damping of all taps, and the prediction of later taps from the first ones.
 schema::Results identify_results(const TapsFit& fit, const TapsPrediction& predicted,
                                  const schema::Transducer& found);
