@@ -370,7 +370,7 @@ TEST(PlaneRender, ForcesAlongAPathOfOneAxis) {
   EXPECT_LT(run->largest_rounding_n, 1e-5);
   const auto beyond = render_plane(scene, device, 1000, {FingerPath{{0, 1}, {0, 0.2}}});
   ASSERT_FALSE(beyond);
-  EXPECT_EQ(beyond.error().where, "x_m");
+  EXPECT_EQ(beyond.error().where, "path");
 }
 
 }  // namespace
