@@ -83,7 +83,10 @@ def wrong_uses_are_refused():
     play("bench.scene.json", "sim:planar", "done", "--time", "0.1s")
     refused(UNSUITABLE, "strokes", "session", "done", "--strokes", "x.csv")
     refused(USAGE, ".csv", "session", "done", "-o", "x.wav")
-    refused(UNSUITABLE, "forces", "compare", "--a", "done", "--b", "done")
+    refused(UNSUITABLE, "forces", "compare", "done.session", "done.session")
+    said = run_json("info", "done.session")
+    assert [axis["axis"] for axis in said["axes"]] == ["x", "y"] and "transducer" not in said, said
+    assert run_json("validate", "done.session")["valid"] is True
 
 
 def a_jump_of_the_encoder_ends_in_a_fault():
