@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "firmware-host/sim/device/sim_device.hpp"
+#include "firmware-host/sim/planar/planar_device.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -40,6 +41,9 @@ Result<DeviceToRecord> open_sim_to_record(const std::string& uri) {
 }  // namespace
 
 Result<DeviceToRecord> open_device_to_record(const std::string& uri) {
+  if (uri.starts_with(kPlanarScheme))
+    return schema::fail(schema::ErrorKind::unsuitable, "a force device has no channels to record", uri,
+                        "play a scene with force patches on it");
   if (uri.starts_with(kSimScheme)) return open_sim_to_record(uri);
   auto device = open_device(uri);
   TACTO_TRY(device);

@@ -5,6 +5,7 @@
 
 #include "firmware-host/replay/replay_device.hpp"
 #include "firmware-host/sim/device/sim_device.hpp"
+#include "firmware-host/sim/planar/planar_device.hpp"
 #include "firmware-host/usb/usb_device.hpp"
 
 namespace tacto::firmware_host {
@@ -15,8 +16,10 @@ struct Scheme {
   schema::Result<std::unique_ptr<Device>> (*open)(const std::string& uri, std::string_view parameters);
 };
 
-constexpr Scheme kSchemes[] = {
-    {"usb:", open_usb_device}, {"sim:", open_sim_device}, {"replay:", open_replay_device}};
+constexpr Scheme kSchemes[] = {{"usb:", open_usb_device},
+                               {kPlanarScheme, open_planar_device},
+                               {"sim:", open_sim_device},
+                               {"replay:", open_replay_device}};
 
 std::string schemes() {
   std::string list;

@@ -22,10 +22,23 @@ cli::Report& add_texture(cli::Report& row, const SessionTexture& texture) {
   return row;
 }
 
+void add_axes(cli::Report& report, const SessionForces& forces) {
+  std::vector<cli::Report> rows;
+  for (const DeviceAxis& axis : forces.axes)
+    rows.push_back(cli::Report()
+                       .add("axis", axis.name)
+                       .add("encoder_step_m", axis.encoder_step_m)
+                       .add("peak_force_n", axis.peak_force_n)
+                       .add("continuous_force_n", axis.continuous_force_n));
+  report.add("axes", std::move(rows));
+}
+
 void add_device(cli::Report& report, const SessionHeader& header) {
   report.add("device", header.device_uri).add("loop", header.loop).add("rate_hz", header.rate_hz);
-  report.add("transducer", header.transducer.name).add("encoder_step_m", header.metres_per_count);
+  if (!header.forces) report.add("transducer", header.transducer.name);
+  report.add("encoder_step_m", header.metres_per_count);
   add_text(report, "scene", header.scene_file);
+  if (header.forces) return add_axes(report, *header.forces);
   std::vector<cli::Report> rows;
   for (const SessionTexture& texture : header.textures) {
     cli::Report row;

@@ -43,7 +43,7 @@ struct KindVersion {
   std::string_view kind, version;
 };
 constexpr KindVersion kNewerKinds[] = {{"scene", "1.1"},     // 1.1: patches of force layers
-                                       {"session", "1.1"}};  // 1.1: measured displacement
+                                       {"session", "1.2"}};  // 1.1: measured displacement; 1.2: forces
 
 /// The file's version if its minor version is newer than this program's, else "".
 Result<std::string> newer_version(const Json& body, std::string_view kind, const std::string& where) {

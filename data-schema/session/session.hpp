@@ -3,12 +3,14 @@
 // bytes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/device/device.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/transducer/transducer.hpp"
 
@@ -22,6 +24,10 @@ struct SessionTick {
   float drive_v = 0;                            ///< at the amplifier's input
   std::uint32_t flags = 0;                      ///< as in the wire's `ticks` (firmware-host/core/WIRE.md)
   std::int32_t lateness_ns = kLatenessUnknown;  ///< behind its time
+  /// Of a force device: the number of its axes, their counts, and the forces on the hand, N.
+  std::uint8_t axes = 0;
+  std::array<std::int32_t, 3> counts = {};
+  std::array<float, 3> force_n = {};
   static constexpr std::int32_t kLatenessUnknown = INT32_MIN;
   bool operator==(const SessionTick&) const = default;
 };
@@ -67,6 +73,13 @@ struct SessionEnd {
   std::uint64_t ticks = 0, lost_ticks = 0, late_ticks = 0;
 };
 
+/// The force device, as it describes itself.
+struct SessionForces {
+  double peak_n = 0, continuous_n = 0;  ///< of the vector
+  double slew_n_per_s = 0;
+  std::vector<DeviceAxis> axes;  ///< mass and friction are not known
+};
+
 struct SessionTexture {
   std::string file, sha256;
   double at_m = 0, gain_m_per_n = 0;
@@ -93,6 +106,7 @@ struct SessionHeader : SessionProgram {
   std::string device_protocol;  ///< "1.2", of the wire; empty: an older session
   Transducer transducer;
   std::string transducer_sha256;
+  std::optional<SessionForces> forces = std::nullopt;  ///< of a scene with force patches: no transducer
   std::optional<SessionSensor> sensor;  ///< none: the device does not report its tray; older sessions
   double initial_gain = 1;
   std::int32_t initial_encoder = 0;

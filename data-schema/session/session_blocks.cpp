@@ -121,6 +121,45 @@ std::optional<std::vector<SessionTick>> ticks_from(std::string_view payload) {
   return ticks;
 }
 
+std::string axis_ticks_payload(std::span<const SessionTick> ticks) {
+  std::string bytes;
+  append_number(bytes, ticks.front().tick);
+  append_number(bytes, ticks.front().time_ns);
+  append_number(bytes, static_cast<std::uint32_t>(ticks.size()));
+  append_number(bytes, std::uint32_t{ticks.front().axes});
+  for (const SessionTick& tick : ticks) {
+    append_number(bytes, static_cast<std::uint32_t>(tick.time_ns - ticks.front().time_ns));
+    for (std::size_t i = 0; i < tick.axes; ++i) append_number(bytes, tick.counts[i]);
+    for (std::size_t i = 0; i < tick.axes; ++i) append_number(bytes, tick.force_n[i]);
+    append_number(bytes, tick.flags);
+  }
+  return bytes;
+}
+
+std::optional<std::vector<SessionTick>> axis_ticks_from(std::string_view payload) {
+  if (payload.size() < kTicksHead + sizeof(std::uint32_t)) return std::nullopt;
+  NumberReader take(payload);
+  const auto first = take.number<std::uint64_t>();
+  const auto time_ns = take.number<std::int64_t>();
+  const auto count = take.number<std::uint32_t>();
+  const auto axes = take.number<std::uint32_t>();
+  if (count == 0 || axes == 0 || axes > SessionTick{}.counts.size() ||
+      take.rest().size() != std::size_t{count} * (8 + 8 * axes))
+    return std::nullopt;
+  std::vector<SessionTick> ticks(count);
+  for (SessionTick& tick : ticks) {
+    tick.tick = first + static_cast<std::uint64_t>(&tick - ticks.data());
+    tick.time_ns =
+        static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) + take.number<std::uint32_t>());
+    tick.axes = static_cast<std::uint8_t>(axes);
+    for (std::size_t i = 0; i < axes; ++i) tick.counts[i] = take.number<std::int32_t>();
+    for (std::size_t i = 0; i < axes; ++i) tick.force_n[i] = take.number<float>();
+    tick.flags = take.number<std::uint32_t>();
+    tick.encoder = tick.counts[0];
+  }
+  return ticks;
+}
+
 std::string command_payload(const SessionCommand& command) {
   std::string bytes;
   append_number(bytes, command.not_before);

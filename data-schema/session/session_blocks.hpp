@@ -21,7 +21,8 @@ enum class BlockType : std::uint8_t {
   event = 4,
   end = 5,
   change = 6,
-  samples = 7
+  samples = 7,
+  axis_ticks = 8
 };
 
 inline constexpr std::uint32_t kBlockMagic = 0x31534354;
@@ -43,6 +44,8 @@ bool check_is_right(const BlockHead& head, std::string_view payload);
 
 /// Payloads. Of ticks: at most kMostBlockTicks, without gaps, within 4 s.
 std::string ticks_payload(std::span<const SessionTick> ticks);
+/// The same for ticks of a force device.
+std::string axis_ticks_payload(std::span<const SessionTick> ticks);
 std::string command_payload(const SessionCommand& command);
 std::string loss_payload(const SessionLoss& loss);
 std::string event_payload(const SessionEvent& event);
@@ -55,6 +58,7 @@ Result<std::string> change_payload(const SessionChange& change);
 
 /// The reverse; none if the size does not fit.
 std::optional<std::vector<SessionTick>> ticks_from(std::string_view payload);
+std::optional<std::vector<SessionTick>> axis_ticks_from(std::string_view payload);
 std::optional<SessionCommand> command_from(std::string_view payload);
 std::optional<SessionLoss> loss_from(std::string_view payload);
 std::optional<SessionEvent> event_from(std::string_view payload);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::string_view kSessionKind = "session";
 constexpr std::string_view kChangeKind = "session_change";
+constexpr std::string_view kWithoutForces = "1.1";  // the version
 
 struct SessionText {
   const char* name;
@@ -112,18 +113,53 @@ std::optional<SessionSensor> sensor_in(const Json& body) {
                        number_or(measured, "scale", 1), number_or(measured, "offset", 0)};
 }
 
+Json forces_body(const SessionForces& forces) {
+  Json body = {{"peak_n", forces.peak_n},
+               {"continuous_n", forces.continuous_n},
+               {"slew_n_per_s", forces.slew_n_per_s},
+               {"axes", Json::array()}};
+  for (const DeviceAxis& axis : forces.axes)
+    body["axes"].push_back({{"name", axis.name},
+                            {"metres_per_count", axis.encoder_step_m},
+                            {"travel_m", {axis.travel_from_m, axis.travel_to_m}},
+                            {"peak_n", axis.peak_force_n},
+                            {"continuous_n", axis.continuous_force_n}});
+  return body;
+}
+
+std::optional<SessionForces> forces_in(const Json& body) {
+  if (!body.contains("forces")) return std::nullopt;
+  const Json& from = body["forces"];
+  SessionForces forces{from["peak_n"], from["continuous_n"], from["slew_n_per_s"], {}};
+  for (const Json& row : from["axes"]) {
+    DeviceAxis axis;
+    axis.name = text_or(row, "name");
+    axis.encoder_step_m = row["metres_per_count"];
+    axis.travel_from_m = row["travel_m"][0];
+    axis.travel_to_m = row["travel_m"][1];
+    axis.peak_force_n = row["peak_n"];
+    axis.continuous_force_n = row["continuous_n"];
+    forces.axes.push_back(std::move(axis));
+  }
+  return forces;
+}
+
+// A session of a tray is written as older programs read it.
 Json session_body(const SessionHeader& header) {
-  Json body = Json::object();
+  Json body = {{"version", header.forces ? version_of_kind(kSessionKind) : kWithoutForces}};
   for (const auto& [name, member] : kSessionTexts) body[name] = header.*member;
   for (const auto& [name, member] : kSessionNumbers) body[name] = header.*member;
   body["device"] = device_body(header);
-  body["transducer"] = transducer_body(header.transducer);
+  if (header.forces)
+    body["forces"] = forces_body(*header.forces);
+  else
+    body["transducer"] = transducer_body(header.transducer);
   put_text(body, "transducer_sha256", header.transducer_sha256);
   if (header.sensor) body["measured"] = sensor_body(*header.sensor);
   put_textures(body, header);
   body["initial"] = {
       {"state", "idle"}, {"gain", header.initial_gain}, {"encoder_count", header.initial_encoder}};
-  body["playback"] = playback_body(header);
+  if (!header.forces) body["playback"] = playback_body(header);
   return body;
 }
 
@@ -142,6 +178,7 @@ void read_textures(const Json& body, SessionProgram& program) {
 
 void read_program(const Json& body, SessionProgram& program) {
   read_textures(body, program);
+  if (!body.contains("playback")) return;
   program.inverse = text_or(body["playback"], "inverse");
   program.choices = playback_choices_in(body);
   program.choices.extra_json.clear();
@@ -159,6 +196,7 @@ Result<std::string> too_long(std::size_t bytes) {
 
 // It has neither kind nor version, and otherwise fits the transducer's schema.
 Result<void> check_transducer_in(const Json& body, const std::string& where) {
+  if (body.contains("forces")) return {};
   Json transducer = body["transducer"];
   transducer["kind"] = "transducer";
   if (!transducer.contains("version")) transducer["version"] = "1.0";
@@ -175,7 +213,8 @@ SessionHeader session_from(const Json& body) {
   for (const auto& [name, member] : kSessionNumbers) header.*member = number_or(body, name, 0);
   read_device(body["device"], header);
   read_program(body, header);
-  header.transducer = transducer_from(body["transducer"]);
+  header.forces = forces_in(body);
+  if (!header.forces) header.transducer = transducer_from(body["transducer"]);
   header.transducer_sha256 = text_or(body, "transducer_sha256");
   header.sensor = sensor_in(body);
   header.initial_gain = number_or(body["initial"], "gain", 1);

@@ -36,6 +36,8 @@ std::optional<SessionBlock> decoded(BlockType type, std::string_view payload) {
       return block_of(change_from(payload));
     case BlockType::samples:
       return block_of(samples_from(payload));
+    case BlockType::axis_ticks:
+      return block_of(axis_ticks_from(payload));
     case BlockType::header:
       break;
   }
@@ -43,7 +45,7 @@ std::optional<SessionBlock> decoded(BlockType type, std::string_view payload) {
 }
 
 bool is_known(BlockType type) {
-  return type >= BlockType::ticks && type <= BlockType::samples;
+  return type >= BlockType::ticks && type <= BlockType::axis_ticks;
 }
 
 }  // namespace

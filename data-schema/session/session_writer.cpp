@@ -95,8 +95,10 @@ Result<void> SessionWriter::append(const std::string& block, std::int64_t to_kee
 Result<void> SessionWriter::add(std::span<const SessionTick> ticks) {
   for (; !ticks.empty(); ticks = ticks.subspan(std::min(ticks.size(), kMostBlockTicks))) {
     const auto part = ticks.first(std::min(ticks.size(), kMostBlockTicks));
-    if (const auto done = append(sealed_block(BlockType::ticks, ticks_payload(part)), kFreeOfTicks); !done)
-      return done;
+    const std::string block = part.front().axes > 0
+                                  ? sealed_block(BlockType::axis_ticks, axis_ticks_payload(part))
+                                  : sealed_block(BlockType::ticks, ticks_payload(part));
+    if (const auto done = append(block, kFreeOfTicks); !done) return done;
   }
   return {};
 }

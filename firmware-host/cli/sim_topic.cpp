@@ -14,7 +14,10 @@ std::string sim_text() {
          "The finger rests for 0.1 s, moves to the end of the surface, rests, moves back, and so on until "
          "the recording ends\n(strokes=2: it stops after two strokes). Its load is lower at rest. 40 mm "
          "forth and back at 50 mm/s take 1.8 s.\n"
-         "Without paced=1 it runs faster than real time, and record needs --time or --strokes.\n";
+         "Without paced=1 it runs faster than real time, and record needs --time or --strokes.\n"
+         "\nsim:planar is an emulated force device, which plays scenes with force patches. Its keys:\n"
+         "  device=  a preset or NAME.device.json; default: sandpaper-1990\n"
+         "  hand=    a preset or NAME.hand.json; default: none, the device moves along the path\n";
 }
 
 }  // namespace

@@ -92,7 +92,9 @@ bool Client::described() const {
   const wire::Welcome& welcome = description_.welcome;
   if (welcome.major == 0) return false;
   if (welcome.major != wire::kProtocolMajor) return true;
-  return description_.channels.size() == welcome.channels && description_.notes.size() == welcome.notes;
+  const bool forces = (welcome.features & wire::kFeatureForces) != 0;
+  return description_.channels.size() == welcome.channels && description_.notes.size() == welcome.notes &&
+         description_.axes.has_value() == forces;
 }
 
 Result<void> Client::check_version() const {
@@ -241,6 +243,9 @@ void Client::accept(const wire::Frame& frame) {
     if (note.index == description_.notes.size()) description_.notes.push_back(note);
   if (wire::Ticks ticks; type == MessageType::ticks && understood(frame, ticks))
     if (ticks_.size() < kMostTicksKept) ticks_.push_back(ticks);
+  if (wire::Axes axes; type == MessageType::axes && understood(frame, axes)) description_.axes = axes;
+  if (wire::AxisTicks ticks; type == MessageType::axis_ticks && understood(frame, ticks))
+    if (axis_ticks_.size() < kMostTicksKept) axis_ticks_.push_back(ticks);
   if (wire::Fault fault; type == MessageType::fault && understood(frame, fault)) {
     faults_.push_back(fault);
     converter_failed_ = converter_failed_ || fault.code == wire::FaultCode::converter;
@@ -255,7 +260,7 @@ void Client::accept_welcome(const wire::Frame& frame) {
   if (parsed != Parse::ok && welcome.major == wire::kProtocolMajor) return;
   order_.expect_any();
   order_.check(frame.header.sequence);
-  description_ = {welcome, {}, {}};
+  description_ = {welcome, {}, {}, {}};
 }
 
 void Client::accept_answer(const wire::Frame& frame) {

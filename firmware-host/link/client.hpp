@@ -23,6 +23,7 @@ struct Description {
   wire::Welcome welcome;
   std::vector<wire::Channel> channels;
   std::vector<wire::Note> notes;
+  std::optional<wire::Axes> axes = std::nullopt;  ///< of a device with forces
 };
 
 /// The time at which a frame was sampled, and the time at which its message arrived.
@@ -82,6 +83,7 @@ class Client {
   schema::Result<void> receive(double timeout_s);
   std::vector<wire::Fault> take_faults() { return std::exchange(faults_, {}); }
   std::vector<wire::Ticks> take_ticks() { return std::exchange(ticks_, {}); }
+  std::vector<wire::AxisTicks> take_axis_ticks() { return std::exchange(axis_ticks_, {}); }
   /// Of the last samples message.
   const std::optional<FrameArrival>& last_arrival() const { return last_arrival_; }
   LinkCounts counts() const;
@@ -125,6 +127,7 @@ class Client {
   std::optional<FrameArrival> last_arrival_;
   std::vector<wire::Fault> faults_;
   std::vector<wire::Ticks> ticks_;
+  std::vector<wire::AxisTicks> axis_ticks_;
   bool converter_failed_ = false;
   std::uint32_t refused_drives_ = 0;
   std::vector<std::uint8_t> received_;

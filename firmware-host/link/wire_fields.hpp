@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,6 +39,14 @@ inline float not_above(double limit) {
 
 inline std::uint32_t millihertz(double rate_hz) {
   return static_cast<std::uint32_t>(std::llround(rate_hz * 1e3));
+}
+
+/// What the axis of this name (x, y, z) moves along, and the reverse.
+inline wire::AxisAlong along_of(std::string_view name) {
+  return name == "x" ? wire::AxisAlong::x : name == "y" ? wire::AxisAlong::y : wire::AxisAlong::z;
+}
+inline std::string name_of(wire::AxisAlong along) {
+  return along == wire::AxisAlong::x ? "x" : along == wire::AxisAlong::y ? "y" : "z";
 }
 
 /// Sets the index in each message of a list.

@@ -101,6 +101,9 @@ std::string_view to_string(MessageType type) {
       {MessageType::energy, "energy"},
       {MessageType::contact, "contact"},
       {MessageType::hysteresis, "hysteresis"},
+      {MessageType::force_limits, "force_limits"},
+      {MessageType::scene_part, "scene_part"},
+      {MessageType::set, "set"},
       {MessageType::change, "change"},
   };
   for (const auto& [key, word] : kWords)

@@ -19,7 +19,9 @@
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/limits_report.hpp"
 #include "playback/cli/loop_report.hpp"
+#include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
+#include "playback/player/scene_play.hpp"
 #include "playback/player/session_name.hpp"
 
 namespace tacto::playback {
@@ -35,11 +37,14 @@ struct PlayVerbOptions {
   FingerPathOption path;
   std::optional<std::string> session;
   AskedBudget budget;
+  CLI::Option* rate = nullptr;
 };
 
 void declare_what(CLI::App& app, PlayOptions& o) {
   app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
-  app.add_option("-d,--device", o.device_uri, "Device: usb:, sim:surface=C ...")->required();
+  app.add_option("-d,--device", o.device_uri,
+                 "Device: usb:, sim:surface=C, sim:planar,device=sandpaper-1990,hand=minsky-radial ...")
+      ->required();
   app.add_option("--transducer", o.transducer, "A preset or NAME.transducer.json; default: the device's own");
   cli::declare_unfit_transducer(app, o.program.unfit_transducer);
   cli::refuse_force(app);
@@ -56,8 +61,10 @@ void declare_texture(CLI::App& app, PlayOptions& o) {
   declare_ends(app, o.program.ends);
 }
 
-void declare_loop(CLI::App& app, PlayOptions& o) {
-  cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Tick rate of the drive");
+void declare_loop(CLI::App& app, PlayVerbOptions& verb) {
+  PlayOptions& o = verb.play;
+  verb.rate =
+      cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Tick rate of the drive");
   cli::add_choice<bool>(app, "--loop", o.loop_here, {{"device", false}, {"host", true}},
                         "What closes the loop: the device, or the real-time thread of this computer (host)");
   app.add_flag(
@@ -113,7 +120,39 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, const cli::
   return report;
 }
 
+Result<Report> run_play_forces(const PlayVerbOptions& asked) {
+  const PlayOptions& o = asked.play;
+  ScenePlayOptions play;
+  play.scene = o.program.file;
+  play.device_uri = o.device_uri;
+  play.path = asked.path.file;
+  play.time_s = o.time_s;
+  if (asked.rate->count() > 0) play.rate_hz = o.prepare.rate_hz;
+  play.onset_s = o.prepare.onset_s;
+  play.session = schema::session_path(asked.session.value_or(session_named_after(o.program.file)));
+  const cli::StopSignals signals;
+  cli::Progress progress("playing");
+  const auto outcome = play_scene(
+      play, [&] { return signals.stop_asked(); }, [&](double part) { progress.update(part); });
+  TACTO_TRY(outcome);
+  Report report;
+  report.add("session", play.session).add("device", outcome->device);
+  if (!outcome->simulated.empty()) report.add("simulated", outcome->simulated);
+  report.add("rate_hz", outcome->rate_hz).add("ticks", outcome->recorder.ticks);
+  report.add("lost_ticks", outcome->link_lost + outcome->recorder.lost());
+  report.add("peak_limited_ticks", outcome->peak_limited)
+      .add("slew_limited_ticks", outcome->slew_limited)
+      .add("rms_limited_ticks", outcome->rms_limited)
+      .add("force_peak_n", outcome->force_peak_n);
+  for (const std::string& note : outcome->notes) cli::warn(note);
+  if (outcome->fault.empty()) return report;
+  cli::warn("playing ended in a fault: " + outcome->fault);
+  report.add("fault", outcome->fault).ends_with(schema::ErrorKind::device);
+  return report;
+}
+
 Result<Report> run_play(const PlayVerbOptions& asked) {
+  if (plays_forces(asked.play.program.file, asked.play.device_uri)) return run_play_forces(asked);
   const auto budget = asked.budget.budget();
   TACTO_TRY(budget);
   PlayOptions o = asked.play;
@@ -133,16 +172,25 @@ Result<Report> run_play(const PlayVerbOptions& asked) {
   return play_report(o, *outcome, pace, asked.budget.options.explain);
 }
 
+// The options of a tray have no effect on forces: they are refused.
+Result<void> check_scene_options(const CLI::App& app, const PlayOptions& o) {
+  if (!plays_forces(o.program.file, o.device_uri)) return {};
+  return check_force_options(app, {"device", "output", "finger-path", "time", "rate", "onset"});
+}
+
 cli::Action declare_play(CLI::App& app) {
   auto options = std::make_shared<PlayVerbOptions>();
   options->play.prepare.onset_s = 0.02;
   declare_what(app, options->play);
-  declare_finger_path(app, options->path, "Path of an emulated device's finger: ");
+  declare_finger_path(
+      app, options->path,
+      "Path of an emulated device's finger (on sim:planar of the hand, with a column for each axis, "
+      "as in time_s,x_mm,y_mm): ");
   app.add_option(
       "-o,--output", options->session,
       "The session: NAME.session; default: the texture's name and the time of day, in this folder");
   declare_texture(app, options->play);
-  declare_loop(app, options->play);
+  declare_loop(app, *options);
   declare_choices(app, options->play.program.choices);
   declare_tick_budget(app, options->budget);
   app.footer(
@@ -151,7 +199,10 @@ cli::Action declare_play(CLI::App& app) {
       "the session is complete,\nand the report is that of any other end (exit code 0). A second "
       "Ctrl-C ends the program at once; then the device ramps\nto zero by itself, and 'session' and "
       "'replay' read the session up to its last ticks.");
-  return [options] { return run_play(*options); };
+  return [options, &app]() -> Result<Report> {
+    TACTO_TRY(check_scene_options(app, options->play));
+    return run_play(*options);
+  };
 }
 
 }  // namespace
@@ -159,6 +210,8 @@ cli::Action declare_play(CLI::App& app) {
 const cli::Verb kPlayVerb{"play", "Play a texture or scene on a device, live, and keep the session",
                           "tactograph play oak -d usb: --time 60s -o first\n"
                           "  tactograph play oak -d sim: --finger-path path.csv -o first\n"
+                          "  tactograph play plane.scene.json -d sim:planar,hand=minsky-radial --finger-path "
+                          "hand.csv -o held\n"
                           "  tactograph play oak -d usb: -o first --max-error 0.2% --explain\n"
                           "  tactograph play oak -d usb: -o first --contact 0.3N --energy-limit 2V "
                           "--reconstruction butterworth3",

@@ -55,8 +55,9 @@ Result<Report> run_replay(const ReplayVerbOptions& o) {
   }
   if (!outcome->first_difference) return report;
   const Difference& first = *outcome->first_difference;
-  report.add("first_difference_tick", first.tick).add("recorded_v", double{first.recorded_v});
-  report.add("replayed_v", double{first.replayed_v});
+  report.add("first_difference_tick", first.tick)
+      .add("recorded_" + first.unit, double{first.recorded})
+      .add("replayed_" + first.unit, double{first.replayed});
   if (!outcome->damaged_at) report.ends_with(schema::ErrorKind::unsuitable);
   return report;
 }
@@ -70,7 +71,7 @@ cli::Action declare_replay(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kReplayVerb{
-    "replay", "Compute a session's drive again, compare it to the bit, and report the first mismatch",
+    "replay", "Compute a session's drive or forces again, compare to the bit, and report the first mismatch",
     "tactograph replay first.session", declare_replay};
 
 }  // namespace tacto::playback

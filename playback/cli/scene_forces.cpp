@@ -136,7 +136,8 @@ Report report_of(const ForceRendering& asked, const schema::Device& device, cons
 // mean of several runs.
 double tick_cost_s(const core::SceneView& scene, const core::ForceSetup& setup, const schema::Patch& patch) {
   core::SceneKernel kernel;
-  kernel.set(scene, setup);
+  std::vector<float> live(scene.number_count);
+  kernel.set(scene, setup, live.data());
   double shortest_s = INFINITY;
   for (int run = 0; run < kCostRuns; ++run) {
     const auto begin = std::chrono::steady_clock::now();
@@ -257,7 +258,9 @@ Result<Report> explain_forces(const std::string& scene, const std::string& devic
   report.add("scene", schema::scene_path(scene)).add("device", on->device.name).add("rate_hz", rate);
   add_fit(report, on->scene.bytes(), device_bytes, tick_s, rate);
   report.add("layers", rows_of_layers(*on));
-  report.add("block_bytes", on->scene.bytes()).add("kernel_bytes", sizeof(core::SceneKernel));
+  report.add("block_bytes", on->scene.bytes())
+      .add("live_bytes", view.number_count * sizeof(float))
+      .add("kernel_bytes", sizeof(core::SceneKernel));
   report.add("tick_s", tick_s).add("tick_of_period_percent", 100 * tick_s * rate);
   report.add("measured_on", "this computer");
   if (!view.needs_speed)

@@ -12,6 +12,7 @@
 #include "data-schema/session/session_reader.hpp"
 #include "playback/cli/limits_report.hpp"
 #include "playback/cli/verbs.hpp"
+#include "playback/session/force_session.hpp"
 #include "playback/session/session_export.hpp"
 #include "playback/strokes/stroke_report.hpp"
 
@@ -172,7 +173,48 @@ Result<void> add_events(Report& report, const std::string& session) {
   return {};
 }
 
+bool is_force_session_table(std::string_view line) {
+  return line.starts_with("tick,time_s,") && line.find(",force_") != std::string_view::npos;
+}
+
+// Strokes and displacements belong to a tray.
+Result<Report> run_force_session(const SessionVerbOptions& o) {
+  if (!o.strokes.empty())
+    return schema::fail(schema::ErrorKind::unsuitable, "is a session of forces: it has no strokes",
+                        schema::session_path(o.session), "leave --strokes out");
+  for (const std::string& output : o.outputs)
+    if (!output.ends_with(".csv"))
+      return schema::fail(schema::ErrorKind::usage, "a session of forces is exported as .csv", output);
+  for (const std::string& output : o.outputs)
+    TACTO_TRY(schema::check_table_free(output, o.existing, is_force_session_table));
+  for (const std::string& output : o.outputs) TACTO_TRY(export_force_session(o.session, output, o.existing));
+  const auto session = read_force_session(o.session);
+  TACTO_TRY(session);
+  Report report;
+  report.add("session", schema::session_path(o.session));
+  if (!o.outputs.empty()) report.add("written", o.outputs);
+  report.add("ticks", session->ticks).add("lost_ticks", session->lost);
+  std::vector<Report> rows;
+  for (const ForceSessionAxis& axis : session->axes)
+    rows.push_back(Report()
+                       .add("axis", axis.name)
+                       .add("from_m", axis.from_m)
+                       .add("to_m", axis.to_m)
+                       .add("force_rms_n", axis.force_rms_n)
+                       .add("force_peak_n", axis.force_peak_n));
+  report.add("axes", std::move(rows));
+  report.add("peak_limited_ticks", session->peak_limited)
+      .add("slew_limited_ticks", session->slew_limited)
+      .add("rms_limited_ticks", session->rms_limited);
+  TACTO_TRY(add_events(report, o.session));
+  if (session->damaged) report.ends_with(schema::ErrorKind::malformed);
+  return report;
+}
+
 Result<Report> run_session(const SessionVerbOptions& o) {
+  const auto reader = schema::SessionReader::open(o.session);
+  TACTO_TRY(reader);
+  if (reader->header().forces) return run_force_session(o);
   TACTO_TRY(check_outputs(o));
   TACTO_TRY(export_all(o));
   const auto strokes = judge_all(o);

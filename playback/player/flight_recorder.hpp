@@ -31,7 +31,7 @@ struct RecorderCounts {
   std::uint64_t lost() const { return queue_lost + disk_lost; }
 };
 
-/// tick() writes to a queue of 65,536 (3 s at 20 kHz, 2 MB), without a lock, allocation or system call
+/// tick() writes to a queue of 65,536 (3 s at 20 kHz, 4 MB), without a lock, allocation or system call
 /// (except for the first tick after a loss, which records it). A thread of the recorder writes to the disk,
 /// and syncs every 100 ms. All other functions are for the thread of tick(), and use a lock that the writer
 /// does not hold while it writes.

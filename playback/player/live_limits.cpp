@@ -71,7 +71,7 @@ void LiveLimits::follow(std::uint64_t held_back) {
 }
 
 void LiveLimits::play(const SessionTick& tick) {
-  if (tick.tick == 0) board_->rest_at(tick.encoder);
+  if (tick.tick == 0) board_->rest_at(tick);
   commands_.before(tick, [this](const SessionCommand& due) { obey(due); });
   if (!board_) return;
   if (beats_.beats_before(tick.tick)) board_->say(wire::Heartbeat{});

@@ -23,24 +23,9 @@ namespace {
 
 constexpr double kMostTicks = 1 << 26;
 
-Result<void> check_travel(const DeviceAxis& axis, const std::vector<double>& place_m, double rate_hz) {
-  const auto out = std::ranges::find_if(
-      place_m, [&](double place) { return place < axis.travel_from_m || place > axis.travel_to_m; });
-  if (out == place_m.end()) return {};
-  return fail(ErrorKind::unsuitable,
-              fmt::format("after {:g} s the path is at {} = {:g} m, beyond the travel of the device",
-                          static_cast<double>(out - place_m.begin()) / rate_hz, axis.name, *out),
-              axis.name + "_m",
-              fmt::format("its travel is from {:g} m to {:g} m", axis.travel_from_m, axis.travel_to_m));
-}
-
 // The places along the path, at each tick; 0 along an axis without a path.
-Result<std::vector<double>> places_along(const DeviceAxis& axis, const FingerPath* path, double rate_hz,
-                                         std::size_t ticks) {
-  if (path == nullptr) return std::vector<double>(ticks);
-  auto places_m = positions_along(*path, rate_hz, ticks);
-  TACTO_TRY(check_travel(axis, places_m, rate_hz));
-  return places_m;
+std::vector<double> places_along(const FingerPath* path, double rate_hz, std::size_t ticks) {
+  return path == nullptr ? std::vector<double>(ticks) : positions_along(*path, rate_hz, ticks);
 }
 
 void count_limits(PlaneRendering& rendering, std::uint32_t flags) {
@@ -86,7 +71,8 @@ class Motion {
 void run_kernel(PlaneRendering& rendering, const PreparedScene& scene, const core::ForceSetup& setup,
                 const Device& device, Motion motion) {
   core::SceneKernel kernel;
-  kernel.set(scene.view(), setup);
+  std::vector<float> live(scene.view().number_count);
+  kernel.set(scene.view(), setup, live.data());
   ExactScene exact(scene, device, rendering.rate_hz);
   std::vector<std::int32_t> counts(device.axes.size());
   std::vector<double> force_n(device.axes.size());
@@ -118,11 +104,31 @@ std::vector<std::string> plane_axes_of(const Device& device) {
   return names;
 }
 
+Result<void> check_travel(const Device& device, const std::vector<FingerPath>& paths,
+                          const std::string& where) {
+  auto path = paths.begin();
+  for (const DeviceAxis& axis : device.axes) {
+    if (axis.name == "z") continue;
+    const auto& places_m = path->position_m;
+    const auto out = std::ranges::find_if(
+        places_m, [&](double place) { return place < axis.travel_from_m || place > axis.travel_to_m; });
+    if (out != places_m.end())
+      return fail(
+          ErrorKind::unsuitable,
+          fmt::format("at {:g} s the path is at {} = {:g} m, beyond the travel of the device",
+                      path->time_s[static_cast<std::size_t>(out - places_m.begin())], axis.name, *out),
+          where, fmt::format("its travel is from {:g} m to {:g} m", axis.travel_from_m, axis.travel_to_m));
+    ++path;
+  }
+  return {};
+}
+
 Result<PlaneRendering> render_plane(const PreparedScene& scene, const Device& device,
                                     std::optional<double> rate_hz, const std::vector<FingerPath>& paths,
                                     const std::optional<schema::Hand>& hand) {
   const auto setup = force_setup_of(device, rate_hz);
   TACTO_TRY(setup);
+  TACTO_TRY(check_travel(device, paths, "path"));
   PlaneRendering rendering;
   rendering.rate_hz = rate_hz.value_or(device.rates_hz.back());
   const double ticks = std::floor(paths.front().duration_s() * rendering.rate_hz + 1e-6) + 1;
@@ -135,10 +141,8 @@ Result<PlaneRendering> render_plane(const PreparedScene& scene, const Device& de
   std::vector<std::vector<double>> path_m;
   auto path = paths.begin();
   for (const DeviceAxis& axis : device.axes) {
-    auto places_m =
-        places_along(axis, axis.name == "z" ? nullptr : &*path++, rendering.rate_hz, rendering.time_s.size());
-    TACTO_TRY(places_m);
-    path_m.push_back(std::move(*places_m));
+    path_m.push_back(
+        places_along(axis.name == "z" ? nullptr : &*path++, rendering.rate_hz, rendering.time_s.size()));
     rendering.axes.push_back({axis.name, {}, {}, {}, {}});
   }
   run_kernel(rendering, scene, *setup, device, Motion(device, hand, rendering.rate_hz, std::move(path_m)));

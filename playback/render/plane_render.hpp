@@ -34,6 +34,11 @@ struct PlaneRendering {
 /// The names of the device's axes in the plane: those of which the path has a column.
 std::vector<std::string> plane_axes_of(const schema::Device& device);
 
+/// A path never overshoots its knots. `where` names it. Errors: unsuitable, with axis and knot, if the path
+/// of an axis leaves its travel.
+schema::Result<void> check_travel(const schema::Device& device, const std::vector<FingerPath>& paths,
+                                  const std::string& where);
+
 /// Each tick reads the counts (place / encoder step, rounded to the nearest) and gives the force, from the
 /// first tick on without a ramp. Without a hand the axes move along `paths` (one per axis of
 /// plane_axes_of()), whatever the force. With a hand, `paths` are the places to which the person moves it,

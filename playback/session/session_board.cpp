@@ -15,6 +15,24 @@ constexpr std::uint32_t kReplayClockHz = 1'000'000;
 // No drive reaches them, and their ratio does not shorten the longest possible release.
 constexpr float kNoDriveLimitV = 1e12F, kNoSlewLimitVPerS = 1e30F;
 
+wire::Axes axes_of(const schema::SessionForces& forces) {
+  wire::Axes axes;
+  axes.count = static_cast<std::uint8_t>(forces.axes.size());
+  axes.peak_n = static_cast<float>(forces.peak_n);
+  axes.continuous_n = static_cast<float>(forces.continuous_n);
+  axes.slew_n_per_s = static_cast<float>(forces.slew_n_per_s);
+  std::ranges::transform(forces.axes, axes.axes, [](const schema::DeviceAxis& axis) {
+    return wire::Axis{firmware_host::along_of(axis.name),
+                      {},
+                      static_cast<float>(axis.peak_force_n),
+                      static_cast<float>(axis.continuous_force_n),
+                      static_cast<float>(axis.encoder_step_m),
+                      axis.travel_from_m,
+                      axis.travel_to_m};
+  });
+  return axes;
+}
+
 template <class Message>
 std::vector<std::uint8_t> frame_of(const Message& message) {
   std::vector<std::uint8_t> frame(wire::kMaxFrame);
@@ -77,6 +95,10 @@ core::Board SessionBoard::board() {
     about.drive_limit_v = kNoDriveLimitV;
     about.slew_limit_v_per_s = kNoSlewLimitVPerS;
   }
+  if (header_.forces) {
+    axes_ = axes_of(*header_.forces);
+    board.axes = &axes_;
+  }
   return board;
 }
 
@@ -90,6 +112,12 @@ core::Hal SessionBoard::hal() {
     return true;
   };
   hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
+  hal.read_axes = [](void* b, std::int32_t* counts) noexcept {
+    std::copy_n(of(b).counts_.begin(), of(b).axes_.count, counts);
+  };
+  hal.write_forces = [](void* b, const float* force_n) noexcept {
+    std::copy_n(force_n, of(b).axes_.count, of(b).force_n_.begin());
+  };
   hal.enable_closed = [](void* b) noexcept { return of(b).enabled_; };
   hal.clock = [](void* b) noexcept { return of(b).clock_; };
   hal.set_rate = [](void*, std::uint32_t) noexcept {};
@@ -154,6 +182,7 @@ std::uint32_t SessionBoard::unseen_in(const schema::SessionTick& recorded) const
 
 float SessionBoard::tick(const schema::SessionTick& recorded) {
   encoder_ = recorded.encoder;
+  counts_ = recorded.counts;
   enabled_ = (recorded.flags & wire::kTickEnabled) != 0;
   touching_ = (recorded.flags & wire::kTickTouching) != 0 ? 1 : 0;
   unseen_ = unseen_in(recorded);

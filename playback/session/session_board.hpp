@@ -2,6 +2,7 @@
 // The firmware's own core on a board whose inputs come from a session.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -49,8 +50,10 @@ class SessionBoard {
   SessionBoard(const SessionBoard&) = delete;
   SessionBoard& operator=(const SessionBoard&) = delete;
 
-  /// Sets the encoder before arming.
-  void rest_at(std::int32_t encoder) { encoder_ = encoder; }
+  /// Sets the encoders before arming.
+  void rest_at(const schema::SessionTick& first) { encoder_ = first.encoder, counts_ = first.counts; }
+  /// Of the last tick, of a force device.
+  const std::array<float, wire::kMaxAxes>& force_n() const { return force_n_; }
   /// Gives a frame to the core; returns its answer, if there is one. Precondition: is_frame().
   std::optional<wire::Answer> send_frame(std::span<const std::uint8_t> frame);
   template <class Message>
@@ -83,6 +86,9 @@ class SessionBoard {
   wire::Channel force_;  // of the finger: 1 N in contact
   std::int32_t touching_ = 0;
   bool enabled_ = true;
+  wire::Axes axes_;
+  std::array<std::int32_t, wire::kMaxAxes> counts_ = {};
+  std::array<float, wire::kMaxAxes> force_n_ = {};
   float drive_v_ = 0;
   std::uint64_t clock_ = 0;
   std::unique_ptr<core::Firmware> firmware_;

@@ -42,9 +42,12 @@ void SessionCommands::before(const SessionTick& tick, const Obey& obey) {
 }
 
 void HostBeats::see(const SessionCommand& command, double rate_hz) {
-  if (const auto limits = message_in_frame<wire::Limits>(command.frame))
-    watchdog_ticks_ =
-        static_cast<std::uint32_t>(1e-6F * limits->watchdog_ms * static_cast<float>(1e3 * rate_hz));
+  std::optional<std::uint16_t> watchdog_ms;
+  if (const auto limits = message_in_frame<wire::Limits>(command.frame)) watchdog_ms = limits->watchdog_ms;
+  if (const auto limits = message_in_frame<wire::ForceLimits>(command.frame))
+    watchdog_ms = limits->watchdog_ms;
+  if (watchdog_ms)
+    watchdog_ticks_ = static_cast<std::uint32_t>(1e-6F * *watchdog_ms * static_cast<float>(1e3 * rate_hz));
 }
 
 void HostBeats::see(const SessionTick& tick) {

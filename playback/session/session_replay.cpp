@@ -90,13 +90,17 @@ class SessionPlayer {
       return;
     }
     if (tick.tick == 0) {
-      board_.rest_at(tick.encoder);
-      if (unlimited_) unlimited_->rest_at(tick.encoder);
+      board_.rest_at(tick);
+      if (unlimited_) unlimited_->rest_at(tick);
     }
     commands_.before(tick, obey_);
     const bool beats = beats_.beats_before(tick.tick);
     if (beats) board_.say(wire::Heartbeat{});
-    compare(tick, board_.tick(tick));
+    const float drive_v = board_.tick(tick);
+    if (tick.axes > 0)
+      compare_forces(tick);
+    else
+      compare(tick, drive_v);
     if (unlimited_) report_unlimited(tick, beats);
   }
   void report_unlimited(const SessionTick& tick, bool beats) {
@@ -104,10 +108,20 @@ class SessionPlayer {
     const float unlimited_v = unlimited_->tick(tick);
     if (!outcome_.first_difference) wishes_(tick, unlimited_v);
   }
+  // Of the first axis that differs.
+  void compare_forces(const SessionTick& tick) {
+    ++outcome_.ticks;
+    for (std::size_t i = 0; i < tick.axes; ++i)
+      if (std::bit_cast<std::uint32_t>(board_.force_n()[i]) !=
+          std::bit_cast<std::uint32_t>(tick.force_n[i])) {
+        outcome_.first_difference = {tick.tick, tick.force_n[i], board_.force_n()[i], "n"};
+        return;
+      }
+  }
   void compare(const SessionTick& tick, float replayed_v) {
     ++outcome_.ticks;
     if (std::bit_cast<std::uint32_t>(replayed_v) == std::bit_cast<std::uint32_t>(tick.drive_v)) return;
-    outcome_.first_difference = {tick.tick, tick.drive_v, replayed_v};
+    outcome_.first_difference = {tick.tick, tick.drive_v, replayed_v, "v"};
   }
 
   SessionBoard board_;

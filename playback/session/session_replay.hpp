@@ -10,10 +10,11 @@
 
 namespace tacto::playback {
 
-/// Where the replayed drive first differs from the recorded one.
+/// Where the replayed drive, or force of an axis, first differs from the recorded one.
 struct Difference {
   std::uint64_t tick = 0;
-  float recorded_v = 0, replayed_v = 0;
+  float recorded = 0, replayed = 0;
+  std::string unit;  ///< "v" or "n"
 };
 
 struct ReplayOutcome {

@@ -185,6 +185,9 @@ Result<SessionOverview> session_overview(const std::string& name,
                                          const std::function<void(double)>& progress) {
   auto reader = schema::SessionReader::open(name);
   TACTO_TRY(reader);
+  if (reader->header().forces)
+    return fail(ErrorKind::unsuitable, "is a session of forces: it has no drive and no strokes",
+                reader->path(), "`tactograph session` exports it, `tactograph replay` computes it again");
   SessionOverview overview;
   Surveyor surveyor(reader->header(), overview);
   while (const auto block = reader->next()) {

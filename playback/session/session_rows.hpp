@@ -58,7 +58,8 @@ struct SessionOverview {
   std::uint64_t blind_ticks = 0;  ///< ticks that play without a new count for 10 ms
 };
 
-/// Reads the whole session once. `progress` receives fractions. Errors: as SessionReader::open; no_ticks_in.
+/// Reads the whole session once. `progress` receives fractions. Errors: as SessionReader::open;
+/// no_ticks_in; unsuitable, for a session of forces.
 schema::Result<SessionOverview> session_overview(const std::string& name,
                                                  const std::function<void(double)>& progress = {});
 

@@ -14,6 +14,11 @@ void UploadWatch::see(const schema::SessionCommand& command) {
     samples_ = begin->samples;
     here_ = 0;
   }
+  if (const auto part = message_in_frame<wire::ScenePart>(command.frame)) {
+    if (part->first == 0) here_ = 0;
+    samples_ = part->bytes;
+    here_ += part->count;
+  }
   if (const auto chunk = message_in_frame<wire::ProfileChunk>(command.frame)) here_ += chunk->count;
 }
 

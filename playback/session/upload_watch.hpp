@@ -18,7 +18,7 @@ class UploadWatch {
   std::string missing() const;
 
  private:
-  std::uint64_t samples_ = 0, here_ = 0;  // of the profile
+  std::uint64_t samples_ = 0, here_ = 0;  // of the profile; of a scene bytes
   bool armed_ = false;
 };
 

@@ -55,7 +55,7 @@ def a_tray_does_not_play_it(folder):
     (folder / "path.csv").write_text("time (s),position (m)\n0,0\n1,0.01\n")
     for scene in ("bench", "both"):
         for arguments in (("render", scene, "--finger-path", "path.csv", "--transducer", "wiertlewski2011", "-o", "x.wav"),
-                          ("explain", scene), ("play", scene, "-d", "sim:", "--time", "1s", "-o", "x"), ("trade", scene)):
+                          ("explain", scene), ("trade", scene)):
             _, said = run(*arguments, code=UNSUITABLE, cwd=folder)
             assert said.count("\n") == 1 and REFUSAL in said and f"{scene}.scene.json#/patches" in said, (arguments, said)
     assert not list(folder.glob("x*"))

@@ -18,6 +18,12 @@ inline constexpr wire::Limits kTestLimits{5, 15708, 0.002F, 0.005F, 50, 100};
 class FirmwareBench {
  public:
   FirmwareBench() { greet(); }
+  /// With axes.
+  struct WithForces {};
+  explicit FirmwareBench(WithForces /*tag*/)
+      : firmware(std::make_unique<core::Firmware>(board.about_forces(), board.hal())) {
+    greet();
+  }
 
   template <class Message>
   void send(const Message& message) {
@@ -104,6 +110,8 @@ class FirmwareBench {
   std::vector<wire::Note> notes;
   std::vector<wire::Samples> samples;
   std::vector<wire::Tick> ticks;
+  std::vector<wire::Axes> axes;
+  std::vector<wire::AxisTick> axis_ticks;
   std::vector<std::uint64_t> first_ticks;
   std::vector<wire::Pulse> pulses;
   std::vector<wire::Fault> faults;
@@ -141,6 +149,12 @@ class FirmwareBench {
     if (type == MessageType::samples) samples.push_back(parsed<wire::Samples>(frame));
     if (type == MessageType::pulse) pulses.push_back(parsed<wire::Pulse>(frame));
     if (type == MessageType::fault) faults.push_back(parsed<wire::Fault>(frame));
+    if (type == MessageType::axes) axes.push_back(parsed<wire::Axes>(frame));
+    if (type == MessageType::axis_ticks) {
+      const auto block = parsed<wire::AxisTicks>(frame);
+      first_ticks.push_back(block.first_tick);
+      axis_ticks.insert(axis_ticks.end(), block.ticks, block.ticks + block.count);
+    }
     if (type != MessageType::ticks) return;
     const auto block = parsed<wire::Ticks>(frame);
     first_ticks.push_back(block.first_tick);

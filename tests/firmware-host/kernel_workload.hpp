@@ -142,7 +142,7 @@ class SceneWorkload {
     setup.peak_n = 20, setup.continuous_n = 5;
     setup.slew_n_per_s = 8000, setup.rate_hz = 4000;
     setup.onset_s = setup.release_s = 0.02F;
-    kernel_.set(view, setup);
+    kernel_.set(view, setup, live_);
   }
 
   /// One tick; the sum of both forces.
@@ -171,6 +171,7 @@ class SceneWorkload {
   WorkloadRandom next_{1990};
   uint32_t flags_ = 0, ticks_ = 0;
   int32_t counts_[2] = {}, speed_[2] = {};
+  float live_[8];
   core::SceneKernel kernel_;
 };
 

@@ -27,6 +27,9 @@ struct TestBoard {
   std::vector<float> driven;  ///< the last tick's value is last
   float drive_v = 0;
   float profile[4096] = {};
+  std::int32_t counts[wire::kMaxAxes] = {};  ///< of the axes
+  float force_n[wire::kMaxAxes] = {};
+  wire::Axes axes;
   wire::Channel channels[2] = {};
   wire::Note notes[1] = {};
 
@@ -43,6 +46,10 @@ struct TestBoard {
       return of(b).converter_works;
     };
     hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v = volts; };
+    hal.read_axes = [](void* b, std::int32_t* to) noexcept { std::copy_n(of(b).counts, wire::kMaxAxes, to); };
+    hal.write_forces = [](void* b, const float* newtons) noexcept {
+      std::copy_n(newtons, of(b).axes.count, of(b).force_n);
+    };
     hal.enable_closed = [](void* b) noexcept { return of(b).enabled; };
     hal.clock = [](void* b) noexcept { return of(b).clock; };
     hal.set_rate = [](void* b, std::uint32_t rate) noexcept {
@@ -65,6 +72,17 @@ struct TestBoard {
     };
     hal.restart = [](void* b) noexcept { ++of(b).restarts; };
     return hal;
+  }
+
+  /// A board with two axes: 10 um, 20 N and 5 N, 20 N/ms.
+  core::Board about_forces() {
+    core::Board board = about();
+    axes.count = 2;
+    axes.peak_n = 20, axes.continuous_n = 5, axes.slew_n_per_s = 20000;
+    axes.axes[0] = {wire::AxisAlong::x, {}, 20, 5, 1e-5F, -0.1, 0.1};
+    axes.axes[1] = {wire::AxisAlong::y, {}, 20, 5, 1e-5F, -0.1, 0.1};
+    board.axes = &axes;
+    return board;
   }
 
   core::Board about() {

@@ -169,6 +169,29 @@ Ticks example_ticks() {
   return ticks;
 }
 
+ScenePart example_part() {
+  ScenePart part{64, 60, 4, {}};
+  const std::uint8_t bytes[4] = {0, 0, 0xC8, 0x42};
+  std::copy_n(bytes, 4, part.data);
+  return part;
+}
+
+Axes example_axes() {
+  Axes axes;
+  axes.count = 2;
+  axes.peak_n = 20, axes.continuous_n = 5, axes.slew_n_per_s = 20000, axes.scene_bytes = 32768;
+  axes.axes[0] = {AxisAlong::x, {}, 20, 5, 1e-5F, -0.125, 0.125};
+  axes.axes[1] = {AxisAlong::y, {}, 18, 4, 2e-5F, -0.25, 0.25};
+  return axes;
+}
+
+AxisTicks example_axis_ticks() {
+  AxisTicks ticks{};
+  ticks.first_tick = 7, ticks.device_ticks = 99, ticks.count = 1, ticks.axes = 2;
+  ticks.ticks[0] = {{-5, 1234}, {0.0625F, -1.5F}, 3};
+  return ticks;
+}
+
 TEST(WireDocument, HostFramesAreItsBytes) {
   auto frames = documented_frames();
   EXPECT_EQ(hex_of(Hello{1, 1, 0, 0x12345678}, 0), frames["hello"]);
@@ -196,6 +219,10 @@ TEST(WireDocument, HostFramesAreItsBytes) {
   EXPECT_EQ(hex_of(Contact{3, {}, 0.5F, 0.25F, 0x1p-27F, -0.125F}, 21), frames["contact"]);
   EXPECT_EQ(hex_of(Change{0.0625F}, 22), frames["change"]);
   EXPECT_EQ(hex_of(Hysteresis{2, {}, 1.5F, {{0.25F, -0.5F}, {1, -0.125F}}}, 23), frames["hysteresis"]);
+  EXPECT_EQ(hex_of(ForceLimits{{20, 18, 0}, {5, 4, 0}, 20, 5, 20000, 0.02F, 0.01F, 100, 0, 2000}, 24),
+            frames["force_limits"]);
+  EXPECT_EQ(hex_of(example_part(), 25), frames["scene_part"]);
+  EXPECT_EQ(hex_of(Set{3, 1, 250, 0.5F}, 26), frames["set"]);
 }
 
 TEST(WireDocument, DeviceFramesAreItsBytes) {
@@ -214,6 +241,8 @@ TEST(WireDocument, DeviceFramesAreItsBytes) {
                    6),
             frames["pulse"]);
   EXPECT_EQ(hex_of(Fault{FaultCode::encoder_jump, {}, 10000, 123456789}, 7), frames["fault"]);
+  EXPECT_EQ(hex_of(example_axes(), 8), frames["axes"]);
+  EXPECT_EQ(hex_of(example_axis_ticks(), 9), frames["axis_ticks"]);
 }
 
 }  // namespace

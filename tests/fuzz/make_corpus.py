@@ -45,6 +45,35 @@ def crc32c(data):
     return check ^ 0xFFFFFFFF
 
 
+def scene_block(patches):
+    """With a check of zero; a patch is (x, y, cosine, sine, half sizes, adds, [(kind, numbers)])."""
+    layers = [layer for patch in patches for layer in patch[-1]]
+    numbers = [number for _, of_layer in layers for number in of_layer]
+    block, first_layer, first_number = b"", 0, 0
+    for *place, adds, of_patch in patches:
+        block += struct.pack("<6fHHI", *place, first_layer, len(of_patch), adds)
+        first_layer += len(of_patch)
+    for kind, of_layer in layers:
+        block += struct.pack("<HH", kind, first_number)
+        first_number += len(of_layer)
+    block += struct.pack(f"<{len(numbers)}f", *numbers)
+    return struct.pack("<4sHHHHI", b"TSCN", 1, len(patches), len(layers), len(numbers), 0) + block
+
+
+def checked(block):
+    return block[:12] + struct.pack("<I", crc32c(block[:12] + block[16:])) + block[16:]
+
+
+def scene(motion, patches):
+    """scene_fuzz's input."""
+    return struct.pack("<4i", *motion) + scene_block(patches)
+
+
+SPRING_BLOCK = checked(scene_block([(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(0, (900, 0.01, 0)), (1, (3,))])]))
+FORCE_LIMITS = action_frame(0x19, struct.pack("<6f5fHHI", 20, 20, 0, 5, 5, 0, 20, 5, 20000, 0.002, 0.002, 50, 0, 2000))
+COUNTS = bytes([6, 100, 30, 0])
+
+
 CONVERSATIONS = {
     "stream": HELLO + action_frame(2, struct.pack("<IB", 10_000_000, 32)) + TICKS + action_frame(3),
     "profile": HELLO + LIMITS + profile() + action_frame(8, struct.pack("<Bfffff", 1, 1, 0.5, 0, -0.3, 0.1)) + arm(0) +
@@ -54,6 +83,8 @@ CONVERSATIONS = {
               TICKS + DISARM + TICKS,
     "host_drive": HELLO + LIMITS + arm(1) + PLAY + action_frame(0x0F, struct.pack("<H50f", 50, *[2.0] * 50)) + TICKS +
                   bytes([3]) + TICKS + DISARM + TICKS,
+    "scene": HELLO + FORCE_LIMITS + action_frame(0x1A, struct.pack("<IIH", len(SPRING_BLOCK), 0, len(SPRING_BLOCK)) + SPRING_BLOCK) + arm(3) + PLAY +
+             TICKS + COUNTS + TICKS + action_frame(0x1B, struct.pack("<HHff", 0, 0, 100, 0.01)) + TICKS + bytes([3]) + TICKS + DISARM + TICKS,
     "sweep": HELLO + LIMITS + action_frame(0x0A, struct.pack("<fIII", 1, 10_000, 500_000, 4_000_000)) + arm(2) + PLAY +
              TICKS * 3 + action_frame(0x10, struct.pack("<I", 1)) + DISARM,
 }
@@ -73,22 +104,6 @@ DEVICES = {
               samples(24) + says(7, struct.pack("<B3sIQ", 7, b"", 8, 900)) + samples(32),
     "silence": bytes([1, 0, 1, 0, 0]),
 }
-
-
-def scene(motion, patches):
-    """scene_fuzz's input; a patch is (x, y, cosine, sine, half sizes, adds, [(kind, numbers)])."""
-    layers = [layer for patch in patches for layer in patch[-1]]
-    numbers = [number for _, of_layer in layers for number in of_layer]
-    block, first_layer, first_number = b"", 0, 0
-    for *place, adds, of_patch in patches:
-        block += struct.pack("<6fHHI", *place, first_layer, len(of_patch), adds)
-        first_layer += len(of_patch)
-    for kind, of_layer in layers:
-        block += struct.pack("<HH", kind, first_number)
-        first_number += len(of_layer)
-    block += struct.pack(f"<{len(numbers)}f", *numbers)
-    header = struct.pack("<4sHHHH", b"TSCN", 1, len(patches), len(layers), len(numbers))
-    return struct.pack("<4i", *motion) + header + bytes(4) + block
 
 
 SPRING, DAMPER = 0, 1

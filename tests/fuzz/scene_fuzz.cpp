@@ -61,7 +61,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (read_scene_block(block.data(), bytes, view) != SceneFault::none) return 0;
   const ForceSetup setup = device();
   SceneKernel kernel;
-  kernel.set(view, setup);
+  std::vector<float> live(view.number_count);
+  kernel.set(view, setup, live.data());
   float last_n[kMostAxes] = {};
   std::uint32_t counts[kMostAxes] = {};
   for (std::uint32_t tick = 0; tick < 64; ++tick) {

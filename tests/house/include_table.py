@@ -23,14 +23,14 @@ MAY_INCLUDE = {
     "data-schema/report": "data-schema/{base scene}",
     "data-schema/results": "data-schema/{base files json kinds}",
     "data-schema/scene": "data-schema/{base files json}",
-    "data-schema/session": "data-schema/{base files json scene spectrogram transducer}",
+    "data-schema/session": "data-schema/{base device files json scene spectrogram transducer}",
     "data-schema/spectrogram": "data-schema/{base files netcdf}",
     "data-schema/texture": "data-schema/{base files json kinds wav}",
     "data-schema/transducer": "data-schema/{base json}",
     "data-schema/wav": "data-schema/{base files}",
-    "firmware-host": "data-schema/base firmware-host/{link replay sim/device sim/physics usb}",
+    "firmware-host": "data-schema/base firmware-host/{link replay sim/device sim/physics sim/planar usb}",
     "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
-    "firmware-host/core/firmware": "firmware-host/{core/kernel core/wire}",
+    "firmware-host/core/firmware": "firmware-host/{core/kernel core/scene core/wire}",
     "firmware-host/core/kernel": "firmware-host/core/wire",
     "firmware-host/core/scene": "firmware-host/core/{kernel wire}",
     "firmware-host/core/wire": "",
@@ -44,7 +44,7 @@ MAY_INCLUDE = {
     "firmware-host/sim/device":
         "data-schema/{base transducer} firmware-host/{core/firmware core/wire link sim/bench sim/physics}",
     "firmware-host/sim/physics": "data-schema/{base texture transducer}",
-    "firmware-host/sim/planar": "data-schema/device",
+    "firmware-host/sim/planar": "data-schema/device firmware-host/{core/firmware link sim/device}",
     "firmware-host/usb": "data-schema/base firmware-host/{core/firmware link}",
     "capture/calibrate": "capture/record data-schema/{base calibration recording transducer} firmware-host/link",
     "capture/cli":
@@ -92,8 +92,9 @@ MAY_INCLUDE = {
         "data-schema/{base files transducer wav} firmware-host/{core/kernel core/wire} spatial/{dsp/filter "
         "dsp/fourier dsp/resample}",
     "playback/player":
-        "data-schema/{base files scene session texture} firmware-host/{. core/kernel core/wire link sim/device} "
-        "playback/{choose host-loop model prepare render session} spatial/dsp/resample",
+        "data-schema/{base files scene session texture} firmware-host/{. core/firmware core/kernel core/wire link "
+        "sim/device sim/planar} playback/{choose host-loop model prepare prepare/scene render session} "
+        "spatial/dsp/resample",
     "playback/prepare":
         "data-schema/{base texture transducer} firmware-host/{core/kernel core/wire link} playback/model "
         "spatial/{dsp/filter dsp/fourier}",

@@ -258,7 +258,7 @@ TEST_F(ChosenPlay, AGatedSessionOfAnOlderDeviceIsRefusedByReplay) {
   play_chosen(choices_with([](auto& c) { c.contact_on_n = 0.3; }), 0.3);
   auto reader = schema::SessionReader::open(session_);
   schema::SessionHeader header = reader->header();
-  EXPECT_EQ(header.device_protocol, "1.2");
+  EXPECT_EQ(header.device_protocol, "1.3");
   header.device_protocol = "";
   const std::string older = folder_ / "older.session";
   auto writer = schema::SessionWriter::create(older, header);

@@ -101,8 +101,8 @@ class PlayerOnSim : public testing::Test {
     EXPECT_FALSE(replayed->lost_at);
     EXPECT_EQ(replayed->ticks, ticks().size());
     if (replayed->first_difference)
-      FAIL() << "tick " << replayed->first_difference->tick << ": " << replayed->first_difference->recorded_v
-             << " V, replayed " << replayed->first_difference->replayed_v << " V";
+      FAIL() << "tick " << replayed->first_difference->tick << ": " << replayed->first_difference->recorded
+             << " V, replayed " << replayed->first_difference->replayed << " V";
   }
 
   tests::TemporaryFolder folder_;

@@ -65,10 +65,11 @@ struct OnDevice {
   schema::Device device;
   PreparedScene scene;
   core::SceneKernel kernel;
+  std::vector<float> live = std::vector<float>(100);
 
   OnDevice(const schema::Device& on, std::vector<Patch> patches)
       : device(on), scene(prepared(std::move(patches))) {
-    kernel.set(scene.view(), *force_setup_of(device, 1000));
+    kernel.set(scene.view(), *force_setup_of(device, 1000), live.data());
   }
   core::ForceOutput at(double x_m, double y_m) {
     const std::int32_t counts[2] = {
@@ -215,7 +216,7 @@ TEST(SceneKernel, WithoutRaiseTheForceFallsToZeroAndRests) {
   OnDevice on(device, {patch("a", {spring(100)})});
   core::ForceSetup setup = *force_setup_of(device, 1000);
   setup.onset_s = setup.release_s = 0.01F;
-  on.kernel.set(on.scene.view(), setup);
+  on.kernel.set(on.scene.view(), setup, on.live.data());
   const std::int32_t counts[2] = {1000, 0};
   float last = 0;
   for (int tick = 0; tick < 12; ++tick) {
@@ -312,7 +313,8 @@ TEST(SceneBlock, AHarmfulBlockIsRefusedOrLimited) {
       }
       ++accepted;
       core::SceneKernel kernel;
-      kernel.set(view, setup);
+      std::vector<float> live(view.number_count);
+      kernel.set(view, setup, live.data());
       for (const std::int32_t count : {0, INT32_MAX, INT32_MIN, 1000, -1000}) {
         const std::int32_t counts[2] = {count, -(count / 2)};
         const core::ForceOutput output = kernel.tick(counts, true);
@@ -368,7 +370,7 @@ TEST(PlaneRender, ForcesAlongAPathOfOneAxis) {
   EXPECT_LT(run->largest_rounding_n, 1e-5);
   const auto beyond = render_plane(scene, device, 1000, {FingerPath{{0, 1}, {0, 0.2}}});
   ASSERT_FALSE(beyond);
-  EXPECT_EQ(beyond.error().where, "x_m");
+  EXPECT_EQ(beyond.error().where, "path");
 }
 
 }  // namespace

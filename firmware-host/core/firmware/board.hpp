@@ -14,8 +14,10 @@ struct Board {
   uint8_t channel_count = 0;  ///< at most wire::kMaxChannels
   const wire::Note* notes = nullptr;
   uint8_t note_count = 0;
-  float* profile_memory = nullptr;
+  float* profile_memory = nullptr;  ///< also holds the scene
   uint32_t profile_samples = 0;
+  /// Of a device with forces; otherwise null. The core sets scene_bytes.
+  const wire::Axes* axes = nullptr;
 };
 
 }  // namespace tacto::core

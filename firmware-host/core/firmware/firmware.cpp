@@ -7,20 +7,27 @@ Firmware::Firmware(const Board& board, const Hal& hal) noexcept
     : board_(board),
       hal_(hal),
       ticker_(hal),
+      scene_(board.profile_memory, board.profile_samples),
       upload_(board.profile_memory, board.profile_samples),
       next_(board.profile_memory, board.profile_samples) {
   wire::Welcome& about = board_.about;
   about.major = wire::kProtocolMajor;
   about.minor = wire::kProtocolMinor;
   about.features |= wire::kFeatureTextures | wire::kFeatureHysteresis;
+  if (board.axes != nullptr) about.features |= wire::kFeatureForces;
   about.channels = board.channel_count;
   about.notes = board.note_count;
   about.most_sections = wire::kMaxSections;
   about.ring_records = kRingRecords;
   about.profile_samples = board.profile_samples;
   about.drive_queue = kDriveQueue;
-  described_ = static_cast<uint16_t>(1 + board.channel_count + board.note_count);
+  described_ = messages_of_description();
   filters_.count = 0;
+}
+
+uint16_t Firmware::messages_of_description() const noexcept {
+  return static_cast<uint16_t>(1 + (board_.axes != nullptr ? 1 : 0) + board_.channel_count +
+                               board_.note_count);
 }
 
 void Firmware::poll() noexcept {

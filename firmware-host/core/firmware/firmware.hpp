@@ -4,6 +4,7 @@
 
 #include "firmware-host/core/firmware/board.hpp"
 #include "firmware-host/core/firmware/profile_upload.hpp"
+#include "firmware-host/core/firmware/scene_upload.hpp"
 #include "firmware-host/core/firmware/stream_blocks.hpp"
 #include "firmware-host/core/firmware/ticker.hpp"
 #include "firmware-host/core/wire/frame_decoder.hpp"
@@ -13,7 +14,7 @@ namespace tacto::core {
 
 /// Starts with no output and no stream. Call tick() in the timer's interrupt, and poll() in the main loop as
 /// often as possible: tick() may interrupt poll() anywhere, poll() never runs within a tick (one core; a host
-/// calls both from one thread). 47 KB without the profile's memory, which the board provides. No heap, no
+/// calls both from one thread). 58 KB without the profile's memory, which the board provides. No heap, no
 /// locks, no libm.
 class Firmware {
  public:
@@ -37,6 +38,7 @@ class Firmware {
   bool compose_prompt() noexcept;
   bool compose_owed() noexcept;
   bool compose_description() noexcept;
+  uint16_t messages_of_description() const noexcept;
   bool compose_fault() noexcept;
   bool compose_data() noexcept;
   bool compose_full_blocks() noexcept;
@@ -59,6 +61,7 @@ class Firmware {
   Reply reply_to(const wire::Frame& frame) noexcept;
   Reply reply_to_setup(const wire::Frame& frame) noexcept;
   Reply reply_to_texture(const wire::Frame& frame) noexcept;
+  Reply reply_to_scene(const wire::Frame& frame) noexcept;
   template <class Message>
   Reply with(const wire::Frame& frame, Message& message, Reply (Firmware::*command)(const Message&)) noexcept;
   template <class Message>
@@ -85,6 +88,11 @@ class Firmware {
   TextureSetup texture_setup() const noexcept;
   KernelSetup kernel_setup(const wire::Arm& message) const noexcept;
   Reply gain(const wire::Gain& message) noexcept;
+  Reply force_limits(const wire::ForceLimits& message) noexcept;
+  Reply scene_part(const wire::ScenePart& message) noexcept;
+  Reply set(const wire::Set& message) noexcept;
+  Reply ready_scene() noexcept;
+  SceneArm scene_arm(const wire::Arm& message) const noexcept;
   Reply sweep(const wire::Sweep& message) noexcept;
   Reply arm(const wire::Arm& message) noexcept;
   Reply ready(const wire::Arm& message) noexcept;
@@ -104,10 +112,13 @@ class Firmware {
   Board board_;
   Hal hal_;
   Ticker ticker_;
+  SceneUpload scene_;            // in the memory of the profile
   ProfileUpload upload_, next_;  // next: uploaded while the other one plays
   wire::FrameDecoder decoder_;
   wire::SequenceCheck order_;
   wire::Limits limits_;
+  wire::ForceLimits force_limits_;
+  wire::ScenePart scene_part_;  // a member for small stacks, as chunk_
   wire::Filters filters_;
   wire::Taps taps_, new_taps_;
   wire::Hysteresis hysteresis_, new_hysteresis_;
@@ -119,6 +130,7 @@ class Firmware {
   wire::Drive drive_;
   SampleBlock samples_;
   TickBlock ticks_;
+  AxisTickBlock axis_ticks_;
   wire::Answer answer_;
   uint32_t nonce_ = 0, token_ = 0;
   uint32_t rate_millihertz_ = 0;  // 0: not ticking
@@ -126,7 +138,7 @@ class Firmware {
   uint16_t described_ = 0;  // number of welcome, channels, notes sent; all of them: complete
   uint8_t run_ = 0;
   Owed owed_ = Owed::nothing;
-  bool greeted_ = false, limited_ = false;
+  bool greeted_ = false, limited_ = false, force_limited_ = false;
   bool changed_ = false;  // by a command, and no next profile has begun since
   wire::FaultCode reported_ = wire::FaultCode::none, stream_fault_ = wire::FaultCode::none;
   uint8_t received_[512];

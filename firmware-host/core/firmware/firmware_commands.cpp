@@ -33,6 +33,7 @@ void Firmware::greet(const wire::Frame& frame) noexcept {
   ticker_.records().clear();
   samples_.clear();
   ticks_.clear();
+  axis_ticks_.clear();
   greeted_ = hello.major == wire::kProtocolMajor;
   nonce_ = hello.nonce;
   sequence_ = 0;
@@ -172,13 +173,87 @@ Reply Firmware::reply_to_texture(const wire::Frame& frame) noexcept {
     case MessageType::change:
       return with(frame, new_change, &Firmware::change);
     default:
-      return {AnswerCode::unknown_type, frame.header.type};
+      return reply_to_scene(frame);
   }
+}
+
+Reply Firmware::reply_to_scene(const wire::Frame& frame) noexcept {
+  wire::ForceLimits new_limits;
+  wire::Set new_set;
+  const auto type = static_cast<MessageType>(frame.header.type);
+  if (board_.axes != nullptr && type == MessageType::force_limits)
+    return in_idle(frame, new_limits, &Firmware::force_limits);
+  if (board_.axes != nullptr && type == MessageType::scene_part)
+    return in_idle(frame, scene_part_, &Firmware::scene_part);
+  if (board_.axes != nullptr && type == MessageType::set) return with(frame, new_set, &Firmware::set);
+  return {AnswerCode::unknown_type, frame.header.type};
+}
+
+Reply Firmware::force_limits(const wire::ForceLimits& wish) noexcept {
+  const wire::Axes& own = *board_.axes;
+  for (uint8_t i = 0; i < own.count; ++i) {
+    if (!(wish.axis_peak_n[i] > 0 && wish.axis_peak_n[i] <= own.axes[i].peak_n)) return bad_value(0);
+    if (!(wish.axis_continuous_n[i] > 0 && wish.axis_continuous_n[i] <= own.axes[i].continuous_n))
+      return bad_value(1);
+  }
+  if (!(wish.peak_n > 0 && wish.peak_n <= own.peak_n)) return bad_value(2);
+  if (!(wish.continuous_n > 0 && wish.continuous_n <= own.continuous_n)) return bad_value(3);
+  if (!(wish.slew_n_per_s > 0 && wish.slew_n_per_s <= own.slew_n_per_s)) return bad_value(4);
+  if (!within(wish.onset_s, 0, kLongestOnsetS)) return bad_value(5);
+  if (!(wish.release_s >= 0 && wish.release_s + wish.peak_n / wish.slew_n_per_s <= kLongestReleaseS))
+    return bad_value(6);
+  if (wish.watchdog_ms < kLeastWatchdogMs || wish.watchdog_ms > kMostWatchdogMs) return bad_value(7);
+  if (wish.counts_per_tick < 1) return bad_value(9);
+  force_limits_ = wish;
+  force_limited_ = true;
+  return {};
+}
+
+// Scene and profile use the same memory.
+Reply Firmware::scene_part(const wire::ScenePart& message) noexcept {
+  upload_.forget();
+  return scene_.part(message);
+}
+
+Reply Firmware::set(const wire::Set& message) noexcept {
+  if (!runs() || ticker_.source() != DriveSource::scene) return wrong_state();
+  if (!number_fits(scene_.view(), message.layer, message.number, message.value)) return bad_value(2);
+  if (!within(message.ramp_s, 0, kLongestFadeS)) return bad_value(3);
+  return ticker_.set(message) ? Reply{} : Reply{AnswerCode::too_large, 0};
+}
+
+Reply Firmware::ready_scene() noexcept {
+  if (board_.axes == nullptr) return bad_value(0);
+  if (!force_limited_) return {AnswerCode::no_limits, 0};
+  if (!hal_.enable_closed(hal_.board)) return {AnswerCode::enable_open, 0};
+  return scene_.complete() ? Reply{} : Reply{AnswerCode::incomplete, scene_.here()};
+}
+
+SceneArm Firmware::scene_arm(const wire::Arm& message) const noexcept {
+  const wire::Axes& own = *board_.axes;
+  SceneArm arm;
+  arm.scene = scene_.view();
+  arm.live = scene_.live();
+  ForceSetup& setup = arm.setup;
+  setup.axis_count = own.count;
+  for (uint8_t i = 0; i < own.count; ++i)
+    setup.axes[i] = {own.axes[i].along, own.axes[i].metres_per_count, force_limits_.axis_peak_n[i],
+                     force_limits_.axis_continuous_n[i]};
+  setup.peak_n = force_limits_.peak_n;
+  setup.continuous_n = force_limits_.continuous_n;
+  setup.slew_n_per_s = force_limits_.slew_n_per_s;
+  setup.rate_hz = rate_of(message.rate_millihertz);
+  setup.onset_s = force_limits_.onset_s;
+  setup.release_s = force_limits_.release_s;
+  arm.limits.watchdog_ms = force_limits_.watchdog_ms;
+  arm.counts_per_tick = force_limits_.counts_per_tick;
+  return arm;
 }
 
 // A host of protocol 1.0 does not send the other settings: a new profile starts without them.
 Reply Firmware::profile_begin(const wire::ProfileBegin& message) noexcept {
   if (!idle()) return next_profile_begin(message);
+  scene_.forget();
   taps_.count = 0;
   hysteresis_ = {};
   tracking_ = {};
@@ -269,6 +344,7 @@ Reply Firmware::sweep(const wire::Sweep& message) noexcept {
 
 // Whether all data that the source needs are present.
 Reply Firmware::ready(const wire::Arm& message) noexcept {
+  if (message.source == DriveSource::scene) return ready_scene();
   if ((board_.about.features & wire::kFeatureDrive) == 0 || message.source > DriveSource::sweep)
     return bad_value(0);
   if (!limited_) return {AnswerCode::no_limits, 0};
@@ -289,6 +365,11 @@ Reply Firmware::arm(const wire::Arm& message) noexcept {
   reported_ = wire::FaultCode::none;
   next_.forget();
   changed_ = false;
+  if (message.source == DriveSource::scene) {
+    axis_ticks_.begin(ticks_in_block(message.rate_millihertz), board_.axes->count);
+    ticker_.arm(scene_arm(message), message.rate_millihertz);
+    return {};
+  }
   ticker_.arm(message.source, kernel_setup(message), message.rate_millihertz);
   return {};
 }

@@ -48,14 +48,20 @@ bool Firmware::compose_owed() noexcept {
 }
 
 bool Firmware::compose_description() noexcept {
-  const uint16_t next = described_, end_of_channels = static_cast<uint16_t>(1 + board_.channel_count);
-  if (next >= end_of_channels + board_.note_count) return false;
-  ++described_;
+  if (described_ >= messages_of_description()) return false;
+  uint16_t next = described_++;
   if (next == 0) {
     board_.about.nonce = nonce_;
     return put(board_.about);
   }
-  return next < end_of_channels ? put(board_.channels[next - 1]) : put(board_.notes[next - end_of_channels]);
+  --next;
+  if (board_.axes != nullptr && next-- == 0) {
+    wire::Axes axes = *board_.axes;
+    axes.scene_bytes = scene_.most_bytes();
+    return put(axes);
+  }
+  return next < board_.channel_count ? put(board_.channels[next])
+                                     : put(board_.notes[next - board_.channel_count]);
 }
 
 // A converter's fault ends the stream, so it is reported after the stream's last frame.
@@ -87,7 +93,8 @@ bool Firmware::streams_data() noexcept {
 
 bool Firmware::compose_full_blocks() noexcept {
   if (samples_.full()) return put_block(samples_);
-  return ticks_.full() && put_block(ticks_);
+  if (ticks_.full()) return put_block(ticks_);
+  return axis_ticks_.full() && put_block(axis_ticks_);
 }
 
 // Moves records into the blocks. True if a full block was composed first.
@@ -97,8 +104,10 @@ bool Firmware::gather() noexcept {
     if (old) continue;
     if (!samples_.fits(*record)) return put_block(samples_);
     if (!ticks_.fits(*record)) return put_block(ticks_);
+    if (!axis_ticks_.fits(*record)) return put_block(axis_ticks_);
     samples_.add(*record);
     ticks_.add(*record);
+    axis_ticks_.add(*record);
   }
   return false;
 }
@@ -106,7 +115,9 @@ bool Firmware::gather() noexcept {
 bool Firmware::compose_data() noexcept {
   if (compose_full_blocks() || gather() || compose_full_blocks()) return true;
   if (!samples_.empty() && !ticker_.streaming()) return put_block(samples_);
-  return !ticks_.empty() && idle() && put_block(ticks_);
+  if (!idle()) return false;
+  if (!ticks_.empty()) return put_block(ticks_);
+  return !axis_ticks_.empty() && put_block(axis_ticks_);
 }
 
 wire::Pulse Firmware::pulse() noexcept {

@@ -21,6 +21,10 @@ struct Hal {
   bool (*read_channels)(void* board, int32_t* codes) noexcept = nullptr;
   /// (tick) Volts at the amplifier's input, held until the next tick.
   void (*write_drive)(void* board, float drive_v) noexcept = nullptr;
+  /// (tick) The counts of all axes, of a device with forces.
+  void (*read_axes)(void* board, int32_t* counts) noexcept = nullptr;
+  /// (tick) Newtons on the hand for each axis, held until the next tick.
+  void (*write_forces)(void* board, const float* force_n) noexcept = nullptr;
   /// (tick) True while the hardware enable input is closed; always true on a board without one.
   bool (*enable_closed)(void* board) noexcept = nullptr;
   /// (tick) The device's clock; it does not wrap.

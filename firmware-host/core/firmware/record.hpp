@@ -16,7 +16,10 @@ struct Record {
   uint32_t flags = 0;  ///< wire::TickFlag
   uint8_t run = 0;     ///< the number of the stream's start
   bool sampled = false, driven = false;
+  uint8_t axes = 0;  ///< of a scene; 0: the tick has a drive
   int32_t codes[wire::kMaxChannels] = {};
+  int32_t counts[wire::kMaxAxes] = {};
+  float force_n[wire::kMaxAxes] = {};
 };
 
 }  // namespace tacto::core

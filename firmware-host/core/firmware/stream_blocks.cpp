@@ -27,16 +27,35 @@ void SampleBlock::add(const Record& record) noexcept {
 }
 
 bool TickBlock::fits(const Record& record) const noexcept {
-  return !record.driven || empty() || (!full() && record.tick == block_.first_tick + block_.count);
+  return !record.driven || record.axes > 0 || empty() ||
+         (!full() && record.tick == block_.first_tick + block_.count);
 }
 
 void TickBlock::add(const Record& record) noexcept {
-  if (!record.driven) return;
+  if (!record.driven || record.axes > 0) return;
   if (empty()) {
     block_.first_tick = record.tick;
     block_.device_ticks = record.clock;
   }
   block_.ticks[block_.count++] = {record.encoder, record.drive_v, record.flags};
+}
+
+bool AxisTickBlock::fits(const Record& record) const noexcept {
+  return record.axes == 0 || empty() || (!full() && record.tick == block_.first_tick + block_.count);
+}
+
+void AxisTickBlock::add(const Record& record) noexcept {
+  if (record.axes == 0) return;
+  if (empty()) {
+    block_.first_tick = record.tick;
+    block_.device_ticks = record.clock;
+  }
+  wire::AxisTick& tick = block_.ticks[block_.count++];
+  for (uint8_t i = 0; i < record.axes; ++i) {
+    tick.counts[i] = record.counts[i];
+    tick.force_n[i] = record.force_n[i];
+  }
+  tick.flags = record.flags;
 }
 
 }  // namespace tacto::core

@@ -39,4 +39,20 @@ class TickBlock {
   uint8_t limit_ = 1;
 };
 
+/// Ticks of one axis_ticks message. For the main loop.
+class AxisTickBlock {
+ public:
+  void begin(uint8_t ticks, uint8_t axes) noexcept { limit_ = ticks, block_.axes = axes, block_.count = 0; }
+  bool fits(const Record& record) const noexcept;
+  void add(const Record& record) noexcept;
+  bool full() const noexcept { return block_.count >= limit_; }
+  bool empty() const noexcept { return block_.count == 0; }
+  void clear() noexcept { block_.count = 0; }
+  const wire::AxisTicks& message() const noexcept { return block_; }
+
+ private:
+  wire::AxisTicks block_;
+  uint8_t limit_ = 1;
+};
+
 }  // namespace tacto::core

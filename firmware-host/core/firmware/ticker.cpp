@@ -16,16 +16,42 @@ uint8_t Ticker::start_stream() noexcept {
   return run_.load();
 }
 
-void Ticker::arm(DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept {
+void Ticker::begin_arm(DriveSource source) noexcept {
   source_ = source;
   tick_ = 0;
   drive_queue_.clear();
-  kernel_.set(setup);
+  sets_.clear();
   steered_.store(0);
   steered_taken_ = 0;
   gain_taken_ = gain_.load();
   change_.store(kNoChange);
   change_taken_ = false;
+}
+
+void Ticker::arm(const SceneArm& scene, uint32_t rate_millihertz) noexcept {
+  begin_arm(DriveSource::scene);
+  scene_.set(scene.scene, scene.setup, scene.live);
+  axes_ = static_cast<uint8_t>(scene.setup.axis_count);
+  int32_t counts[wire::kMaxAxes] = {};
+  hal_.read_axes(hal_.board, counts);
+  for (uint8_t i = 0; i < axes_; ++i)
+    axis_watch_[i].arm(scene.counts_per_tick, scene.setup.rate_hz, counts[i]);
+  supervisor_.arm(scene.limits, rate_millihertz);
+}
+
+// Writes the change first, then the word after which the tick reads it.
+bool Ticker::set(const wire::Set& message) noexcept {
+  CountedSet* const place = sets_.place();
+  if (place == nullptr) return false;
+  *place = {message, static_cast<uint8_t>(steered_.load() + 1)};
+  sets_.push();
+  steered();
+  return true;
+}
+
+void Ticker::arm(DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept {
+  begin_arm(source);
+  kernel_.set(setup);
   supervisor_.arm(setup.limits, rate_millihertz);
   watch_.arm(setup.limits.counts_per_tick, setup.rate_hz, hal_.read_encoder(hal_.board));
 }
@@ -74,8 +100,17 @@ void Ticker::take_steering(Record& record) noexcept {
     steered_taken_ = steered;
     gain_taken_ = gain_.load();
     take_change();
+    take_sets();
   }
   record.flags |= uint32_t{steered_taken_} << wire::kTickSteeredShift;
+}
+
+void Ticker::take_sets() noexcept {
+  for (const CountedSet* next; (next = sets_.front()) != nullptr; sets_.pop()) {
+    if (static_cast<int8_t>(steered_taken_ - next->count) < 0) return;
+    const wire::Set& set = next->set;
+    scene_.change(set.layer, set.number, set.value, set.ramp_s * scene_.rate_hz());
+  }
 }
 
 // Not before its own command is counted: a tick may occur between the two stores of the main loop, when only
@@ -129,12 +164,45 @@ float Ticker::normal_force(Record& record) noexcept {
   return static_cast<float>(record.codes[contact_.channel]) * contact_.newtons_per_code + contact_.offset_n;
 }
 
+void Ticker::rest() noexcept {
+  constexpr float kNoForces[wire::kMaxAxes] = {};
+  hal_.write_drive(hal_.board, 0);
+  if (hal_.write_forces != nullptr) hal_.write_forces(hal_.board, kNoForces);
+}
+
 void Ticker::drive(Record& record) noexcept {
   record.driven = supervisor_.state() != DriveState::idle;
   record.drive_v = 0;
-  if (!record.driven) return hal_.write_drive(hal_.board, 0);
+  record.axes = 0;
+  if (!record.driven) return rest();
   take_steering(record);
   const FaultCode before = supervisor_.fault();
+  if (source_ == DriveSource::scene)
+    drive_forces(record);
+  else
+    drive_tray(record);
+  record.tick = tick_++;
+  if (supervisor_.state() == DriveState::playing) record.flags |= wire::kTickPlaying;
+  if (supervisor_.state() == DriveState::fault) record.flags |= wire::kTickFault;
+  if (supervisor_.fault() != before) fault_clock_ = record.clock;
+}
+
+void Ticker::drive_forces(Record& record) noexcept {
+  record.axes = axes_;
+  hal_.read_axes(hal_.board, record.counts);
+  TickObservation sights{0, (record.flags & wire::kTickEnabled) != 0, false, false};
+  for (uint8_t i = 0; i < axes_; ++i) {
+    axis_watch_[i].see(record.counts[i], 0, scene_.at_rest());
+    if (axis_watch_[i].jump() > sights.encoder_jump) sights.encoder_jump = axis_watch_[i].jump();
+  }
+  const ForceOutput output = scene_.tick(record.counts, supervisor_.observe(sights));
+  for (uint8_t i = 0; i < axes_; ++i) record.force_n[i] = output.force_n[i];
+  record.flags |= output.flags;
+  hal_.write_forces(hal_.board, output.force_n);
+  supervisor_.settle(output.sound, scene_.at_rest());
+}
+
+void Ticker::drive_tray(Record& record) noexcept {
   const int32_t count = follow(record);
   TickObservation sights{watch_.jump(), (record.flags & wire::kTickEnabled) != 0, false, watch_.blind()};
   const float kernel_input = target(count, sights.drive_lacks);
@@ -144,10 +212,6 @@ void Ticker::drive(Record& record) noexcept {
   record.flags |= output.flags;
   hal_.write_drive(hal_.board, record.drive_v);
   supervisor_.settle(output.sound, kernel_.at_rest());
-  record.tick = tick_++;
-  if (supervisor_.state() == DriveState::playing) record.flags |= wire::kTickPlaying;
-  if (supervisor_.state() == DriveState::fault) record.flags |= wire::kTickFault;
-  if (supervisor_.fault() != before) fault_clock_ = record.clock;
   counts_.underruns += sights.drive_lacks && supervisor_.aim() == Aim::play;
 }
 

@@ -9,12 +9,22 @@
 #include "firmware-host/core/firmware/sweep_generator.hpp"
 #include "firmware-host/core/kernel/ring.hpp"
 #include "firmware-host/core/kernel/tick_kernel.hpp"
+#include "firmware-host/core/scene/scene_kernel.hpp"
 
 namespace tacto::core {
 
 /// Counters of the tick; the main loop reads them.
 struct TickCounts {
   uint32_t late = 0, lost_records = 0, underruns = 0, amplitude_limited = 0, slew_limited = 0;
+};
+
+/// A scene to arm. `limits` are those of the supervisor.
+struct SceneArm {
+  SceneView scene;
+  ForceSetup setup;
+  float* live = nullptr;
+  wire::Limits limits;
+  uint32_t counts_per_tick = 0;
 };
 
 /// tick() is called by the timer's interrupt and does not wait, allocate, lock or throw; the main loop calls
@@ -36,6 +46,11 @@ class Ticker {
 
   /// Only in idle; all data of the source must be set.
   void arm(wire::DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept;
+  /// The same for the forces of a scene.
+  void arm(const SceneArm& scene, uint32_t rate_millihertz) noexcept;
+  /// Changes a number of the scene, from the tick that first counts it. False if as many changes wait as
+  /// sets() holds. Precondition: number_fits().
+  bool set(const wire::Set& message) noexcept;
   /// Before arm(): the channel of the normal force.
   void watch_force(const wire::Contact& contact) noexcept { contact_ = contact; }
   /// In effect from the tick that first counts it.
@@ -66,6 +81,11 @@ class Ticker {
   void look(Record& record) noexcept;
   void sample(Record& record) noexcept;
   void drive(Record& record) noexcept;
+  void drive_tray(Record& record) noexcept;
+  void drive_forces(Record& record) noexcept;
+  void begin_arm(wire::DriveSource source) noexcept;
+  void rest() noexcept;
+  void take_sets() noexcept;
   void take_steering(Record& record) noexcept;
   void take_change() noexcept;
   void end_change() noexcept;
@@ -78,7 +98,16 @@ class Ticker {
 
   Hal hal_;
   TickKernel kernel_;
+  struct CountedSet {
+    wire::Set set;
+    uint8_t count = 0;  // of the command
+  };
+  static constexpr uint32_t kSets = 16;
   SweepGenerator sweep_;
+  SceneKernel scene_;
+  EncoderWatch axis_watch_[wire::kMaxAxes];
+  uint8_t axes_ = 0;  // of the scene
+  Ring<CountedSet, kSets> sets_;
   DriveSupervisor supervisor_;
   EncoderWatch watch_;
   Ring<float, kDriveQueue> drive_queue_;

@@ -3,17 +3,16 @@
 #pragma once
 
 #include "firmware-host/core/kernel/energy_limiter.hpp"
+#include "firmware-host/core/wire/device_messages.hpp"
 
 namespace tacto::core {
 
-inline constexpr uint32_t kMostAxes = 3;
+inline constexpr uint32_t kMostAxes = wire::kMaxAxes;
+using wire::AxisAlong;
 
 /// The time window of the RMS that the continuous forces limit; our choice: device files have no thermal
 /// time.
 inline constexpr float kContinuousWindowS = 1;
-
-/// What an axis of the device moves along. Only x and y are in the plane of a scene.
-enum class AxisAlong : uint8_t { x = 0, y = 1, z = 2 };
 
 struct ForceAxis {
   AxisAlong along = AxisAlong::x;

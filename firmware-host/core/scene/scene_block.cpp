@@ -60,6 +60,17 @@ SceneFault check_layers(SceneView& view) noexcept {
 
 }  // namespace
 
+bool number_fits(const SceneView& view, uint32_t layer, uint32_t number, float value) noexcept {
+  if (layer >= view.layer_count) return false;
+  const auto kind = static_cast<SceneLayerKind>(view.layers[layer].kind);
+  const uint32_t count = numbers_of(kind);
+  if (number >= count) return false;
+  float numbers[kMostLayerNumbers];
+  for (uint32_t i = 0; i < count; ++i) numbers[i] = view.numbers[view.layers[layer].first_number + i];
+  numbers[number] = value;
+  return sound(kind, numbers);
+}
+
 uint32_t scene_check(const void* block, uint32_t bytes) noexcept {
   const auto* const at = static_cast<const uint8_t*>(block);
   const uint32_t before = wire::crc32c(at, offsetof(SceneHeader, check));

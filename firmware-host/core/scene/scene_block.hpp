@@ -75,6 +75,9 @@ SceneFault read_scene_block(const void* block, uint32_t bytes, SceneView& view) 
 /// The check of a block of at least a header's size.
 uint32_t scene_check(const void* block, uint32_t bytes) noexcept;
 
+/// Whether a layer has this number, and may have this value.
+bool number_fits(const SceneView& view, uint32_t layer, uint32_t number, float value) noexcept;
+
 struct PlaneVector {
   float x = 0, y = 0;
 };

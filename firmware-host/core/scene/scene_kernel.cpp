@@ -5,12 +5,38 @@
 
 namespace tacto::core {
 
-void SceneKernel::set(const SceneView& scene, const ForceSetup& setup) noexcept {
+void SceneKernel::set(const SceneView& scene, const ForceSetup& setup, float* live) noexcept {
   scene_ = scene;
+  live_ = live;
+  for (uint32_t i = 0; i < scene.number_count; ++i) live[i] = scene.numbers[i];
+  for (Ramp& ramp : ramps_) ramp.left = 0;
+  next_ramp_ = 0;
   setup_ = setup;
   for (EdgeSpeed& speed : speeds_) speed.rest();
   envelope_.set(setup.onset_s * setup.rate_hz, setup.release_s * setup.rate_hz);
   limiter_.set(setup);
+}
+
+void SceneKernel::change(uint32_t layer, uint32_t number, float value, float ramp_ticks) noexcept {
+  const uint32_t at = scene_.layers[layer].first_number + number;
+  uint32_t place = kMostRamps;
+  for (uint32_t i = 0; i < kMostRamps; ++i)
+    if (ramps_[i].left > 0 && ramps_[i].number == at) place = i;
+  if (place == kMostRamps) {
+    place = next_ramp_;
+    next_ramp_ = (next_ramp_ + 1) % kMostRamps;
+    if (ramps_[place].left > 0) live_[ramps_[place].number] = ramps_[place].to;
+  }
+  const auto ticks = ramp_ticks > 1 ? static_cast<uint32_t>(ramp_ticks) : UINT32_C(1);
+  ramps_[place] = {at, ticks, (value - live_[at]) / static_cast<float>(ticks), value};
+}
+
+void SceneKernel::advance_ramps() noexcept {
+  for (Ramp& ramp : ramps_) {
+    if (ramp.left == 0) continue;
+    --ramp.left;
+    live_[ramp.number] = ramp.left == 0 ? ramp.to : live_[ramp.number] + ramp.step;
+  }
 }
 
 // In the axes of the patch.
@@ -19,7 +45,7 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, PlaneVector place,
   PlaneVector sum;
   for (uint32_t i = 0; i < patch.layers; ++i) {
     const SceneLayer& layer = scene_.layers[patch.first_layer + i];
-    const float* const number = scene_.numbers + layer.first_number;
+    const float* const number = live_ + layer.first_number;
     switch (static_cast<SceneLayerKind>(layer.kind)) {
       case SceneLayerKind::spring:
         sum.x -= number[kSpringStiffness] * (place.x - number[kSpringCentreX]);
@@ -52,6 +78,7 @@ PlaneVector SceneKernel::force(PlaneVector place, PlaneVector speed) const noexc
 }
 
 ForceOutput SceneKernel::tick(const int32_t* counts, bool raise) noexcept {
+  advance_ramps();
   float place_m[2] = {}, speed_mps[2] = {};
   for (uint32_t i = 0; i < setup_.axis_count; ++i) {
     const auto along = static_cast<uint32_t>(setup_.axes[i].along);

@@ -9,6 +9,8 @@
 
 namespace tacto::core {
 
+inline constexpr uint32_t kMostRamps = 16;
+
 /// Forces on the hand, in the order of the device's axes.
 struct ForceOutput {
   float force_n[kMostAxes] = {};
@@ -27,17 +29,33 @@ struct ForceOutput {
 /// throws or makes system calls; a tick costs at most one step per patch and layer.
 class SceneKernel {
  public:
-  /// Starts at rest at zero. The block has to outlive its use by the kernel.
-  void set(const SceneView& scene, const ForceSetup& setup) noexcept;
+  /// Starts at rest at zero, with the numbers of the block. The block, and `live` with memory for
+  /// scene.number_count numbers, have to outlive their use by the kernel.
+  void set(const SceneView& scene, const ForceSetup& setup, float* live) noexcept;
+  /// Between ticks: from the next tick on a number changes linearly, and has its new value after
+  /// `ramp_ticks` (at least one). If kMostRamps others change already, the oldest one ends at once.
+  /// Precondition: number_fits().
+  void change(uint32_t layer, uint32_t number, float value, float ramp_ticks) noexcept;
   /// `counts` of the setup's axes; `raise`: towards the full force, otherwise towards zero.
   ForceOutput tick(const int32_t* counts, bool raise) noexcept;
+  float rate_hz() const noexcept { return setup_.rate_hz; }
   bool at_rest() const noexcept { return envelope_.at_rest() && limiter_.at_rest(); }
 
  private:
   PlaneVector force(PlaneVector place, PlaneVector speed) const noexcept;
   PlaneVector force_in(const ScenePatch& patch, PlaneVector place, PlaneVector speed) const noexcept;
 
+  struct Ramp {
+    uint32_t number = 0;  // in the scene's numbers
+    uint32_t left = 0;    // ticks
+    float step = 0, to = 0;
+  };
+  void advance_ramps() noexcept;
+
   SceneView scene_;
+  float* live_ = nullptr;
+  Ramp ramps_[kMostRamps];
+  uint32_t next_ramp_ = 0;
   ForceSetup setup_;
   EdgeSpeed speeds_[2];  // along x and y
   Envelope envelope_;

@@ -14,6 +14,7 @@ enum Feature : uint32_t {
   kFeatureEnableInput = 4,  ///< it has a hardware enable input
   kFeatureTextures = 8,     ///< it supports levels, taps, tracking, energy limit and contact gate
   kFeatureHysteresis = 16,  ///< it supports hysteresis
+  kFeatureForces = 32,      ///< it has axes with forces, and describes them in `axes`
 };
 
 /// All fields up to `nonce` are the same in every version.
@@ -170,6 +171,71 @@ struct Fault {
     codec(self.code);
     codec.array(self.reserved, sizeof self.reserved);
     codec(self.detail, self.device_ticks);
+  }
+};
+
+/// What an axis moves along. Only x and y are in the plane of a scene.
+enum class AxisAlong : uint8_t { x = 0, y = 1, z = 2 };
+
+struct Axis {
+  AxisAlong along = AxisAlong::x;
+  uint8_t reserved[3] = {};
+  float peak_n = 0, continuous_n = 0;
+  float metres_per_count = 0;   ///< in single precision for small cores
+  double from_m = 0, to_m = 0;  ///< its travel
+};
+
+/// Sent after the welcome of a device with forces: its axes and its own limits.
+struct Axes {
+  static constexpr MessageType kType = MessageType::axes;
+  uint8_t count = 0;
+  uint8_t reserved[3] = {};
+  float peak_n = 0, continuous_n = 0;  ///< of the vector
+  float slew_n_per_s = 0;              ///< of each axis
+  uint32_t scene_bytes = 0;            ///< the largest block of a scene
+  Axis axes[kMaxAxes];
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    const size_t n = codec.count(self.count, kMaxAxes);
+    codec.array(self.reserved, sizeof self.reserved);
+    codec(self.peak_n, self.continuous_n, self.slew_n_per_s, self.scene_bytes);
+    for (size_t i = 0; i < n; ++i) {
+      auto& a = self.axes[i];
+      codec(a.along);
+      codec.array(a.reserved, sizeof a.reserved);
+      codec(a.peak_n, a.continuous_n, a.metres_per_count, a.from_m, a.to_m);
+    }
+  }
+};
+
+/// Counts and forces of one tick.
+struct AxisTick {
+  int32_t counts[kMaxAxes] = {};
+  float force_n[kMaxAxes] = {};
+  uint32_t flags = 0;
+};
+
+/// Sent instead of `ticks` while a scene is armed. Of each tick: the counts of all axes, their forces, flags.
+struct AxisTicks {
+  static constexpr MessageType kType = MessageType::axis_ticks;
+  uint64_t first_tick = 0;
+  uint64_t device_ticks = 0;
+  uint8_t count = 0;
+  uint8_t axes = 0;
+  uint16_t reserved = 0;
+  AxisTick ticks[kMaxBlockTicks];
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.first_tick, self.device_ticks);
+    const size_t n = codec.count(self.count, kMaxBlockTicks);
+    const size_t axes = codec.count(self.axes, kMaxAxes);
+    codec(self.reserved);
+    for (size_t i = 0; i < n; ++i) {
+      auto& t = self.ticks[i];
+      codec.array(t.counts, axes);
+      codec.array(t.force_n, axes);
+      codec(t.flags);
+    }
   }
 };
 

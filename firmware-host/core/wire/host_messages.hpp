@@ -267,4 +267,52 @@ struct Change {
   }
 };
 
+/// Required before a scene is armed; at most the device's own limits.
+struct ForceLimits {
+  static constexpr MessageType kType = MessageType::force_limits;
+  float axis_peak_n[kMaxAxes] = {}, axis_continuous_n[kMaxAxes] = {};
+  float peak_n = 0, continuous_n = 0;  ///< of the vector
+  float slew_n_per_s = 0;              ///< of each axis
+  float onset_s = 0;
+  float release_s = 0;  ///< release_s + peak_n / slew_n_per_s is at most kLongestReleaseS
+  uint16_t watchdog_ms = 0;
+  uint16_t reserved = 0;
+  uint32_t counts_per_tick = 0;  ///< of an axis; more is an encoder jump
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec.array(self.axis_peak_n, kMaxAxes);
+    codec.array(self.axis_continuous_n, kMaxAxes);
+    codec(self.peak_n, self.continuous_n, self.slew_n_per_s, self.onset_s, self.release_s, self.watchdog_ms,
+          self.reserved, self.counts_per_tick);
+  }
+};
+
+/// A part of a scene's block. The last part completes it.
+struct ScenePart {
+  static constexpr MessageType kType = MessageType::scene_part;
+  uint32_t bytes = 0;  ///< of the whole block
+  uint32_t first = 0;  ///< place of this part
+  uint16_t count = 0;
+  uint8_t data[kMaxScenePart];
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.bytes, self.first);
+    const size_t n = codec.count(self.count, kMaxScenePart);
+    codec.array(self.data, n);
+  }
+};
+
+/// Changes a number of a layer, linearly over a time.
+struct Set {
+  static constexpr MessageType kType = MessageType::set;
+  uint16_t layer = 0;   ///< in the order of the block
+  uint16_t number = 0;  ///< in the order of the layer's numbers
+  float value = 0;
+  float ramp_s = 0;  ///< 0 to 10
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.layer, self.number, self.value, self.ramp_s);
+  }
+};
+
 }  // namespace tacto::wire

@@ -34,6 +34,9 @@ enum class MessageType : uint8_t {
   contact = 0x16,
   change = 0x17,
   hysteresis = 0x18,
+  force_limits = 0x19,  ///< from 0x19 to 0x1B, 0x89 and 0x8A: since protocol 1.3
+  scene_part = 0x1A,
+  set = 0x1B,
   welcome = 0x81,
   channel = 0x82,
   note = 0x83,
@@ -42,6 +45,8 @@ enum class MessageType : uint8_t {
   ticks = 0x86,
   pulse = 0x87,
   fault = 0x88,
+  axes = 0x89,
+  axis_ticks = 0x8A,
 };
 
 /// The state of the drive.
@@ -53,7 +58,8 @@ enum class DriveState : uint8_t {
 };
 
 /// The source of the drive.
-enum class DriveSource : uint8_t { profile = 0, host = 1, sweep = 2 };
+/// A scene gives forces of the axes instead of a drive.
+enum class DriveSource : uint8_t { profile = 0, host = 1, sweep = 2, scene = 3 };
 
 /// The values beyond the ends of a profile.
 enum class ProfileEnds : uint8_t { stop = 0, loop = 1, mirror = 2 };
@@ -107,7 +113,7 @@ inline constexpr uint32_t kTickSteeredShift = 24;
 /// Whether this command changes a running drive in a tick; that tick counts it.
 constexpr bool steers(MessageType type) noexcept {
   return type == MessageType::gain || type == MessageType::play || type == MessageType::stop ||
-         type == MessageType::disarm || type == MessageType::change;
+         type == MessageType::disarm || type == MessageType::change || type == MessageType::set;
 }
 
 inline constexpr size_t kMaxChannels = 16;
@@ -119,5 +125,7 @@ inline constexpr size_t kMaxSections = 16;
 inline constexpr size_t kMaxLevels = 16;  ///< of a profile's pyramid
 inline constexpr size_t kMaxTaps = 128;   ///< of the finite filter; a multiple of 16
 inline constexpr size_t kMaxPlays = 16;   ///< of hysteresis; a multiple of 4
+inline constexpr size_t kMaxAxes = 3;
+inline constexpr size_t kMaxScenePart = 512;  ///< bytes
 
 }  // namespace tacto::wire

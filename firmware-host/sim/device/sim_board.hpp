@@ -11,6 +11,7 @@
 #include "firmware-host/core/firmware/firmware.hpp"
 #include "firmware-host/link/hosted_board.hpp"
 #include "firmware-host/sim/bench/actuated_tray.hpp"
+#include "firmware-host/sim/device/emulated_board.hpp"
 #include "firmware-host/sim/device/frame_source.hpp"
 #include "firmware-host/sim/device/sim_parameters.hpp"
 #include "firmware-host/sim/device/tray_sensor.hpp"
@@ -21,22 +22,16 @@ namespace tacto::firmware_host {
 /// One thread calls step() and poll(). Each time the rate is set, the finger starts again: equal parameters
 /// give equal frames. While there is a drive, the tray moves with it, independently of the sensor, with the
 /// hysteresis, second mode and finger's load of the parameters.
-class SimBoard {
+class SimBoard final : public EmulatedBoard {
  public:
   SimBoard(const SimParameters& parameters, schema::Transducer transducer, Surface surface);
-  SimBoard(const SimBoard&) = delete;
-  SimBoard& operator=(const SimBoard&) = delete;
 
-  bool ticking() const { return rate_millihertz_ > 0; }
+  bool ticking() const override { return rate_millihertz_ > 0; }
   double period_s() const { return 1e3 / rate_millihertz_; }
-  /// The same by the host's clock; the device's clock may have an error.
-  double host_period_s() const { return period_s() / (1 + 1e-6 * parameters_.errors.clock_ppm); }
-  /// Computes one sample period of physics, then the firmware's tick. Precondition: ticking().
-  void step();
-  void poll() { firmware_->poll(); }
+  double host_period_s() const override { return period_s() / (1 + 1e-6 * parameters_.errors.clock_ppm); }
+  void step() override;
+  void poll() override { firmware_->poll(); }
 
-  std::vector<std::uint8_t>& from_host() { return from_host_; }
-  std::vector<std::uint8_t>& to_host() { return to_host_; }
   void set_enabled(bool enabled) { enabled_.store(enabled); }  // from any thread
   /// From the next time the rate is set, the encoder follows position_m (m, over the seconds since then), and
   /// there is no other physics of the finger. Its load is the parameter `load`, or normal_n (N, over the same
@@ -48,11 +43,7 @@ class SimBoard {
   }
   /// The script stays at its beginning, or continues. From any thread.
   void hold_script(bool held) { script_held_.store(held); }
-  /// The number of bytes to the host that the link can hold; further bytes stay in the firmware's ring while
-  /// it has room.
-  void set_link_bytes(std::size_t bytes) { link_bytes_ = bytes; }
-  /// The data rate of the stream while ticking, in bytes per second.
-  double stream_bytes_per_s() const;
+  double stream_bytes_per_s() const override;
 
   /// The time at which the motion diverged, in seconds since the rate was set. Negative if it has not.
   double diverged_s() const { return diverged_s_; }
@@ -81,8 +72,6 @@ class SimBoard {
   std::vector<wire::Channel> channels_;
   std::vector<wire::Note> notes_;
   HostedProfile texture_;
-  std::vector<std::uint8_t> from_host_, to_host_;
-  std::size_t link_bytes_ = static_cast<std::size_t>(-1);
   std::unique_ptr<FrameSource> source_;
   std::unique_ptr<ActuatedTray> tray_;
   std::optional<TraySensor> tray_sensor_;

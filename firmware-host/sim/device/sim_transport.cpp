@@ -12,7 +12,7 @@ constexpr double kLongestNapS = 10e-3;  // half of the block that capture writes
 
 }  // namespace
 
-SimTransport::SimTransport(SimBoard& board, bool paced, std::optional<double> link_buffer_s)
+SimTransport::SimTransport(EmulatedBoard& board, bool paced, std::optional<double> link_buffer_s)
     : board_(board), link_buffer_s_(link_buffer_s) {
   if (paced) pacer_.emplace();
 }

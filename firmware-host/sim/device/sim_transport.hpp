@@ -6,7 +6,7 @@
 
 #include "firmware-host/link/pacer.hpp"
 #include "firmware-host/link/transport.hpp"
-#include "firmware-host/sim/device/sim_board.hpp"
+#include "firmware-host/sim/device/emulated_board.hpp"
 
 namespace tacto::firmware_host {
 
@@ -16,7 +16,7 @@ namespace tacto::firmware_host {
 /// nor ring can hold. The board must outlive this object.
 class SimTransport final : public Transport {
  public:
-  SimTransport(SimBoard& board, bool paced, std::optional<double> link_buffer_s = std::nullopt);
+  SimTransport(EmulatedBoard& board, bool paced, std::optional<double> link_buffer_s = std::nullopt);
 
   schema::Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override;
   schema::Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s) override;
@@ -27,7 +27,7 @@ class SimTransport final : public Transport {
   void pass_real_time(double until_s);
   void tick();
 
-  SimBoard& board_;
+  EmulatedBoard& board_;
   std::optional<Pacer> pacer_;
   std::optional<double> link_buffer_s_;
   double now_s_ = 0;
