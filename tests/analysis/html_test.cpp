@@ -86,7 +86,8 @@ TEST(DemoPage, EachValueHasItsHeader) {
   const std::string page = demo_page({surface}, "by a test");
   EXPECT_EQ(count_of("<th>", page), count_of("<td", page));
   for (const char* cell :
-       {"data-label=\"gain\">700 um/N", "data-label=\"target, RMS\">9 um", "data-label=\"drive, peak\">3 V"})
+       {"data-label=\"gain\">700&nbsp;\u00B5m/N", "data-label=\"target, RMS\">9&nbsp;\u00B5m",
+        "data-label=\"drive, peak\">3&nbsp;V"})
     EXPECT_NE(page.find(cell), std::string::npos) << cell;
 }
 

@@ -32,7 +32,7 @@ def a_played_scene_has_the_forces_of_render():
         said = run_json("session", name, "-o", f"{name}.csv")
         assert [axis["axis"] for axis in said["axes"]] == ["x", "y"] and said["ticks"] == report["ticks"], said
         assert [event["event"] for event in said["events"]] == ["armed", "playing", "idle"], said
-        run("render", "bench.scene.json", "--path", "path.csv", "--device", "sandpaper-1990", *hand, "-o", "f.csv", "--force")
+        run("render", "bench.scene.json", "--finger-path", "path.csv", "--device", "sandpaper-1990", *hand, "-o", "f.csv", "--force")
         played, rendered = table(f"{name}.csv"), table("f.csv")
         rows = 8000
         for axis in "xy":
@@ -54,7 +54,7 @@ def a_hand_on_sim_planar_is_scipys_loop():
     play("bench.scene.json", "sim:planar,device=line,hand=mine", "swing", "--finger-path", "swing.csv", "--onset", "0s")
     assert run_json("replay", "swing")["same_to_the_bit"] is True
     run("session", "swing", "-o", "swing.csv.out.csv")
-    run("render", "bench.scene.json", "--path", "swing.csv", "--device", "line", "--hand", "mine", "-o", "r.csv")
+    run("render", "bench.scene.json", "--finger-path", "swing.csv", "--device", "line", "--hand", "mine", "-o", "r.csv")
     hand = table("r.csv")["hand_x_m"]
     found = table("swing.csv.out.csv")["x_m"][:len(hand)]
     worst = np.abs(sampled_loop(hand, rate, 0.9, 4.17, 400, 300, 2, 0) - found).max()

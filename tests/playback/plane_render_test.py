@@ -115,7 +115,7 @@ def wrong_uses_are_refused():
     arguments = {"scene": "bench.scene.json", "--finger-path": "path.csv", "--device": "sandpaper-1990", "-o": "out.csv"}
 
     def refused(code, *words, **changed):
-        given = {**arguments, **{("scene" if key == "scene" else f"--{key}"): value for key, value in changed.items()}}
+        given = {**arguments, **{("scene" if key == "scene" else f"--{key.replace('_', '-')}"): value for key, value in changed.items()}}
         options = [part for pair in list(given.items())[1:] if pair[1] is not None for part in pair]
         _, err = run("render", given["scene"], *options, code=code)
         assert all(word in err for word in words) and not pathlib.Path("out.csv").exists(), (words, err)
@@ -131,9 +131,9 @@ def wrong_uses_are_refused():
     refused(USAGE, "--hand", device=None, transducer="wiertlewski2011", hand="minsky-radial")
     refused(NOT_FOUND, "minsky-radial", hand="nobody")
     write_path("line.csv", {"time_s": KNOTS["time_s"], "x_m": KNOTS["x_m"]})
-    refused(MALFORMED, "y_m", path="line.csv")
+    refused(MALFORMED, "'y'", finger_path="line.csv")
     write_path("wide.csv", {**KNOTS, "x_m": 10 * KNOTS["x_m"]})
-    refused(UNSUITABLE, "travel", path="wide.csv")
+    refused(UNSUITABLE, "travel", finger_path="wide.csv")
     pathlib.Path("mine.csv").write_text("name,age\n")
     run("render", "bench.scene.json", "--finger-path", "path.csv", "--device", "sandpaper-1990", "-o", "mine.csv", "--force", code=USAGE)
     assert pathlib.Path("mine.csv").read_text() == "name,age\n"
