@@ -151,16 +151,9 @@ Result<AnswerColumns> used_columns(const capture::Source& source, const AnswerCo
   return columns;
 }
 
-// "speed (cm/s)" and "speed_cm_per_s" are "speed" in "cm/s".
 schema::NameWithUnit level_in_words(const capture::Source& source, std::size_t column) {
-  const std::string& name = source.columns[column];
-  schema::NameWithUnit split = schema::split_unit(name);
+  schema::NameWithUnit split = schema::split_unit(source.columns[column]);
   if (split.unit.empty() && column < source.units.size()) split.unit = source.units[column];
-  for (auto at = name.find('_'); split.unit.empty() && at != name.npos; at = name.find('_', at + 1)) {
-    std::string unit = name.substr(at + 1);
-    if (const auto per = unit.find("_per_"); per != unit.npos) unit.replace(per, 5, "/");
-    if (schema::is_known_unit(unit)) split = {name.substr(0, at), unit};
-  }
   return split;
 }
 

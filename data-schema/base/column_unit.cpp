@@ -48,15 +48,18 @@ std::size_t bracket_in(std::string_view name) {
 constexpr Spelling kInNames[] = {{"n", "N"},   {"mn", "mN"},   {"v", "V"},     {"mv", "mV"},
                                  {"hz", "Hz"}, {"khz", "kHz"}, {"mps", "m/s"}, {"mps2", "m/s^2"}};
 
-// "mm" of "x_mm"; empty if the name does not end in a unit.
-std::string_view unit_after_underline(std::string_view name) {
-  const auto underline = name.rfind('_');
-  if (underline == std::string_view::npos || underline == 0) return {};
-  const std::string_view end = name.substr(underline + 1);
-  for (const Spelling& spelling : kInNames)
-    if (spelling.written == end) return spelling.symbol;
-  const bool letters = std::ranges::all_of(end, [](unsigned char c) { return std::isdigit(c) == 0; });
-  return letters && is_known_unit(end) ? end : std::string_view();
+// "x" and "mm" of "x_mm", "speed" and "cm/s" of "speed_cm_per_s": the longest unit; empty if the name does
+// not end in a unit.
+NameWithUnit split_at_underline(std::string_view name) {
+  for (auto at = name.find('_', 1); at < name.size(); at = name.find('_', at + 1)) {
+    std::string end(name.substr(at + 1));
+    for (const Spelling& spelling : kInNames)
+      if (spelling.written == end) return {std::string(name.substr(0, at)), std::string(spelling.symbol)};
+    if (const auto per = end.find("_per_"); per != std::string::npos) end.replace(per, 5, "/");
+    const bool letters = std::ranges::all_of(end, [](unsigned char c) { return std::isdigit(c) == 0; });
+    if (letters && is_known_unit(end)) return {std::string(name.substr(0, at)), end};
+  }
+  return {std::string(name), ""};
 }
 
 }  // namespace
@@ -78,9 +81,7 @@ NameWithUnit split_unit(std::string_view name) {
     if (slash > 0 && is_known_unit(name.substr(slash + 1)))
       return {std::string(without_blanks(name.substr(0, slash))),
               std::string(without_blanks(name.substr(slash + 1)))};
-  if (const auto unit = unit_after_underline(name); !unit.empty())
-    return {std::string(name.substr(0, name.rfind('_'))), std::string(unit)};
-  return {std::string(name), ""};
+  return split_at_underline(name);
 }
 
 std::optional<Unit> known_unit(std::string_view text, Dimension target) {

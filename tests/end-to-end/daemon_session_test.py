@@ -15,9 +15,9 @@ from daemon_test import Client, DAEMON, daemon, prepare_files, ticks_of
 UNPACED = "sim:paced=0"  # emulated time passes only while the daemon reads: no watchdog can expire
 
 
-def wait_for_ticks(client, ticks):
-    """Until the daemon has played that many; the fault is the error."""
-    while (status := client.must(request="status"))["ticks"] < ticks:
+def wait_until_played(client, duration_s):
+    """In emulated time, which passes while the device is armed, too; the fault is the error."""
+    while (status := client.must(request="status"))["played_s"] < duration_s:
         assert status["state"] in ("armed", "playing"), status
     return status
 
@@ -38,10 +38,10 @@ def load_arm_play_stop():
         assert client.must(request="load", file="oak", gain_m_per_n=0.0005)["gain_m_per_n"] == 0.0005
         session = client.must(request="arm")["session"]
         client.must(request="play")
-        status = wait_for_ticks(client, 3000)
+        status = wait_until_played(client, 1.5)
         assert status["state"] == "playing" and status["lost_ticks"] == 0 and status["drive_peak_v"] > 0.01, status
         client.must(request="gain", gain=0.5)
-        wait_for_ticks(client, 6000)
+        wait_until_played(client, 3)
         assert client.must(request="status")["gain"] == 0.5
         client.must(request="stop")
         wait_for_state(client, "armed")
@@ -68,8 +68,14 @@ def a_jump_of_the_encoder_is_a_fault():
     with daemon():
         client = Client()
         client.must(request="load", file="oak", gain_m_per_n=0.0005)
+        # Emulated time does not wait for this test: where it stops between two requests, the jump comes before
+        # `play`. The path is repeated without end.
         session = client.must(request="arm")["session"]
-        client.must(request="play")
+        while not client.ask(request="play")["ok"]:
+            assert client.must(request="status")["state"] == "fault"
+            client.must(request="disarm")
+            wait_for_state(client, "idle")
+            session = client.must(request="arm")["session"]
         while (status := client.must(request="status"))["state"] != "fault":
             assert status["state"] in ("armed", "playing"), status
         assert status["fault"], status
