@@ -70,8 +70,8 @@ def the_model_is_chosen():
 
 
 def noise_is_no_misfit_and_adds_no_parameters():
-    for seed in range(1, 7):
-        said = chosen(f",tray_sensor_noise=1um,seed={seed}", "one mode", truth_of(), *(["--method", "multisine"] if seed > 2 else []))
+    for seed in range(1, 5):
+        said = chosen(f",tray_sensor_noise=1um,seed={seed}", "one mode", truth_of(), *(["--method", "multisine"] if seed > 1 else []))
         assert "third_harmonic_percent" not in said or said["third_harmonic_percent"] == 0, said  # noise is no harmonic
 
 
