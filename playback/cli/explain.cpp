@@ -207,12 +207,13 @@ cli::Action declare_explain(CLI::App& app) {
                "Do not invert the hysteresis of the transducer's file");
   declare_tick_budget(app, o.budget);
   return [options, &app]() -> Result<Report> {
-    const ExplainOptions& o = *options;
-    if (o.device.empty()) return run_explain(o);
+    const ExplainOptions& asked = *options;
+    if (asked.device.empty()) return run_explain(asked);
     TACTO_TRY(check_force_options(app, {"device", "rate", "device-memory"}));
-    const auto rate_hz = o.rate->count() > 0 ? std::optional(o.prepare.rate_hz) : std::nullopt;
-    const auto bytes = o.device_memory > 0 ? std::optional(o.device_memory * sizeof(float)) : std::nullopt;
-    return explain_forces(o.program.file, o.device, rate_hz, bytes);
+    const auto rate_hz = asked.rate->count() > 0 ? std::optional(asked.prepare.rate_hz) : std::nullopt;
+    const auto bytes =
+        asked.device_memory > 0 ? std::optional(asked.device_memory * sizeof(float)) : std::nullopt;
+    return explain_forces(asked.program.file, asked.device, rate_hz, bytes);
   };
 }
 
