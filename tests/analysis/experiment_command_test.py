@@ -4,7 +4,6 @@
 bad input."""
 import csv
 import pathlib
-import sys
 
 import numpy as np
 from scipy import optimize, stats
@@ -151,7 +150,7 @@ def bad_input():
     fault(write("names.csv", "1,2,3", "2,2,3"), code=4)
 
 
-def main():
+def tables_of_answers():
     if PUBLISHED.is_dir():
         eighteen_probit_fits_are_scipys()
         lapses_are_fitted_by_default()
@@ -163,4 +162,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    tacto.in_folder(tables_of_answers)
