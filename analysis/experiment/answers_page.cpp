@@ -20,7 +20,7 @@ constexpr double kUsualP = 0.05;
 constexpr const char *kMisfit = "the answers scatter more than the model permits",
                      *kNoMisfit = "no misfit found";
 
-std::string with_unit(std::string value, const std::string& unit) {
+std::string with_unit(const std::string& value, const std::string& unit) {
   return unit.empty() ? value : value + " " + unit;
 }
 

@@ -84,9 +84,9 @@ SceneFault read_scene_block(const void* block, uint32_t bytes, SceneView& view) 
   if (header.mark != kSceneMark) return SceneFault::mark;
   if (header.version != kSceneVersion) return SceneFault::version;
   const uint32_t patches = header.patches * uint32_t{sizeof(ScenePatch)},
-                 layers = header.layers * uint32_t{sizeof(SceneLayer)};
-  if (bytes != sizeof header + patches + layers + header.numbers * uint32_t{sizeof(float)})
-    return SceneFault::size;
+                 layers = header.layers * uint32_t{sizeof(SceneLayer)},
+                 numbers = header.numbers * uint32_t{sizeof(float)};
+  if (bytes != sizeof header + patches + layers + numbers) return SceneFault::size;
   if (header.check != scene_check(block, bytes)) return SceneFault::check;
   if (header.layers > kMostSceneLayers || header.patches > header.layers) return SceneFault::structure;
   const auto* const at = static_cast<const uint8_t*>(block) + sizeof header;
