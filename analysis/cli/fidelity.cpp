@@ -141,7 +141,6 @@ cli::Action declare_fidelity(CLI::App& app) {
   auto options = std::make_shared<FidelityVerbOptions>();
   playback::PlayOptions& play = options->fidelity.play;
   play.device_uri = "sim:";
-  play.prepare.onset_s = 0.02;
   app.add_option("TEXTURE", play.program.file, "Texture of force: stem or file name")->required();
   app.add_option("-d,--device", play.device_uri, "Device: sim:, sim:hysteresis=0.16 ..., usb:")
       ->capture_default_str();

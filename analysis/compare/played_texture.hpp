@@ -23,8 +23,8 @@ struct PlayedTexture {
 };
 
 /// `stroke` is 1-based; 0 selects the longest. Errors: those of read_session_stroke and texture_along;
-/// unsuitable: a gain or texture that changes within the stroke, or a change to a texture that an older
-/// session does not name before.
+/// unsuitable: a gain or texture that changes within the stroke, or a change to a texture whose
+/// description the session lacks.
 schema::Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke,
                                              const std::function<void(double)>& progress = {});
 

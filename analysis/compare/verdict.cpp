@@ -70,11 +70,6 @@ std::vector<Bands> drawn_deviations(const BandPowers& powers, const Bands& seen)
   return draws;
 }
 
-double root_mean_square(const std::vector<double>& values) {
-  const double sum = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 double weighted_mean(const Bands& values, const Bands& weights) {
   return std::inner_product(values.begin(), values.end(), weights.begin(), 0.0);
 }
@@ -92,7 +87,7 @@ Bands scatter_of(const std::vector<Bands>& draws, std::size_t bands) {
   for (std::size_t b = 0; b < bands; ++b) {
     std::vector<double> column;
     for (const Bands& draw : draws) column.push_back(draw[b]);
-    scatter[b] = root_mean_square(column);
+    scatter[b] = schema::rms_of(column);
   }
   return scatter;
 }
@@ -109,7 +104,7 @@ void judge_level(Evidence& evidence, const std::vector<Bands>& draws, const Band
   std::vector<double> levels;
   for (const Bands& draw : draws) levels.push_back(weighted_mean(draw, weights));
   const double reach = schema::student_t(static_cast<double>(evidence.segments - 1), schema::kOneSided95) *
-                       root_mean_square(levels);
+                       schema::rms_of(levels);
   evidence.level_db = weighted_mean(evidence.band_db, weights);
   evidence.level_low_db = evidence.level_db - reach;
   evidence.level_high_db = evidence.level_db + reach;
@@ -118,7 +113,7 @@ void judge_level(Evidence& evidence, const std::vector<Bands>& draws, const Band
 void judge_shape(Evidence& evidence, const std::vector<Bands>& draws, const Bands& weights) {
   std::vector<double> shapes;
   for (const Bands& draw : draws) shapes.push_back(shape_of(draw, weights));
-  const double mean_square = std::pow(root_mean_square(shapes), 2);
+  const double mean_square = std::pow(schema::rms_of(shapes), 2);
   std::ranges::sort(shapes);
   evidence.shape_db = shape_of(evidence.band_db, weights);
   evidence.shape_chance_db = shapes[kDraws * 95 / 100];

@@ -18,6 +18,7 @@
 #include "firmware-host/device_to_record.hpp"
 #include "firmware-host/link/device.hpp"
 #include "firmware-host/sim/bench/actuated_tray.hpp"
+#include "firmware-host/sim/physics/paper_surfaces.hpp"
 #include "playback/render/render.hpp"
 #include "spatial/picture/line_plot.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
@@ -31,20 +32,8 @@ namespace {
 namespace fs = std::filesystem;
 using schema::Result;
 
-// Wiertlewski 2011, Table II. The recording has the paper's speed; the replay is slower and reverses its
-// direction.
-struct Sample {
-  const char* surface;
-  const char* description;
-};
-constexpr std::array<Sample, 5> kSamples = {{
-    {"A", "Melted by a handheld polishing disk"},
-    {"B", "Milled by a 40 mm end mill: 1.5 mm ridges, 0.1 mm high"},
-    {"C", "Milled by a 2 mm end mill: a grating of 3 mm period, 0.1 mm deep"},
-    {"D", "Random scratches of P40 sandpaper"},
-    {"E", "Drilled by a conical end mill: a quincunx of pits, 0.5 mm apart and 0.1 mm deep"},
-}};
 constexpr const char* kNotes = "made by tactograph demo";
+// The recording has the paper's speed; the replay is slower and reverses its direction.
 constexpr double kRecordSpeedMps = 50e-3;
 constexpr double kRecordTimeS = 1.0;
 // A recording to work on, of the surface whose own period (0.5 mm: 2 /mm) is within the valid band at this
@@ -100,7 +89,7 @@ Result<void> check_replaceable(const std::string& stem) {
   return {};
 }
 
-Result<schema::Recording> recorded(const char* surface, double time_s, const std::string& stem) {
+Result<schema::Recording> recorded(const std::string& surface, double time_s, const std::string& stem) {
   remove_earlier(stem);
   auto device = firmware_host::open_device_to_record(
       fmt::format("sim:surface={},speed={}mm/s,seed=1", surface, kRecordSpeedMps * 1e3));
@@ -137,14 +126,14 @@ void describe_spectrogram(const Made& made, DemoSurface& row) {
   row.force_rms_n = spatial::rms_of(made.texture);
 }
 
-Result<Made> surface_made(const Sample& sample, const std::string& stem, DemoSurface& row) {
-  const auto recording = recorded(sample.surface, kRecordTimeS, stem);
+Result<Made> surface_made(const std::string& stem, DemoSurface& row) {
+  const auto recording = recorded(row.surface, kRecordTimeS, stem);
   TACTO_TRY(recording);
   auto texture = first_texture(*recording);
   TACTO_TRY(texture);
   auto spectrogram = spatial::spatial_spectrogram(*texture, {});
   TACTO_TRY(spectrogram);
-  spectrogram->name = sample.surface;
+  spectrogram->name = row.surface;
   Made made{std::move(*texture), std::move(*spectrogram)};
   const spatial::SpectrogramFigure figure({{&made.texture, &made.spectrogram}});
   TACTO_TRY(write_made(stem, made, figure));
@@ -217,11 +206,11 @@ Result<void> replayed(const Made& made, const schema::Transducer& transducer, De
 }
 
 Result<void> check_folder(const std::string& folder, const std::string& page) {
-  for (const Sample& sample : kSamples)
-    if (auto free = check_replaceable(folder + "/" + sample.surface); !free) return free;
+  for (const auto& surface : firmware_host::paper_surfaces())
+    if (auto free = check_replaceable(folder + "/" + surface.name); !free) return free;
   if (auto free = check_replaceable(folder + kFingerStem); !free) return free;
   std::error_code ignored;
-  const bool again = is_of_a_demo(folder + "/" + kSamples.front().surface);
+  const bool again = is_of_a_demo(folder + kFingerStem);
   if (again || !fs::exists(page, ignored)) return {};
   return schema::fail(schema::ErrorKind::usage, "exists, and was not made by an earlier demo", page,
                       "choose another folder with -o");
@@ -243,13 +232,14 @@ Result<DemoSummary> run_demo(const std::string& folder, const std::function<void
   summary.page = folder + "/index.html";
   TACTO_TRY(check_folder(folder, summary.page));
   summary.simulated = fmt::format("by the emulated device of {}", kCreator);
-  for (const Sample& sample : kSamples) {
-    progress(static_cast<double>(summary.surfaces.size()) / kSamples.size());
+  const auto& surfaces = firmware_host::paper_surfaces();
+  for (const auto& surface : surfaces) {
+    progress(static_cast<double>(summary.surfaces.size()) / static_cast<double>(surfaces.size()));
     DemoSurface row;
-    row.surface = sample.surface;
-    row.description = sample.description;
+    row.surface = surface.name;
+    row.description = surface.description;
     row.record_speed_mps = kRecordSpeedMps;
-    const auto made = surface_made(sample, folder + "/" + sample.surface, row);
+    const auto made = surface_made(folder + "/" + row.surface, row);
     TACTO_TRY(made);
     TACTO_TRY(replayed(*made, *transducer, row));
     summary.surfaces.push_back(std::move(row));

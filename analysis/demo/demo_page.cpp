@@ -45,7 +45,7 @@ std::string demo_answer(const std::vector<DemoSurface>& surfaces) {
 
 std::string section(const DemoSurface& s) {
   return fmt::format(
-      "<h2>Surface {}</h2>\n<p>{}. The strongest cell of the spectrogram is at {} and {}.</p>\n{}<p>Replayed "
+      "<h2>Surface {}: {}</h2>\n<p>The strongest cell of the spectrogram is at {} and {}.</p>\n{}<p>Replayed "
       "along a path that turns round, at {} on average: the tray's displacement against its target. The "
       "error over 15-500 Hz is {}, after the delay of {} is removed.</p>\n{}<p class=\"note\">simulated: "
       "{}</p>\n",

@@ -35,7 +35,6 @@ Prepared prepared_for(double rate_hz, std::int32_t origin_count = 0) {
   options.rate_hz = rate_hz;
   options.ends = playback::Ends::loop;
   options.origin_count = origin_count;
-  options.onset_s = 0.02;
   if (rate_hz > 50e3) options.inverse = playback::Inverse::gain;
   if (rate_hz > 20e3) options.between_counts = options.look_ahead = false;
   return *playback::prepare(texture, *schema::read_transducer("wiertlewski2011"), options);

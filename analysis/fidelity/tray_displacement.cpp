@@ -13,7 +13,6 @@ namespace tacto::analysis {
 namespace {
 
 constexpr double kTrayRateHz = 20e3;
-constexpr double kReferenceOnsetS = 0.005;
 constexpr firmware_host::LvdtParameters kTraySensor{0, 5e3, 5e-9};
 
 }  // namespace
@@ -54,7 +53,7 @@ std::vector<double> target_displacement_m(const EmulatedPass& pass, const schema
   const auto grid = playback::reading_grid(path.duration_s(), rate_hz * fine, band, finest_hz);
   const playback::TextureLookup lookup(texture.signal, at_m);
   return playback::signal_of(
-      playback::exact_target(lookup, path, grid, band, gain_m_per_n, kReferenceOnsetS));
+      playback::exact_target(lookup, path, grid, band, gain_m_per_n, playback::kReferenceOnsetS));
 }
 
 std::vector<double> in_band(const std::vector<double>& displacement_m, double rate_hz,

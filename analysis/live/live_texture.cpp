@@ -19,8 +19,6 @@ namespace {
 
 using schema::Result;
 
-constexpr double kOnsetS = 0.02;
-
 // The page's board in this process, at rest: it checks the upload and accepts it as the page's does.
 class RestingBoard final : public firmware_host::Transport {
  public:
@@ -102,7 +100,6 @@ playback::PrepareOptions page_options() {
   options.rate_hz = browser::kRateHz;
   options.metres_per_count = browser::kMetresPerCount;
   options.most_samples = browser::kProfileSamples;
-  options.onset_s = kOnsetS;
   return options;
 }
 

@@ -3,8 +3,15 @@
 
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
 
 namespace tacto::schema {
+
+double rms_of(std::span<const double> values) {
+  const double sum = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
 
 double student_t(double freedom, double probability) {
   using boost::math::policies::domain_error;

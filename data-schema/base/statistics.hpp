@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Median and Student's t, for all rooms.
+// Median, RMS and Student's t, for all rooms.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +16,9 @@ Value upper_median(std::span<Value> values) {
   std::ranges::nth_element(values, middle);
   return *middle;
 }
+
+/// NaN of no values.
+double rms_of(std::span<const double> values);
 
 /// Quantile of Student's t distribution; of the normal one for infinite freedom. Freedom below 1 counts as 1.
 /// NaN for a freedom that is NaN. Precondition: 0 < probability < 1.

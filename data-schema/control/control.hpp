@@ -15,7 +15,7 @@
 
 namespace tacto::schema {
 
-inline constexpr std::string_view kControlVersion = "1.3";
+inline constexpr std::string_view kControlVersion = "1.0";
 inline constexpr std::size_t kMostControlLine = 16384;  ///< bytes, newline included
 
 enum class ControlVerb { hello, load, arm, play, stop, disarm, gain, status, watch };

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/playback_defaults.hpp"
 #include "data-schema/results/budget.hpp"
 #include "data-schema/scene/playback_choices.hpp"
 
@@ -24,7 +25,7 @@ struct DaemonConfig {
   int watchdog_ms = 100;
   double most_speed_mps = 2;
   std::optional<double> dead_man_s;  ///< longest silence of the clients while armed
-  double onset_s = 0.02;
+  double onset_s = kOnsetS;
   double most_late_percent = 20;
   std::string finger_path;
   bool undo_hysteresis = true;

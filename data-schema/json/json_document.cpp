@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 
+#include "data-schema/base/format_version.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/json/json_schema.hpp"
 #include "data-schema/json/json_text.hpp"
@@ -25,39 +25,9 @@ Result<std::string> kind_in(const Json& body, const std::string& where) {
   return body["kind"].get<std::string>();
 }
 
-struct Version {
-  int major = 0, minor = 0;
-};
-
-std::optional<Version> version_from(std::string_view text) {
-  Version version;
-  const char* const end = text.data() + text.size();
-  const auto major = std::from_chars(text.data(), end, version.major);
-  if (major.ec != std::errc() || major.ptr == end || *major.ptr != '.') return std::nullopt;
-  const auto minor = std::from_chars(major.ptr + 1, end, version.minor);
-  if (minor.ec != std::errc() || minor.ptr != end) return std::nullopt;
-  return version;
-}
-
-struct KindVersion {
-  std::string_view kind, version;
-};
-constexpr KindVersion kNewerKinds[] = {{"scene", "1.1"},     // 1.1: patches of force layers
-                                       {"session", "1.2"}};  // 1.1: measured displacement; 1.2: forces
-
-/// The file's version if its minor version is newer than this program's, else "".
-Result<std::string> newer_version(const Json& body, std::string_view kind, const std::string& where) {
-  const std::string text =
-      body.contains("version") && body["version"].is_string() ? body["version"].get<std::string>() : "";
-  const auto version = version_from(text);
-  if (!version)
-    return fail(ErrorKind::malformed, "`version` is not \"major.minor\"", place(where, "/version"));
-  const Version ours = *version_from(version_of_kind(kind));
-  if (version->major != ours.major)
-    return fail(ErrorKind::unsupported_version,
-                fmt::format("its format has version {}, this program reads {}.x", text, ours.major), where,
-                version->major > ours.major ? "use a newer tactograph" : "");
-  return version->minor > ours.minor ? text : "";
+Result<std::string> newer_version_in(const Json& body, const std::string& where) {
+  const bool named = body.contains("version") && body["version"].is_string();
+  return newer_version(named ? body["version"].get<std::string>() : "", where, place(where, "/version"));
 }
 
 Result<Document> checked(Json body, const std::string& where, std::string_view kind) {
@@ -66,7 +36,7 @@ Result<Document> checked(Json body, const std::string& where, std::string_view k
   if (*found != kind)
     return fail(ErrorKind::malformed, fmt::format("its kind is '{}', not '{}'", *found, kind),
                 place(where, "/kind"));
-  auto newer = newer_version(body, kind, where);
+  auto newer = newer_version_in(body, where);
   TACTO_TRY(newer);
   const auto& rules = schema_of(kind);
   if (!rules)
@@ -97,7 +67,7 @@ std::optional<std::string> first_not_finite(const Json& node) {
 Result<std::string> written(std::string_view kind, const Json& body, const std::string& extra_json) {
   const auto& rules = schema_of(kind);
   if (!rules) return fail(ErrorKind::internal, fmt::format("there is no usable schema for '{}'", kind));
-  Json document = {{"kind", kind}, {"version", version_of_kind(kind)}};
+  Json document = {{"kind", kind}, {"version", kFormatVersion}};
   for (const auto& [name, value] : body.items()) document[name] = value;
   add_unknown_parts(*rules, document, extra_json);
   if (const auto pointer = first_not_finite(document))
@@ -108,12 +78,6 @@ Result<std::string> written(std::string_view kind, const Json& body, const std::
 }
 
 }  // namespace
-
-std::string_view version_of_kind(std::string_view kind) {
-  for (const KindVersion& newer : kNewerKinds)
-    if (newer.kind == kind) return newer.version;
-  return kVersion;
-}
 
 Result<Document> open_document(const std::string& path, std::string_view kind) {
   auto body = read_json(path);
@@ -139,7 +103,7 @@ Result<std::vector<Violation>> violations_of(const std::string& path) {
   if (!rules)
     return fail(ErrorKind::malformed, fmt::format("'{}' is not a kind of file of tactograph", *kind),
                 path + "#/kind");
-  TACTO_TRY(newer_version(*body, *kind, path));
+  TACTO_TRY(newer_version_in(*body, path));
   return breaches(*body, *rules);
 }
 

@@ -14,13 +14,6 @@ namespace tacto::schema {
 
 using Json = nlohmann::ordered_json;
 
-/// The version, "major.minor", of every format without a version of its own. A minor version only adds
-/// members.
-inline constexpr std::string_view kVersion = "1.0";
-
-/// The version of a kind's format.
-std::string_view version_of_kind(std::string_view kind);
-
 /// One breach of a schema: the JSON pointer ("" for the whole document) and what is wrong there.
 struct Violation {
   std::string pointer;

@@ -26,7 +26,7 @@ AgreedGaps agreed_gaps(const std::vector<Gap>& gaps) {
     last = gap;
     const std::uint64_t all = gap.device_sequence - first_missing;
     agreed.untold += all - std::min(all, gap.count);
-    gap.count = std::max(all, gap.count);  // an older version's may name its first missing frame
+    gap.count = std::max(all, gap.count);
     missing += gap.count;
     agreed.gaps.push_back(gap);
   }

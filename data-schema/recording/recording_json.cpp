@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "data-schema/base/format_version.hpp"
 #include "data-schema/transducer/transducer_json.hpp"
 
 namespace tacto::schema {
@@ -184,7 +185,7 @@ Channel channel_from(const Json& body) {
 
 // A document inside the sidecar: it has its own version, and can be copied to a file.
 Json embedded_transducer(const Transducer& transducer) {
-  Json body = {{"kind", "transducer"}, {"version", kVersion}};
+  Json body = {{"kind", "transducer"}, {"version", kFormatVersion}};
   body.update(transducer_body(transducer));
   return body;
 }

@@ -36,7 +36,7 @@ struct Scene {
   std::string created, creator;
   PlaybackChoices playback;
   std::string extra_json;
-  std::string newer_version;  ///< with which it is written again; else 1.0, with patches 1.1
+  std::string newer_version;  ///< with which it is written again
   std::vector<std::string> unknown_members = {};
 };
 

@@ -17,7 +17,6 @@ namespace tacto::schema {
 namespace {
 
 constexpr std::string_view kSceneKind = "scene";
-constexpr std::string_view kWithoutPatches = "1.0";  // the version
 constexpr std::string_view kSceneSuffix = ".scene";
 constexpr std::array<std::string_view, 3> kEndsWords = {"stop", "mirror", "loop"};
 
@@ -88,9 +87,6 @@ Result<void> read_layers(const Document& document, const std::string& where, Sce
 
 Result<void> read_patches(const Document& document, const std::string& where, Scene& scene) {
   if (!document.body.contains("patches")) return {};
-  if (document.body["version"] == kWithoutPatches)
-    return fail(ErrorKind::malformed, fmt::format("a scene of version {} has no patches", kWithoutPatches),
-                where + "#/version", fmt::format("the version is {}", version_of_kind(kSceneKind)));
   const auto unknown = document.newer_version.empty() ? UnknownMembers::refused : UnknownMembers::kept;
   for (const Json& body : document.body["patches"]) {
     auto patch = patch_from(body, unknown, fmt::format("{}#/patches/{}", where, scene.patches.size()));
@@ -123,14 +119,9 @@ Result<Scene> scene_from(const Document& document, const std::string& where) {
   return scene;
 }
 
-// A scene without patches is written as older programs read it.
-std::string written_version(const Scene& scene) {
-  if (!scene.newer_version.empty()) return scene.newer_version;
-  return std::string(scene.patches.empty() ? kWithoutPatches : version_of_kind(kSceneKind));
-}
-
 Json scene_body(const Scene& scene) {
-  Json body = {{"version", written_version(scene)}};
+  Json body = Json::object();
+  put_text(body, "version", scene.newer_version);
   put_text(body, "name", scene.name);
   put_text(body, "notes", scene.notes);
   put_text(body, "created", scene.created);

@@ -84,7 +84,7 @@ struct SessionTexture {
   std::string file, sha256;
   double at_m = 0, gain_m_per_n = 0;
   TextureEnds ends = TextureEnds::stop;
-  double seam_m = 1e-3;  ///< of a loop: the part of its end that fades into its beginning; older: 1 mm
+  double seam_m = 0;  ///< of a loop: the part of its end that fades into its beginning
 };
 
 /// What is played, and how the drive is made of it.
@@ -92,7 +92,7 @@ struct SessionProgram {
   std::string scene_file, scene_sha256;  ///< empty where a texture was played by itself
   std::vector<SessionTexture> textures;
   std::string inverse;
-  PlaybackChoices choices;  ///< used for the playback; older sessions have the inverse only
+  PlaybackChoices choices;  ///< used for the playback
   double delay_s = 0, low_hz = 0, high_hz = 0;
   double loop_delay_s = 0;  ///< of a loop closed on the host: from the count to the drive at the device
 };
@@ -103,11 +103,11 @@ struct SessionHeader : SessionProgram {
   std::string loop = "device";  ///< or "host"
   double rate_hz = 0, clock_hz = 0, metres_per_count = 0;
   std::string device_uri, device_name, device_serial, device_firmware, simulated;
-  std::string device_protocol;  ///< "1.2", of the wire; empty: an older session
+  std::string device_protocol;  ///< "1.0", of the wire
   Transducer transducer;
   std::string transducer_sha256;
   std::optional<SessionForces> forces = std::nullopt;  ///< of a scene with force patches: no transducer
-  std::optional<SessionSensor> sensor;  ///< none: the device does not report its tray; older sessions
+  std::optional<SessionSensor> sensor;                 ///< none: the device does not report its tray
   double initial_gain = 1;
   std::int32_t initial_encoder = 0;
   std::string extra_json;

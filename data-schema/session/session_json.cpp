@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "data-schema/base/format_version.hpp"
 #include "data-schema/json/json_document.hpp"
 #include "data-schema/json/json_schema.hpp"
 #include "data-schema/scene/playback_choices_json.hpp"
@@ -16,7 +17,6 @@ namespace {
 
 constexpr std::string_view kSessionKind = "session";
 constexpr std::string_view kChangeKind = "session_change";
-constexpr std::string_view kWithoutForces = "1.1";  // the version
 
 struct SessionText {
   const char* name;
@@ -50,7 +50,7 @@ constexpr ProgramNumber kPlaybackNumbers[] = {{"delay_s", &SessionProgram::delay
 Json device_body(const SessionHeader& header) {
   Json body = Json::object();
   for (const auto& [name, member] : kDeviceTexts) body[name] = header.*member;
-  put_text(body, "protocol", header.device_protocol);
+  body["protocol"] = header.device_protocol;
   put_text(body, "simulated", header.simulated);
   return body;
 }
@@ -77,7 +77,7 @@ SessionTexture texture_of_row(const Json& row) {
           number_or(row, "at_m", 0),
           number_or(row, "gain_m_per_n", 0),
           ends_from(text_or(row, "ends")),
-          number_or(row, "seam_m", SessionTexture{}.seam_m)};
+          number_or(row, "seam_m", 0)};
 }
 
 Json playback_body(const SessionProgram& program) {
@@ -144,9 +144,8 @@ std::optional<SessionForces> forces_in(const Json& body) {
   return forces;
 }
 
-// A session of a tray is written as older programs read it.
 Json session_body(const SessionHeader& header) {
-  Json body = {{"version", header.forces ? version_of_kind(kSessionKind) : kWithoutForces}};
+  Json body = Json::object();
   for (const auto& [name, member] : kSessionTexts) body[name] = header.*member;
   for (const auto& [name, member] : kSessionNumbers) body[name] = header.*member;
   body["device"] = device_body(header);
@@ -199,7 +198,7 @@ Result<void> check_transducer_in(const Json& body, const std::string& where) {
   if (body.contains("forces")) return {};
   Json transducer = body["transducer"];
   transducer["kind"] = "transducer";
-  if (!transducer.contains("version")) transducer["version"] = "1.0";
+  if (!transducer.contains("version")) transducer["version"] = kFormatVersion;
   static const auto kRules = schema_of("transducer");
   const auto faults = breaches(transducer, *kRules);
   if (faults.empty()) return {};

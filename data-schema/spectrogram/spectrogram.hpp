@@ -69,7 +69,7 @@ struct Spectrogram : SpectrogramHeader {
 /// Writes netCDF-4: variables `density` (unit^2 mm) or `amplitude` (unit), `position` (mm),
 /// `spatial_frequency` (1/mm), `known` (0 or 1 a cell: what the recording could know; 1 throughout where its
 /// band is not said) and its limits by position `known_from` and `known_to` (1/mm), window and scaling as
-/// attributes, and since version 1.2 `density_db` or `amplitude_db` (dB, by spatial frequency, then position:
+/// attributes, and `density_db` or `amplitude_db` (dB, by spatial frequency, then position:
 /// the order of a plot) and the attribute `sha256` (spectrogram_sum.hpp); with several, a leading dimension
 /// `stroke`, shorter ones ended by NaN. All must share one frequency axis. Errors: cannot_write; unsuitable,
 /// where axes differ.

@@ -2,41 +2,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 
+#include "data-schema/base/format_version.hpp"
 #include "data-schema/spectrogram/netcdf_file.hpp"
 #include "data-schema/spectrogram/spectrogram_axes.hpp"
 
 namespace tacto::schema {
 namespace {
 
-constexpr int kMajor = 1, kMinor = 2;
-
-struct Version {
-  int major = 0, minor = 0;
-};
-
-Version version_of(const std::string& text) {
-  Version version;
-  const char* end = text.data() + text.size();
-  const auto [dot, fault] = std::from_chars(text.data(), end, version.major);
-  if (fault == std::errc() && dot != end) std::from_chars(dot + 1, end, version.minor);
-  return version;
-}
-
-Result<Version> check_kind(NetcdfReader& file, const std::string& path) {
+// Its version, if it is newer than this program's, else "".
+Result<std::string> check_kind(NetcdfReader& file, const std::string& path) {
   TACTO_TRY(file.status(path));
-  const std::string text = file.text("version");
-  const Version version = version_of(text);
-  if (file.text("kind") != "spectrogram" || version.major == 0)
+  if (file.text("kind") != "spectrogram")
     return fail(ErrorKind::malformed, "is netCDF, but not a spectrogram of tactograph", path);
-  if (version.major > kMajor)
-    return fail(ErrorKind::unsupported_version,
-                fmt::format("has version {}; this program reads {}.x", text, kMajor), path,
-                "use a newer tactograph");
-  return version;
+  return newer_version(file.text("version"), path, path);
 }
 
 std::string nth_line(const std::string& text, std::size_t n) {
@@ -103,7 +84,7 @@ void read_cells(NetcdfReader& file, std::size_t stroke, Spectrogram& spectrogram
   if (part.count.size() == 3 && !spectrogram.cells.empty()) drop_absent_rows(spectrogram);
 }
 
-// Files of version 1.0 have no valid band; NaN if a texture had none.
+// A file whose textures had no valid band lacks both; NaN if one of several had none.
 void read_known(NetcdfReader& file, std::size_t stroke, Spectrogram& spectrogram) {
   if (!file.has("known_from") || !file.has("known_to")) return;
   const Part part = part_of(file, stroke, {spectrogram.position_m.size()});
@@ -134,10 +115,10 @@ Result<Spectrogram> read_spectrogram_nc(const std::string& path, std::size_t str
   if (!std::filesystem::is_regular_file(path, ignored))
     return fail(ErrorKind::not_found, "there is no such file", path);
   NetcdfReader file(path);
-  const auto version = check_kind(file, path);
-  TACTO_TRY(version);
+  auto newer = check_kind(file, path);
+  TACTO_TRY(newer);
   auto spectrogram = read_stroke(file, stroke, path);
-  if (spectrogram && version->minor > kMinor) spectrogram->newer_version = file.text("version");
+  if (spectrogram) spectrogram->newer_version = std::move(*newer);
   return spectrogram;
 }
 

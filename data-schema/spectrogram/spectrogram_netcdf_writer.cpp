@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "data-schema/base/decibels.hpp"
+#include "data-schema/base/format_version.hpp"
 #include "data-schema/spectrogram/netcdf_file.hpp"
 #include "data-schema/spectrogram/spectrogram_axes.hpp"
 #include "data-schema/spectrogram/spectrogram_sum.hpp"
@@ -18,8 +19,6 @@
 namespace tacto::schema {
 namespace {
 
-// 1.1: amplitudes, valid band; 1.2: decibels, the checksum
-constexpr const char* kVersion = "1.2";
 constexpr const char *kPositionUnit = "mm", *kFrequencyUnit = "1/mm", *kDecibelUnit = "dB";
 
 std::vector<double> in_millimetres(const std::vector<double>& position_m) {
@@ -211,7 +210,7 @@ class NcWriter : public SpectrogramWriter {
   void put_identity() {
     file_.attribute("Conventions", std::string("CF-1.10"));
     file_.attribute("kind", std::string("spectrogram"));
-    file_.attribute("version", std::string(kVersion));
+    file_.attribute("version", std::string(kFormatVersion));
     file_.attribute("title", fmt::format("Spatial spectrogram of {}", first_->name));
     file_.attribute("source", std::string(kCreator));
   }

@@ -180,7 +180,6 @@ Result<void> check_scene_options(const CLI::App& app, const PlayOptions& o) {
 
 cli::Action declare_play(CLI::App& app) {
   auto options = std::make_shared<PlayVerbOptions>();
-  options->play.prepare.onset_s = 0.02;
   declare_what(app, options->play);
   declare_finger_path(
       app, options->path,

@@ -52,7 +52,7 @@ std::string stroke_line(std::uint64_t number, const PlayedStroke& s) {
 }
 
 bool is_stroke_table(std::string_view line) {
-  return line.starts_with("stroke,from_s,to_s,from_m,to_m,");  // other columns in older versions
+  return line.starts_with("stroke,from_s,to_s,from_m,to_m,");
 }
 
 /// The strokes as a table, written as they are found.

@@ -25,14 +25,6 @@ Result<ControlFields> asked(ControlConnection& connection, ControlVerb verb) {
   return connection.ask(request);
 }
 
-bool says_while_connected(const ControlFields& armed) {
-  return std::ranges::any_of(armed, [](const auto& field) {
-    const auto* flag = std::get_if<bool>(&field.second);
-    return field.first == "while_connected" && flag != nullptr && *flag;
-  });
-}
-
-// An older daemon ignores members that it does not have, and would not stop with this command.
 Result<void> arm_while_connected(ControlConnection& connection) {
   ControlRequest request;
   request.verb = ControlVerb::arm;
@@ -40,12 +32,7 @@ Result<void> arm_while_connected(ControlConnection& connection) {
   request.dead_man_s = kDeadManS;
   const auto armed = connection.ask(request);
   TACTO_TRY(armed);
-  if (says_while_connected(*armed)) return {};
-  (void)asked(connection, ControlVerb::disarm);
-  return schema::fail(
-      schema::ErrorKind::unsupported_version,
-      "the daemon's protocol is older than version 1.2: it would continue to play after this command",
-      connection.socket(), "update it, or use 'ctl arm' and 'ctl play'");
+  return {};
 }
 
 bool goes_on(const ControlFields& status) {

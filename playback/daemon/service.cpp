@@ -31,7 +31,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kStatusEveryS = 0.1;
-constexpr double kReleaseS = 0.01;
 constexpr double kLeastSaved = 1e-6;  // of a gain; one below it, or above its inverse, is a mistake
 constexpr double kObeyedS = 0.2, kLookS = 0.01;  // a device's ticks come every 10 ms, and a ramp takes 20 ms
 
@@ -148,7 +147,6 @@ PrepareOptions Service::options() {
   options.metres_per_count = player_->metres_per_count();
   options.undo_hysteresis = config_.undo_hysteresis;
   options.onset_s = config_.onset_s;
-  options.release_s = kReleaseS;
   options.watchdog_ms = static_cast<std::uint16_t>(config_.watchdog_ms);
   options.jump_mps = config_.most_speed_mps;
   options.most_samples = client().description().welcome.profile_samples;

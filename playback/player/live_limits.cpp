@@ -22,7 +22,6 @@ std::optional<double> db_of(const LimitTally& tally) {
 
 LiveLimits::LiveLimits(const schema::SessionHeader& header, std::size_t profile_samples)
     : rate_hz_(header.rate_hz),
-      tells_touch_(reports_contact(header)),
       board_(std::make_unique<SessionBoard>(header, BoardLimits::lifted, profile_samples)) {}
 
 void LiveLimits::give_up(std::string why) {
@@ -34,8 +33,6 @@ void LiveLimits::give_up(std::string why) {
 
 void LiveLimits::hear(const SessionCommand& command) {
   if (!board_) return;
-  const auto contact = message_in_frame<wire::Contact>(command.frame);
-  if (contact && contact->on_n > 0 && !tells_touch_) return give_up("the device does not report contact");
   beats_.see(command, rate_hz_);
   commands_.hand(command, [this](const SessionCommand& due) { obey(due); });
 }

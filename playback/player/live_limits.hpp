@@ -28,10 +28,9 @@ struct LimitsTook {
 /// same core, without limits, gets the same commands and counts while they are recorded (session_limits.hpp
 /// has the definition, and does the same for a session; the figures agree). It follows the ticks with a delay
 /// of the device's watchdog time, because only then it is known that the host was not silent for too long.
-/// Unknown: from missing ticks or commands on, also those missing in the file; for a contact gate whose ticks
-/// do not report contact (before protocol 1.2); if the drive of the second device differs before a limit was
-/// reached, or it refuses a command. One thread calls hear(), take() and end(), which allocate, so not that
-/// of the tick. Any thread may call told().
+/// Unknown: from missing ticks or commands on, also those missing in the file; if
+/// the drive of the second device differs before a limit was reached, or it refuses a command. One thread
+/// calls hear(), take() and end(), which allocate, so not that of the tick. Any thread may call told().
 class LiveLimits {
  public:
   /// `profile_samples`: the number that the device holds.
@@ -58,7 +57,6 @@ class LiveLimits {
   void tell();
 
   double rate_hz_;
-  bool tells_touch_;
   std::unique_ptr<SessionBoard> board_;  // none after the end
   SessionCommands commands_;
   HostBeats beats_;

@@ -35,7 +35,6 @@ namespace {
 
 constexpr double kUsualPlayS = 10, kReceiveS = 0.01, kBeatS = 0.025, kRampS = 0.05, kSceneRestS = 1;
 constexpr double kFastestMps = 10;  // of a hand; faster is a jump of the encoder
-constexpr float kUsualReleaseS = 0.01F;
 constexpr std::uint16_t kWatchdogMs = 100;
 
 // The device as its file describes it, or as it describes itself.
@@ -142,7 +141,7 @@ Result<wire::ForceLimits> limits_for(const wire::Axes& own, double rate_hz, doub
                 uri,
                 fmt::format("at most {:g} s are safe: raise slew_n_per_s of the device",
                             double{core::kLongestReleaseS}));
-  limits.release_s = std::min(kUsualReleaseS, longest_s);
+  limits.release_s = std::min(static_cast<float>(schema::kReleaseS), longest_s);
   limits.watchdog_ms = kWatchdogMs;
   limits.counts_per_tick = static_cast<std::uint32_t>(std::clamp(kFastestMps / finest_m / rate_hz, 1.0, 1e9));
   return limits;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "data-schema/base/playback_defaults.hpp"
 #include "playback/player/flight_recorder.hpp"
 
 namespace tacto::playback {
@@ -17,7 +18,7 @@ struct ScenePlayOptions {
   /// hand (read_axis_paths()); empty: all axes at 0.
   std::string path;
   std::optional<double> time_s, rate_hz;  ///< default: the path's duration or 10 s; the device's largest rate
-  double onset_s = 0.02;
+  double onset_s = schema::kOnsetS;
 };
 
 struct ScenePlayOutcome {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/playback_defaults.hpp"
 #include "data-schema/texture/texture.hpp"
 #include "data-schema/transducer/transducer.hpp"
 #include "firmware-host/core/kernel/tick_kernel.hpp"
@@ -42,7 +43,7 @@ struct PrepareOptions {
   double gain_m_per_n = 1e-3;  ///< G_psi, m/N; live: TickInput::gain
   spatial::Band band;          ///< unchanged up to its upper edge, if the rate permits
   Ends ends = Ends::stop;
-  double seam_m = 1e-3;  ///< of a loop whose end does not meet its beginning; 0: none
+  double seam_m = schema::kSeamM;  ///< of a loop whose end does not meet its beginning; 0: none
   wire::Interpolation interpolation = wire::Interpolation::hermite;
   double samples_per_period = 0;  ///< of the finest content; 0: default of the interpolation (pyramid_shape)
   Inverse inverse = Inverse::full;
@@ -57,7 +58,7 @@ struct PrepareOptions {
   bool between_counts = true;      ///< time the encoder's edges
   double max_speed_mps = 0.5;      ///< no aliasing up to it; beyond, the texture fades to silence
   double jump_mps = 0;             ///< a faster change of the count is a fault; 0: four times max_speed_mps
-  double onset_s = 0.05, release_s = 0.01;
+  double onset_s = schema::kOnsetS, release_s = schema::kReleaseS;
   std::uint16_t watchdog_ms = 100;
   double energy_rms_v = 0, energy_window_s = 1;  ///< limit of the drive's RMS; 0: none
   /// Normal force, N, at which contact begins and below which it ends; 0: no gate.

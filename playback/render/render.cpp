@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "data-schema/base/decibels.hpp"
+#include "data-schema/base/playback_defaults.hpp"
 #include "data-schema/recording/statistics.hpp"
 #include "playback/model/identified_band.hpp"
 #include "playback/model/spatial_content.hpp"
@@ -138,7 +139,7 @@ void add_loop_of(Rendering& rendering, const schema::SpaceSignal& whole) {
 
 Rendering described(std::span<const PlacedTexture> textures, const FingerPath& path,
                     const RenderOptions& options, Engine engine) {
-  const double usual_onset_s = engine == Engine::kernel ? kKernelOnsetS : kReferenceOnsetS;
+  const double usual_onset_s = engine == Engine::kernel ? schema::kOnsetS : kReferenceOnsetS;
   Rendering rendering;
   rendering.max_speed_mps = greatest_speed_mps(path);
   rendering.highest_passed_per_m = options.band.high_hz / rendering.max_speed_mps;

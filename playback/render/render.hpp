@@ -27,10 +27,6 @@ enum class OverLimit { refuse, clip };
 /// The engine: the slow exact reference, or the kernel that runs in real time.
 enum class Engine { reference, kernel };
 
-/// Default onsets. The kernel's, as in `play`, is an envelope of the drive: if it were shorter, the device
-/// would limit the slew.
-inline constexpr double kReferenceOnsetS = 0.005, kKernelOnsetS = 0.02;
-
 struct RenderOptions {
   double rate_hz = 10e3;               ///< of the drive; Wiertlewski 2011 records at 10 kHz
   double gain_m_per_n = 1e-3;          ///< G_psi: displacement for force. A fingertip has about 1e3 N/m
@@ -50,9 +46,10 @@ struct RenderOptions {
   bool undo_hysteresis = true;  ///< by the kernel, if the transducer's file has a hysteresis
   TickBudget budget;            ///< what the rendering has to keep; see render()
   bool keep_engine = false;     ///< the engine was named and is not changed
-  /// Fade at the ends of the path, at most a quarter of it; default kReferenceOnsetS or kKernelOnsetS. The
-  /// reference fades the force by a raised cosine at each end, the kernel has the onset of its drive, so that
-  /// there is no step if the finger starts inside the texture. The rest is the ringing of the band's edges:
+  /// Fade at the ends of the path, at most a quarter of it; default kReferenceOnsetS or schema::kOnsetS. The
+  /// reference fades the force by a raised cosine at each end; the kernel's is an envelope of the drive, as
+  /// in `play`: if it were shorter, the device would limit the slew. So there is no step if the finger starts
+  /// inside the texture. The rest is the ringing of the band's edges:
   /// on a real finger's texture the drive starts below 0.3 of its RMS, without an onset at up to 1.3 of it.
   std::optional<double> onset_s;
 };

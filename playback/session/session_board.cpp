@@ -62,11 +62,6 @@ bool is_frame(std::span<const std::uint8_t> bytes) {
          header.length <= wire::kMaxPayload && bytes.size() == around + header.length;
 }
 
-bool reports_contact(const schema::SessionHeader& header) {
-  const std::string& protocol = header.device_protocol;
-  return !protocol.empty() && protocol != "1.0" && protocol != "1.1";
-}
-
 SessionBoard::SessionBoard(const schema::SessionHeader& header, BoardLimits limits,
                            std::size_t profile_samples)
     : header_(header),

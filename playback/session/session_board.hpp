@@ -33,9 +33,6 @@ inline wire::MessageType type_of(const schema::SessionCommand& command) {
   return static_cast<wire::MessageType>(command.frame[3]);
 }
 
-/// Whether the ticks report contact: from protocol 1.2 on. Older sessions do not name the protocol.
-bool reports_contact(const schema::SessionHeader& header);
-
 /// Whether the limits of amplitude, slew and energy act as recorded, or not at all.
 enum class BoardLimits { recorded, lifted };
 

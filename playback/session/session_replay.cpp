@@ -24,7 +24,6 @@ using schema::SessionTick;
 // What a replay needs to know of the whole session before its first tick.
 struct Overview {
   HostBeats beats;
-  bool gated = false;  // by contact
   std::uint64_t lost = 0;
   schema::SessionEnding ending = schema::SessionEnding::unread;
   std::optional<std::uint64_t> damaged_at;
@@ -49,7 +48,6 @@ Result<Overview> overview_of(const std::string& name) {
     if (!is_frame(command->frame))
       return fail(ErrorKind::malformed, "a command in it is not a frame of the wire", reader->path());
     seen.beats.see(*command, reader->header().rate_hz);
-    if (const auto contact = message_in_frame<wire::Contact>(command->frame)) seen.gated = contact->on_n > 0;
   }
   seen.ending = reader->ending();
   if (seen.ending == schema::SessionEnding::damaged) seen.damaged_at = reader->sound_bytes();
@@ -154,11 +152,7 @@ Result<void> check_replayable(const Overview& seen, const schema::SessionReader&
             "lacks {}: it could not be written (was the disk full?), so the drive can't be computed again",
             missing),
         reader.path(), "tactograph session can export its ticks");
-  if (!seen.gated || reports_contact(reader.header())) return {};
-  return fail(ErrorKind::unsuitable,
-              "was played with a contact gate whose state its ticks do not contain: its drive can't be "
-              "computed again",
-              reader.path(), "play again, with firmware of protocol 1.2 or newer");
+  return {};
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace tacto::playback {
 /// (core::reach_counts).
 struct ProfileReach {
   std::int32_t origin_count = 0;
-  std::int64_t counts = INT64_MAX;  ///< to each side; older sessions do not state it
+  std::int64_t counts = INT64_MAX;  ///< to each side; none stated: all
 
   bool holds(std::int32_t encoder) const;
 };
@@ -26,7 +26,7 @@ struct ProfileReach {
 struct TextureChange {
   std::uint64_t row = 0;                         ///< the first that contains the new texture
   double fade_ticks = 0;                         ///< duration of the fade (core::TexturePlayer)
-  std::optional<schema::SessionProgram> brings;  ///< none: an older session, which does not name it
+  std::optional<schema::SessionProgram> brings;  ///< none: the file lacks it, because it could not be written
   double time_s = 0;                             ///< of that row
   ProfileReach reach = {};
 };

@@ -13,7 +13,7 @@
 namespace tacto::playback {
 namespace {
 
-// Older sessions name no filter after the converter. Unknown names of a newer version are read as none.
+// Unknown names of a newer version are read as none.
 Chain chain_of(const schema::SessionHeader& header) {
   const PrepareOptions played = with_choices({}, header.choices).value_or(PrepareOptions{});
   return {header.transducer, played.reconstruction, played.reconstruction_cutoff_hz, played.hold,

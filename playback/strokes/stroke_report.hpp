@@ -71,10 +71,10 @@ struct StrokeListener {
 /// effect of the limits: read_unlimited_where_known(), with a note if it is unknown. Memory depends neither
 /// on the length of the session nor on that of a stroke: it is that of a block (JudgedBlocks; 200,000 rows at
 /// 10 kHz) and its textures, of the strokes kept, and of the commands. A block has less than 2^24 readings.
-/// Errors: as session_overview. If a texture is missing or has changed, or if the session does not name a
-/// change (an older one), the strokes with a part of it have no target, with a note. If ticks are missing,
-/// the strokes that end before them are judged, as if the drive ended there, with a note; the effect of the
-/// limits in them is not reported. Blind ticks are in no stroke, with a note.
+/// Errors: as session_overview. If a texture is missing or has changed, or if the session lacks the
+/// block that describes a change, the strokes with a part of it have no target, with a note. If ticks are
+/// missing, the strokes that end before them are judged, as if the drive ended there, with a note; the effect
+/// of the limits in them is not reported. Blind ticks are in no stroke, with a note.
 schema::Result<StrokeReport> report_strokes(const std::string& name, const StrokeListener& listener = {},
                                             const JudgedBlocks& blocks = {});
 

@@ -34,13 +34,8 @@ firmware_host::Heights heights_of(char surface) {
   constexpr std::size_t kPoints = 20001;
   constexpr double kHeightPitchM = 2e-6;
   constexpr std::uint64_t kSurfaceSeed = 1;
-  const std::map<char, firmware_host::Heights (*)(std::size_t, double, std::uint64_t)> makers = {
-      {'A', firmware_host::melted_surface},
-      {'B', firmware_host::milled_ridges},
-      {'C', firmware_host::milled_grating},
-      {'D', firmware_host::sanded_scratches},
-      {'E', firmware_host::drilled_pits}};
-  return makers.at(surface)(kPoints, kHeightPitchM, kSurfaceSeed);
+  return firmware_host::paper_surfaces()[kSurfaces.find(surface)].heights(kPoints, kHeightPitchM,
+                                                                          kSurfaceSeed);
 }
 
 // The pools of all surfaces, made when they are needed first.

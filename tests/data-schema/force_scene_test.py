@@ -15,7 +15,7 @@ LAYERS = [{"type": "grooves", "profile": "square", "period_m": 0.001, "kappa_n":
            "depth_m": {"value": 0.0002, "slider": {"from": 0, "to": 0.001}}},
           {"type": "damper", "damping_n_s_per_m": 5}]
 PATCH = {"name": "wood", "place": {"x_m": 0, "y_m": 0}, "size": {"width_m": 0.1, "height_m": 0.05}, "layers": LAYERS}
-SCENE = {"kind": "scene", "version": "1.1", "patches": [PATCH]}
+SCENE = {"kind": "scene", "version": "1.0", "patches": [PATCH]}
 
 
 def presets_are_described(folder):

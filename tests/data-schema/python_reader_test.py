@@ -25,7 +25,15 @@ import daemon_test
 import tactograph
 from tacto import run
 
-STORED = TESTS / "data-schema" / "stored_1_0"
+
+
+def make_files():
+    """A recording of the emulated device, its texture and spectrogram, and a session of it."""
+    run("record", "-d", "sim:surface=triangle,length=12mm,speed=60mm/s,strokes=1,seed=3", "--time", "0.4s", "-o", "ridge", "--subject", "S01")
+    run("spatial", "ridge", "-o", "ridge")
+    run("spectrogram", "ridge", "-o", "ridge.nc", "--window", "4mm", "--hop", "1mm")
+    pathlib.Path("slide.csv").write_text("time_s,position_m\n0,0.0005\n0.25,0.0065\n0.4,0.003\n")
+    run("play", "ridge", "-d", "sim:hysteresis=0.16", "--gain", "0.5mm/N", "--interpolation", "sinc", "--finger-path", "slide.csv", "-o", "play")
 
 
 def refusal(read, name, *words, **options):
@@ -161,7 +169,6 @@ def a_session_of_the_daemon_has_its_gains():
 
 
 def a_session_holds_what_the_tray_sensor_measured():
-    pathlib.Path("slide.csv").write_text("time_s,position_m\n0,0.0005\n0.25,0.0065\n0.4,0.003\n")
     run("play", "ridge", "-d", "sim:tray_sensor=on", "--gain", "0.5mm/N", "--finger-path", "slide.csv", "-o", "sensed")
     read = session_equals_its_export("sensed")
     with open("sensed-rows.csv", newline="") as file:
@@ -214,9 +221,8 @@ def a_newer_minor_version_is_read_with_a_warning():
 
 def main():
     with tempfile.TemporaryDirectory() as temporary:
-        folder = pathlib.Path(temporary) / "files"
-        shutil.copytree(STORED, folder)
-        os.chdir(folder)
+        os.chdir(temporary)
+        make_files()
         for check in (texture_has_its_positions_and_band, clipping_is_masked, recording_is_physical_and_keeps_its_gaps,
                       average_tells_its_spread, spectrogram_is_upright_and_loaded, the_version_is_that_of_the_program, a_stored_session_is_read,
                       a_session_holds_what_the_tray_sensor_measured, a_session_of_the_daemon_has_its_gains, a_session_that_was_cut_is_read_up_to_there,

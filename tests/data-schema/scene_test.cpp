@@ -107,7 +107,7 @@ TEST(Scene, WhatIsMisspeltIsRefusedWithTheNearest) {
 
 TEST(Scene, ALayerOfAnotherTypeIsRefusedByItsName) {
   const std::string wall = R"({"type":"wall","at_m":0.05,"stiffness_n_per_m":1000})";
-  expect_refused(scene_text(std::string(kOak) + "," + wall, "1.1"), ErrorKind::unsuitable,
+  expect_refused(scene_text(std::string(kOak) + "," + wall), ErrorKind::unsuitable,
                  "s.scene.json#/layers/1/type");
 }
 

@@ -27,7 +27,7 @@ def check_axes(data, positions):
 
 
 def check_attributes(attributes):
-    texts = {"Conventions": "CF-1.10", "kind": "spectrogram", "version": "1.2", "window": "blackman",
+    texts = {"Conventions": "CF-1.10", "kind": "spectrogram", "version": "1.0", "window": "blackman",
              "scaling": "density, one-sided", "quantity": "tangential_force", "simulated": "a formula"}
     for name, text in texts.items():
         assert attributes[name] == text, name

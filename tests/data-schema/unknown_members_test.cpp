@@ -133,7 +133,6 @@ TEST_F(UnknownMembers, ARequestIsRefused) {
 TEST_F(UnknownMembers, FreeOnesOfASceneAreWrittenAgain) {
   Body body = with(with(scene_kind().body, "/x_light"), "/layers/0/x_colour");
   body["playback"]["x_why"] = {{"a", 1}};
-  body["version"] = "1.1";
   body["patches"] = Body::parse(R"([{"name":"a","place":{"x_m":0,"y_m":0,"x_z_m":2},
     "size":{"width_m":0.1,"height_m":0.1},"x_note":[1],
     "layers":[{"type":"spring","stiffness_n_per_m":100,"x_from":"lab"}]}])");

@@ -980,7 +980,7 @@ def whoever_armed_goes_away():
         client.socket.close()
         client.lines.close()
         time.sleep(0.5)
-        assert other.must(request="status")["state"] == "playing", "without while_connected it goes on, as in version 1.1"
+        assert other.must(request="status")["state"] == "playing", "without while_connected it goes on"
         other.must(request="disarm")
 
 

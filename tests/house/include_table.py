@@ -122,7 +122,7 @@ MAY_INCLUDE = {
         "dsp/fourier dsp/resample features numbers spectrogram strokes texture}",
     "analysis/demo":
         "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
-        "sim/bench} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
+        "sim/bench sim/physics} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
     "analysis/experiment": "analysis/{page psychometrics} capture/table data-schema/{base results}",
     "analysis/extremes":
         "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/recording "

@@ -154,8 +154,8 @@ TEST_F(StrokesOverChanges, WithTheTexturesSwappedTheNumbersAreBad) {
   EXPECT_TRUE(notes_.empty());
 }
 
-// Older sessions do not name the texture of a change; they are judged up to the change, as before.
-TEST_F(StrokesOverChanges, AnOlderSessionIsJudgedUpToItsFirstChange) {
+// As where the disk was full when the changes should have been written.
+TEST_F(StrokesOverChanges, ASessionWithoutItsChangesIsJudgedUpToTheFirst) {
   play_with_changes();
   const double first_db = strokes_of(session_).at(0).predicted.error_db;
   session_ = rewritten([](SessionChange&) { return false; });

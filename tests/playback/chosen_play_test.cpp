@@ -253,30 +253,6 @@ TEST_F(ChosenPlay, WithoutAGateTheForceIsNothingToTheDrive) {
   EXPECT_EQ(status_.ticks.gated(), 0U);
 }
 
-// The ticks of an older device do not contain the gate, so they cannot be replayed.
-TEST_F(ChosenPlay, AGatedSessionOfAnOlderDeviceIsRefusedByReplay) {
-  play_chosen(choices_with([](auto& c) { c.contact_on_n = 0.3; }), 0.3);
-  auto reader = schema::SessionReader::open(session_);
-  schema::SessionHeader header = reader->header();
-  EXPECT_EQ(header.device_protocol, "1.3");
-  header.device_protocol = "";
-  const std::string older = folder_ / "older.session";
-  auto writer = schema::SessionWriter::create(older, header);
-  ASSERT_TRUE(writer);
-  while (auto block = reader->next()) {
-    if (const auto* command = std::get_if<schema::SessionCommand>(&*block)) {
-      ASSERT_TRUE(writer->add(*command));
-    }
-    if (const auto* some = std::get_if<std::vector<schema::SessionTick>>(&*block)) {
-      ASSERT_TRUE(writer->add(*some));
-    }
-  }
-  const auto replayed = replay_session(older);
-  ASSERT_FALSE(replayed);
-  EXPECT_EQ(replayed.error().kind, schema::ErrorKind::unsuitable);
-  EXPECT_NE(schema::message(replayed.error()).find("a contact gate"), std::string::npos);
-}
-
 TEST_F(ChosenPlay, AReadingIsUploadedAndReplays) {
   for (const char* word : {"nearest", "linear", "sinc"}) {
     play_chosen(choices_with([&](auto& c) { c.interpolation = word, c.inverse = "none"; }), 0.4);

@@ -25,7 +25,7 @@ using std::chrono::seconds;
 constexpr int kPlaces = 4;
 constexpr const char* kToken = "0123456789abcdef";
 
-std::string hello_with(const std::string& token, const char* version = "1.2") {
+std::string hello_with(const std::string& token, const char* version = "1.0") {
   return std::string(R"({"request":"hello","version":")") + version + R"(","token":")" + token + "\"}\n";
 }
 

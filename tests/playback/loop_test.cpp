@@ -111,8 +111,7 @@ TEST(Loop, WhatIsCutIsTold) {
   EXPECT_NEAR(prepared->scale.samples * prepared->pitch_m, 35.5e-3, 1e-12);
 }
 
-// Older sessions do not contain the seam: it was always 1 mm.
-TEST(Loop, AToldSeamIsKept) {
+TEST(Loop, TheSeamOfASessionIsKept) {
   const auto texture = waves(36000, 1e-6, 3e-3, 0);
   const auto cut = as_played(texture, 0, {Ends::loop, kSeamM}, 0, 0.1, "texture");
   const auto whole = as_played(texture, 0, prepared_ends(texture, Ends::loop), 0, 0.1, "texture");

@@ -33,7 +33,7 @@ def damper(damping):
 
 
 def write_scene(name, *patches, **members):
-    pathlib.Path(f"{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.1", "patches": list(patches), **members}))
+    pathlib.Path(f"{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "patches": list(patches), **members}))
 
 
 def write_path(name, columns):

@@ -136,7 +136,7 @@ TEST_F(RenderLimits, WhatFitsTheReferenceFitsTheKernelWhereverTheFingerStarts) {
   options_.engine = Engine::kernel;
   const auto kernel = rendered();
   ASSERT_TRUE(kernel) << message(kernel.error());
-  EXPECT_EQ(kernel->onset_s, kKernelOnsetS);
+  EXPECT_EQ(kernel->onset_s, schema::kOnsetS);
   EXPECT_FALSE(kernel->removed_db);
   options_.onset_s = 0;
   EXPECT_FALSE(rendered());

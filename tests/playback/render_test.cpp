@@ -7,6 +7,7 @@
 #include <span>
 
 #include "made_textures.hpp"
+#include "playback/render/reference/exact_target.hpp"
 
 namespace tacto::playback {
 namespace {

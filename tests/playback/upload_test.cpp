@@ -134,7 +134,7 @@ TEST(Upload, ATextureTooLargeIsRefusedWithBothSizes) {
 
 // Between upload and arming a new profile removes levels, taps and everything else: a host of protocol 1.0
 // plays as before.
-TEST(Upload, AnOlderHostsProfileKnowsNothingOfIt) {
+TEST(Upload, ANewProfileStartsWithoutTheSettingsOfTheLast) {
   const auto prepared = prepare(two_sines(), uploaded_transducer(), device_options(2e3));
   const auto device = sim_device();
   Client& client = device->client();

@@ -11,6 +11,7 @@
 
 #include "analysis/identify/fit/least_squares.hpp"
 #include "analysis/identify/fit/misfit.hpp"
+#include "data-schema/base/statistics.hpp"
 #include "playback/model/hysteresis_inverse.hpp"
 
 namespace tacto::analysis {
@@ -35,10 +36,6 @@ std::vector<double> delayed(std::span<const double> v, double samples) {
     out[i] = std::lerp(v[before], v[after], at - static_cast<double>(before));
   }
   return out;
-}
-
-double rms(std::span<const double> x) {
-  return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / static_cast<double>(x.size()));
 }
 
 std::vector<double> centred(std::span<const double> x) {
@@ -227,7 +224,7 @@ void put_errors(const LoopTable& table, std::span<const double> v, std::span<con
   fit.errors = operator_errors({v, v.size() - left.size(), found, left});
   for (auto* changes : {&fit.errors.by_noise, &fit.errors.by_misfit})
     for (schema::Hysteresis& change : *changes) change = scaled_change(found, std::move(change), limit_v);
-  const double size = rms(centred(table.answer));
+  const double size = schema::rms_of(centred(table.answer));
   fit.errors.noise /= size;
   fit.errors.misfit /= size;
 }
@@ -239,11 +236,11 @@ void put_quality(const LoopTable& table, std::span<const double> v, std::span<co
   const std::size_t line[] = {0, table.columns.size() - 1};
   const auto straight =
       non_negative_least_squares({table.columns.front(), table.columns.back()}, table.answer, 1);
-  const double size = rms(centred(table.answer));
+  const double size = schema::rms_of(centred(table.answer));
   const std::vector<double> left = left_of(table, all, weights),
                             left_by_line = left_of(table, line, straight);
-  fit.residual_part = rms(left) / size;
-  fit.linear_residual_part = rms(left_by_line) / size;
+  fit.residual_part = schema::rms_of(left) / size;
+  fit.linear_residual_part = schema::rms_of(left_by_line) / size;
   fit.r_squared = 1 - fit.residual_part * fit.residual_part;
   put_errors(table, v, weights, left, limit_v, fit);
   const auto play_operators = static_cast<double>(table.thresholds_v.size() - 1);

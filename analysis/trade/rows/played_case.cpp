@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "data-schema/base/statistics.hpp"
 #include "firmware-host/sim/physics/spline_noise.hpp"
 #include "playback/model/hysteresis_inverse.hpp"
 #include "playback/model/spatial_content.hpp"
@@ -153,19 +154,13 @@ double gain_for(const schema::SpaceSignal& loop, const schema::Transducer& trans
   return peak_n > 0 ? std::min(1.0, kPartOfLimit * transducer.displacement_limit_m / peak_n) : 1e-3;
 }
 
-double rms_of(const schema::SpaceSignal& loop) {
-  double sum = 0;
-  for (const double value : loop.values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(loop.values.size()));
-}
-
 // By Parseval, from one half of the lines; the mean square of the window between the ends is 3/2.
 double target_share(const std::vector<double>& exact, const schema::SpaceSignal& loop,
                     const PrepareOptions& o) {
   const PaddedSpectrum inner = spectrum_between(exact, o);
   const auto n = static_cast<double>(inner.period);
   const double mean_square = 2 * playback::energy_in(inner, o.band) / (1.5 * n * n);
-  return std::sqrt(mean_square) / (o.gain_m_per_n * rms_of(loop));
+  return std::sqrt(mean_square) / (o.gain_m_per_n * schema::rms_of(loop.values));
 }
 
 // Without a delay the target is not delayed.

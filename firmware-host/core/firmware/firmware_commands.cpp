@@ -250,7 +250,7 @@ SceneArm Firmware::scene_arm(const wire::Arm& message) const noexcept {
   return arm;
 }
 
-// A host of protocol 1.0 does not send the other settings: a new profile starts without them.
+// A host need not send the other settings: a new profile starts without them.
 Reply Firmware::profile_begin(const wire::ProfileBegin& message) noexcept {
   if (!idle()) return next_profile_begin(message);
   scene_.forget();

@@ -27,14 +27,14 @@ enum class MessageType : uint8_t {
   drive = 0x0F,
   heartbeat = 0x10,
   reset = 0x11,
-  profile_levels = 0x12,  ///< from 0x12 to 0x18: since protocol 1.1
+  profile_levels = 0x12,
   taps = 0x13,
   tracking = 0x14,
   energy = 0x15,
   contact = 0x16,
   change = 0x17,
   hysteresis = 0x18,
-  force_limits = 0x19,  ///< from 0x19 to 0x1B, 0x89 and 0x8A: since protocol 1.3
+  force_limits = 0x19,
   scene_part = 0x1A,
   set = 0x1B,
   welcome = 0x81,
@@ -106,7 +106,7 @@ enum TickFlag : uint32_t {
   kTickEnergyLimited = 64,  ///< the drive was reduced to limit its RMS
   kTickGated = 128,         ///< the finger does not touch: the drive falls
   kTickBlind = 256,     ///< the encoder was not read for 10 ms: the drive falls, then the new count is used
-  kTickTouching = 512,  ///< the contact gate detects contact; since protocol 1.2
+  kTickTouching = 512,  ///< the contact gate detects contact
 };
 /// From this bit on: the number of steering commands in effect since arming, modulo 256.
 inline constexpr uint32_t kTickSteeredShift = 24;

@@ -56,8 +56,7 @@ double trapezoid(double phase, double wall) {
   return std::clamp(from_groove / wall, -0.5, 0.5);
 }
 
-}  // namespace
-
+// Long smooth waves of 1 to 5 mm, with a fine grain.
 Heights melted_surface(std::size_t count, double pitch_m, std::uint64_t seed) {
   SplineNoise waves(Random(seed, 1), kMeltedKnotM), grain(Random(seed, 2), kGrainKnotM);
   Heights heights(count);
@@ -66,6 +65,7 @@ Heights melted_surface(std::size_t count, double pitch_m, std::uint64_t seed) {
   return heights;
 }
 
+// An end mill of 40 mm with many teeth: each tooth makes a ridge of its own.
 Heights milled_ridges(std::size_t count, double pitch_m, std::uint64_t seed) {
   Random random(seed, 3);
   Heights heights(count);
@@ -80,6 +80,7 @@ Heights milled_ridges(std::size_t count, double pitch_m, std::uint64_t seed) {
   return heights;
 }
 
+// An end mill of 2 mm with two flutes.
 Heights milled_grating(std::size_t count, double pitch_m, std::uint64_t seed) {
   SplineNoise marks(Random(seed, 4), kGrainKnotM);
   Heights heights(count);
@@ -104,6 +105,7 @@ Heights sanded_scratches(std::size_t count, double pitch_m, std::uint64_t seed) 
   return heights;
 }
 
+// A conical end mill of 60 degrees.
 Heights drilled_pits(std::size_t count, double pitch_m, std::uint64_t seed) {
   Random random(seed, 6);
   Heights heights(count, 0);
@@ -113,6 +115,19 @@ Heights drilled_pits(std::size_t count, double pitch_m, std::uint64_t seed) {
     cut_notch(heights, pitch_m, centre_m + wander_m, depth_m, kPitFlank);
   }
   return heights;
+}
+
+}  // namespace
+
+const std::array<PaperSurface, 5>& paper_surfaces() {
+  static constexpr std::array<PaperSurface, 5> kSurfaces = {{
+      {'A', "melted by a polishing disk", melted_surface},
+      {'B', "milled ridges 1.5 mm apart, 0.1 mm high", milled_ridges},
+      {'C', "milled grating of 3 mm period, 0.1 mm deep", milled_grating},
+      {'D', "scratches of P40 sandpaper", sanded_scratches},
+      {'E', "quincunx of conical pits 0.5 mm apart, 0.1 mm deep", drilled_pits},
+  }};
+  return kSurfaces;
 }
 
 }  // namespace tacto::firmware_host

@@ -26,19 +26,6 @@ constexpr double kShortestPeriodM = 50e-6;
 constexpr double kShortestM = 10e-3;  // a patch of 4.4 mm needs room to move
 constexpr double kLongestM = 1;
 
-struct Sample {
-  std::string_view name, description;
-  Heights (*heights)(std::size_t count, double pitch_m, std::uint64_t seed);
-};
-
-constexpr Sample kSamples[] = {
-    {"A", "A: melted by a polishing disk", melted_surface},
-    {"B", "B: milled ridges 1.5 mm apart, 0.1 mm high", milled_ridges},
-    {"C", "C: milled grating of 3 mm period, 0.1 mm deep", milled_grating},
-    {"D", "D: scratches of P40 sandpaper", sanded_scratches},
-    {"E", "E: quincunx of conical pits 0.5 mm apart, 0.1 mm deep", drilled_pits},
-};
-
 // One period of a grating for phase 0 to 1, between -1/2 and 1/2.
 struct Grating {
   std::string_view name;
@@ -117,10 +104,10 @@ schema::Result<Surface> make_fixed(const SurfaceChoice& choice) {
   if (choice.period_m || choice.depth_m)
     return schema::fail(ErrorKind::usage, fmt::format("surface {} has a fixed shape", choice.name),
                         "period, depth", "use period and depth with sine, triangle or square only");
-  for (const Sample& sample : kSamples)
-    if (sample.name == choice.name)
-      return Surface{HeightProfile(kPitchM, sample.heights(grid_points(choice), kPitchM, choice.seed)),
-                     std::string(sample.description)};
+  for (const PaperSurface& surface : paper_surfaces())
+    if (choice.name == std::string_view(&surface.name, 1))
+      return Surface{HeightProfile(kPitchM, surface.heights(grid_points(choice), kPitchM, choice.seed)),
+                     fmt::format("{}: {}", surface.name, surface.description)};
   if (choice.name.starts_with(kProfilePrefix))
     return measured_surface(choice.name.substr(kProfilePrefix.size()));
   if (choice.name == "flat") return Surface{HeightProfile(kPitchM, Heights(grid_points(choice))), "flat"};
@@ -131,7 +118,9 @@ schema::Result<Surface> make_fixed(const SurfaceChoice& choice) {
 }  // namespace
 
 std::string surface_names() {
-  return "A, B, C, D, E, flat, sine, triangle, square";
+  std::string names;
+  for (const PaperSurface& surface : paper_surfaces()) names += fmt::format("{}, ", surface.name);
+  return names + "flat, sine, triangle, square";
 }
 
 schema::Result<Surface> make_surface(const SurfaceChoice& choice) {

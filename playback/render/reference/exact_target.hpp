@@ -34,6 +34,9 @@ ReadingGrid reading_grid(double duration_s, double rate_hz, const spatial::Band&
 /// The (samples - 1) x oversampling + 1 places at which a grid reads a path. Precondition: a checked path.
 std::vector<double> reading_places(const FingerPath& path, const ReadingGrid& grid);
 
+/// The usual onset_s.
+inline constexpr double kReferenceOnsetS = 0.005;
+
 /// Values at rest before and after the readings; none: their mean, as in exact_target.
 struct Rests {
   std::optional<double> start, end;
