@@ -326,7 +326,11 @@ Result<ControlFields> Service::gain(const ControlRequest& request) {
 }
 
 void Service::add_present_gain(ControlFields& fields, double factor) const {
-  if (!loaded_.empty()) fields.emplace_back("gain_m_per_n", factor * loaded_gain_m_per_n_);
+  if (!loaded_.empty()) {
+    fields.emplace_back("gain_m_per_n", factor * loaded_gain_m_per_n_);
+    if (default_gain_m_per_n_ != 0)
+      fields.emplace_back("gain_times_default", factor * loaded_gain_m_per_n_ / default_gain_m_per_n_);
+  }
   add_inversion(fields, factor * loaded_gain_m_per_n_);
 }
 

@@ -47,6 +47,16 @@ double proportional_fit(const Peaks& peaks, double gain_m_per_n) {
   return schema::rounded_down(gain_m_per_n / peaks.tightest().used());
 }
 
+double fitting_gain(double gain_m_per_n, Peaks peaks, const std::function<Peaks(double gain_m_per_n)>& at) {
+  constexpr int kMostGains = 30;
+  for (int tries = 0; tries < kMostGains && gain_m_per_n != 0; ++tries) {
+    gain_m_per_n = proportional_fit(peaks, gain_m_per_n);
+    peaks = at(gain_m_per_n);
+    if (peaks.fit()) return gain_m_per_n;
+  }
+  return 0;
+}
+
 tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_per_n,
                                            double default_gain_m_per_n, bool may_clip) {
   const std::string fits =

@@ -48,7 +48,7 @@ Result<void> check_options(const RenderOptions& o) {
     return wrong(fmt::format("a rate of {:g} Hz can't hold a band up to {:g} Hz", o.rate_hz, o.band.high_hz),
                  fmt::format("use a --rate above {:g}Hz", 2 * o.band.high_hz));
   if (!(o.gain_m_per_n > 0 && o.gain_m_per_n <= kLargestGain))
-    return wrong("the gain is not between 0 and 1 m/N", "a fingertip needs about 1mm/N");
+    return wrong("the gain is 0, or larger than 1 m/N", "a fingertip needs about 1mm/N");
   if (!std::isfinite(o.at_m)) return wrong("the texture's place is not finite", "give --at a length");
   if (const double onset_s = o.onset_s.value_or(0); !(onset_s >= 0 && std::isfinite(onset_s)))
     return wrong("the onset is below 0", "0s turns it off");

@@ -111,7 +111,7 @@ MAY_INCLUDE = {
         "playback/model",
     "playback/strokes":
         "data-schema/{base texture} firmware-host/{core/kernel core/wire} playback/{choose model render "
-        "render/reference session}",
+        "render/reference session} spatial/features",
     "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":
         "analysis/{compare demo experiment extremes fidelity identify/fit identify/measure identify/report live page report trade "
