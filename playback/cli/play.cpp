@@ -21,7 +21,6 @@
 #include "playback/cli/loop_report.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
-#include "playback/player/scene_play.hpp"
 #include "playback/player/session_name.hpp"
 
 namespace tacto::playback {
@@ -95,6 +94,18 @@ void add_played(Report& report, const PlayOutcome& outcome) {
   cli::add_choices(report, outcome.choices);
 }
 
+Report add_end(Report report, const PlayOutcome& outcome) {
+  if (!outcome.recorder.failure.empty()) {
+    cli::warn(fmt::format("the session is incomplete, {} ticks are not in it: {}", outcome.recorder.lost(),
+                          outcome.recorder.failure));
+    report.ends_with(schema::ErrorKind::cannot_write);
+  }
+  if (outcome.status.state != PlayerState::fault) return report;
+  cli::warn("playing ended in a fault: " + outcome.status.fault);
+  report.add("fault", outcome.status.fault).ends_with(schema::ErrorKind::device);
+  return report;
+}
+
 Report play_report(const PlayOptions& o, const PlayOutcome& outcome, const cli::Pace& pace, bool explain) {
   Report report;
   report.add("session", o.session).add("device", outcome.device);
@@ -109,46 +120,36 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, const cli::
   if (outcome.decision) add_decision(report, *outcome.decision, explain);
   cli::warn_grouped(outcome.notes);
   if (outcome.off_note) cli::warn(*outcome.off_note);
-  if (!outcome.recorder.failure.empty()) {
-    cli::warn(fmt::format("the session is incomplete, {} ticks are not in it: {}", outcome.recorder.lost(),
-                          outcome.recorder.failure));
-    report.ends_with(schema::ErrorKind::cannot_write);
-  }
-  if (outcome.status.state != PlayerState::fault) return report;
-  cli::warn("playing ended in a fault: " + outcome.status.fault);
-  report.add("fault", outcome.status.fault).ends_with(schema::ErrorKind::device);
-  return report;
+  return add_end(std::move(report), outcome);
 }
 
 Result<Report> run_play_forces(const PlayVerbOptions& asked) {
   const PlayOptions& o = asked.play;
-  ScenePlayOptions play;
-  play.scene = o.program.file;
+  ForcePlayOptions play;
+  play.program.file = o.program.file;
+  if (asked.rate->count() > 0) play.program.rate_hz = o.prepare.rate_hz;
+  play.program.onset_s = o.prepare.onset_s;
   play.device_uri = o.device_uri;
   play.path = asked.path.file;
   play.time_s = o.time_s;
-  if (asked.rate->count() > 0) play.rate_hz = o.prepare.rate_hz;
-  play.onset_s = o.prepare.onset_s;
   play.session = schema::session_path(asked.session.value_or(session_named_after(o.program.file)));
   const cli::StopSignals signals;
   cli::Progress progress("playing");
-  const auto outcome = play_scene(
+  const auto outcome = play_forces_once(
       play, [&] { return signals.stop_asked(); }, [&](double part) { progress.update(part); });
   TACTO_TRY(outcome);
+  const TickView& ticks = outcome->status.ticks;
   Report report;
   report.add("session", play.session).add("device", outcome->device);
   if (!outcome->simulated.empty()) report.add("simulated", outcome->simulated);
-  report.add("rate_hz", outcome->rate_hz).add("ticks", outcome->recorder.ticks);
-  report.add("lost_ticks", outcome->link_lost + outcome->recorder.lost());
-  report.add("peak_limited_ticks", outcome->peak_limited)
-      .add("slew_limited_ticks", outcome->slew_limited)
-      .add("rms_limited_ticks", outcome->rms_limited)
-      .add("force_peak_n", outcome->force_peak_n);
-  for (const std::string& note : outcome->notes) cli::warn(note);
-  if (outcome->fault.empty()) return report;
-  cli::warn("playing ended in a fault: " + outcome->fault);
-  report.add("fault", outcome->fault).ends_with(schema::ErrorKind::device);
-  return report;
+  report.add("rate_hz", ticks.rate_hz()).add("ticks", outcome->recorder.ticks);
+  report.add("lost_ticks", ticks.lost() + outcome->recorder.lost());
+  report.add("peak_limited_ticks", ticks.peak_limited())
+      .add("slew_limited_ticks", ticks.slew_limited())
+      .add("rms_limited_ticks", ticks.energy_limited())
+      .add("force_peak_n", ticks.force_peak_n());
+  cli::warn_grouped(outcome->notes);
+  return add_end(std::move(report), *outcome);
 }
 
 Result<Report> run_play(const PlayVerbOptions& asked) {
