@@ -35,6 +35,7 @@ struct PlayVerbOptions {
   PlayOptions play;
   FingerPathOption path;
   std::optional<std::string> session;
+  std::string script;
   AskedBudget budget;
   CLI::Option* rate = nullptr;
 };
@@ -131,6 +132,7 @@ Result<Report> run_play_forces(const PlayVerbOptions& asked) {
   play.program.onset_s = o.prepare.onset_s;
   play.device_uri = o.device_uri;
   play.path = asked.path.file;
+  play.script = asked.script;
   play.time_s = o.time_s;
   play.session = schema::session_path(asked.session.value_or(session_named_after(o.program.file)));
   const cli::StopSignals signals;
@@ -173,10 +175,14 @@ Result<Report> run_play(const PlayVerbOptions& asked) {
   return play_report(o, *outcome, pace, asked.budget.options.explain);
 }
 
-// The options of a tray have no effect on forces: they are refused.
-Result<void> check_scene_options(const CLI::App& app, const PlayOptions& o) {
-  if (!plays_forces(o.program.file, o.device_uri)) return {};
-  return check_force_options(app, {"device", "output", "finger-path", "time", "rate", "onset"});
+// The options of a tray have no effect on forces, nor a script on a tray: they are refused.
+Result<void> check_scene_options(const CLI::App& app, const PlayVerbOptions& asked) {
+  const PlayOptions& o = asked.play;
+  if (plays_forces(o.program.file, o.device_uri))
+    return check_force_options(app, {"device", "output", "finger-path", "time", "rate", "onset", "script"});
+  if (asked.script.empty()) return {};
+  return schema::fail(schema::ErrorKind::usage, "--script changes a scene of forces", o.program.file,
+                      "leave it out, or play a scene with force patches");
 }
 
 cli::Action declare_play(CLI::App& app) {
@@ -190,6 +196,12 @@ cli::Action declare_play(CLI::App& app) {
   app.add_option(
       "-o,--output", options->session,
       "The session: NAME.session; default: the texture's name and the time of day, in this folder");
+  app.add_option(
+      "--script", options->script,
+      "Changes of a scene of forces: a CSV with the columns time_s,command, where a command is 'set "
+      "PATCH.LAYER.MEMBER VALUE', or '... VALUE over 50ms' (default: 10 ms). LAYER is the layer's index "
+      "or type, VALUE a number within the member's slider, in the unit of its name ('info' lists "
+      "the sliders). A command is sent up to 20 ms after its time; the session has its tick");
   declare_texture(app, options->play);
   declare_loop(app, *options);
   declare_choices(app, options->play.program.choices);
@@ -201,7 +213,7 @@ cli::Action declare_play(CLI::App& app) {
       "Ctrl-C ends the program at once; then the device ramps\nto zero by itself, and 'session' and "
       "'replay' read the session up to its last ticks.");
   return [options, &app]() -> Result<Report> {
-    TACTO_TRY(check_scene_options(app, options->play));
+    TACTO_TRY(check_scene_options(app, *options));
     return run_play(*options);
   };
 }
@@ -212,7 +224,7 @@ const cli::Verb kPlayVerb{"play", "Play a texture or scene on a device, live, an
                           "tactograph play oak -d usb: --time 60s -o first\n"
                           "  tactograph play oak -d sim: --finger-path path.csv -o first\n"
                           "  tactograph play plane.scene.json -d sim:planar,hand=minsky-radial --finger-path "
-                          "hand.csv -o held\n"
+                          "hand.csv --script sliders.csv -o held\n"
                           "  tactograph play oak -d usb: -o first --max-error 0.2% --explain\n"
                           "  tactograph play oak -d usb: -o first --contact 0.3N --energy-limit 2V "
                           "--reconstruction butterworth3",

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "data-schema/files/files.hpp"
@@ -62,9 +63,23 @@ struct PlayTime {
   double from_s = 0, to_s = 0;
 };
 
-Result<void> run_until(Player& player, const PlayTime& time, const std::function<bool()>& stop_asked,
-                       const std::function<void(double)>& progress) {
+// Commands are sent between messages of ticks, at most this many, because a device holds 16 until a tick.
+constexpr std::size_t kMostCommandsAtOnce = 8;
+
+// Sends the commands that are due.
+Result<void> follow_script(Player& player, double played_s, std::span<const TimedSceneCommand>& script) {
+  for (std::size_t i = 0; i < kMostCommandsAtOnce; ++i) {
+    if (script.empty() || script.front().time_s > played_s) return {};
+    TACTO_TRY(player.set(script.front().command));
+    script = script.subspan(1);
+  }
+  return {};
+}
+
+Result<void> run_until(Player& player, const PlayTime& time, std::span<const TimedSceneCommand> script,
+                       const std::function<bool()>& stop_asked, const std::function<void(double)>& progress) {
   while (player.armed_s() < time.to_s && !stop_asked()) {
+    TACTO_TRY(follow_script(player, player.armed_s() - time.from_s, script));
     if (const auto done = player.step(kPlayStepS); !done) return done;
     if (player.state() == PlayerState::fault) break;
     if (progress) progress(std::max(0.0, (player.armed_s() - time.from_s) / (time.to_s - time.from_s)));
@@ -112,6 +127,7 @@ struct Playing {
   const PlayerDevice& device;
   const HostLoopClient& here;
   Player& player;
+  std::span<const TimedSceneCommand> script = {};
 };
 
 // Precondition: the program is loaded.
@@ -125,7 +141,7 @@ Result<void> play_through(const Playing& playing, const std::string& session,
   TACTO_TRY(player.arm(session));
   TACTO_TRY(player.play());
   const PlayTime time = begin_path(player, playing.device, playing.here, outcome.asked_s);
-  TACTO_TRY(run_until(player, time, stop_asked, progress));
+  TACTO_TRY(run_until(player, time, playing.script, stop_asked, progress));
   outcome.status = player.status();
   if (player.state() != PlayerState::fault) TACTO_TRY(ramp_down(player));
   TACTO_TRY(player.disarm());
@@ -160,6 +176,18 @@ Result<HostLoopClient> loop_of(const PlayOptions& options, PlayerDevice& device,
 
 HostLoopFigures looped_by(const HostLoop& loop) {
   return {loop.latency(), loop.delay_s(), loop.status().missed_ticks};
+}
+
+Result<std::vector<TimedSceneCommand>> script_for(const std::string& file, const PreparedScene& scene,
+                                                  double time_s) {
+  if (file.empty()) return std::vector<TimedSceneCommand>();
+  auto script = read_scene_script(file, scene);
+  TACTO_TRY(script);
+  if (script->back().time_s < time_s) return script;
+  return fail(ErrorKind::malformed,
+              fmt::format("its last command is at {:g} s, but the playback ends at {:g} s",
+                          script->back().time_s, time_s),
+              file, "play longer, with --time");
 }
 
 }  // namespace
@@ -217,8 +245,11 @@ Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std:
   PlayOutcome outcome;
   outcome.notes = program->notes;
   outcome.asked_s = options.time_s.value_or(device->path_s.value_or(kUsualS));
+  const auto script = script_for(options.script, program->scene, outcome.asked_s);
+  TACTO_TRY(script);
   TACTO_TRY((*player)->load(std::move(*program)));
-  TACTO_TRY(play_through({device->player, {}, **player}, options.session, stop_asked, progress, outcome));
+  const Playing playing{device->player, {}, **player, *script};
+  TACTO_TRY(play_through(playing, options.session, stop_asked, progress, outcome));
   return outcome;
 }
 

@@ -306,6 +306,13 @@ Result<void> Player::gain(double gain) {
   return done;
 }
 
+Result<void> Player::set(const SceneCommand& command) {
+  TACTO_TRY(require(forces_ && runs(state_), "set", "arm a scene of forces first"));
+  const auto done = steer(command.set);
+  if (done) recorder_->event({view_.expected(), steady_ns(), command.text});
+  return done;
+}
+
 wire::Gain Player::device_gain() const {
   return {static_cast<float>(gain_ * device_gain_m_per_n_)};
 }

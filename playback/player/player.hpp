@@ -13,6 +13,7 @@
 #include "playback/player/flight_recorder.hpp"
 #include "playback/player/force_program.hpp"
 #include "playback/player/program.hpp"
+#include "playback/player/scene_command.hpp"
 #include "playback/session/tick_view.hpp"
 
 namespace tacto::playback {
@@ -93,6 +94,8 @@ class Player {
   /// Errors: usage, for a gain that is not finite; unsuitable, for one at which the tray would exceed its
   /// limit, with the largest that fits, and for one of forces other than 1.
   schema::Result<void> may_gain(double gain) const;
+  /// Changes a number of the forces that are played. Errors: usage, in idle and for a drive; device.
+  schema::Result<void> set(const SceneCommand& command);
   /// Ramps to zero, waits for idle (a second at most), and closes the session; `why` as in stop(). Errors:
   /// device; cannot_write.
   schema::Result<void> disarm(const std::string& why = {});
