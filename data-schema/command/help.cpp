@@ -39,7 +39,7 @@ std::string exit_codes_text() {
 // The items of WORDS.md, without its marks.
 std::string glossary_text() {
   const auto files = schema::embedded_files();
-  const std::string_view page = std::ranges::find(files, "WORDS.md", &schema::EmbeddedFile::name)->text;
+  const std::string_view page = std::ranges::find(files, "WORDS.md", &schema::EmbeddedFile::name)->content;
   std::string text;
   for (std::size_t at = page.find("\n- "); at < page.size(); at = page.find("\n- ", at + 1)) {
     const std::size_t end = std::min(page.find("\n- ", at + 1), page.size());

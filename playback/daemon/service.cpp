@@ -176,7 +176,7 @@ Result<void> Service::begin_load(const ControlRequest& request) {
   if (const auto may = may_begin("load"); !may) return may;
   if (player_->state() == PlayerState::lost)
     if (const auto connected = connect(); !connected) return connected;
-  if (const auto may = player_->may_load(); !may) return may;
+  if (const auto may = player_->may_load(false); !may) return may;
   load_request_ = request;
   ProgramRequest target{resolved(request.file), request.at_m, request.ends, gain_of(request)};
   target.only_in = request.by_tcp ? std::optional(config_.files) : std::nullopt;

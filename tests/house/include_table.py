@@ -92,8 +92,8 @@ MAY_INCLUDE = {
         "data-schema/{base files transducer wav} firmware-host/{core/kernel core/wire} spatial/{dsp/filter "
         "dsp/fourier dsp/resample}",
     "playback/player":
-        "data-schema/{base files scene session texture} firmware-host/{. core/firmware core/kernel core/wire link "
-        "sim/device sim/planar} playback/{choose host-loop model prepare prepare/scene render session} "
+        "data-schema/{base device files scene session texture} firmware-host/{. core/firmware core/kernel core/wire "
+        "link sim/device sim/planar} playback/{choose host-loop model prepare prepare/scene render session} "
         "spatial/dsp/resample",
     "playback/prepare":
         "data-schema/{base texture transducer} firmware-host/{core/kernel core/wire link} playback/model "
