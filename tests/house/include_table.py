@@ -109,6 +109,7 @@ MAY_INCLUDE = {
     "playback/session":
         "data-schema/{base control files session wav} firmware-host/{core/firmware core/kernel core/wire link} "
         "playback/model",
+    "playback/stability": "firmware-host/sim/planar",
     "playback/strokes":
         "data-schema/{base texture} firmware-host/{core/kernel core/wire} playback/{choose model render "
         "render/reference session}",
