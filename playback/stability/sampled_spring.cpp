@@ -13,7 +13,7 @@
 namespace tacto::playback {
 namespace {
 
-using Complex = std::complex<double>;
+using Phasor = std::complex<double>;
 using firmware_host::PlaceAndSpeed;
 
 PlaceAndSpeed after_unit_force(const HeldMass& held, double time_s) {
@@ -40,13 +40,13 @@ class Characteristic {
   }
 
   struct Value {
-    Complex fixed, slope;
+    Phasor fixed, slope;
   };
   Value at(double theta) const {
-    const Complex z = std::polar(1.0, theta);
+    const Phasor z = std::polar(1.0, theta);
     const double half = std::sin(theta / 2);
-    const Complex w{-2 * half * half, std::sin(theta)};  // z - 1 without cancellation
-    const Complex n = (n2_ * w + n1_) * w + n0_;
+    const Phasor w{-2 * half * half, std::sin(theta)};  // z - 1 without cancellation
+    const Phasor n = (n2_ * w + n1_) * w + n0_;
     return {((w + d1_) * w + d0_) * std::polar(1.0, (whole_ticks_ + 2) * theta) + damping_per_tick_ * w * n,
             z * n};
   }
@@ -92,7 +92,7 @@ bool all_zeros_within(std::vector<double> p) {
 }
 
 /// Above 0 on one side of a crossing and below 0 on the other.
-double side(const Characteristic& polynomial, double theta) {
+double crossing_side(const Characteristic& polynomial, double theta) {
   const auto [fixed, slope] = polynomial.at(theta);
   return (fixed * std::conj(slope)).imag();
 }
@@ -103,9 +103,9 @@ double stiffness_at(const Characteristic& polynomial, double theta) {
 }
 
 double crossing_between(const Characteristic& polynomial, double from, double to) {
-  const bool start = side(polynomial, from) > 0;
+  const bool start = crossing_side(polynomial, from) > 0;
   for (double middle = (from + to) / 2; middle > from && middle < to; middle = (from + to) / 2)
-    ((side(polynomial, middle) > 0) == start ? from : to) = middle;
+    ((crossing_side(polynomial, middle) > 0) == start ? from : to) = middle;
   return from;
 }
 
@@ -122,7 +122,7 @@ double stiffness_limit(const HeldMass& held, const TickTiming& timing, double vi
   };
   const std::vector<double> angles = polynomial.scanned_angles();
   for (std::size_t i = 1; i < angles.size(); ++i)
-    if ((side(polynomial, angles[i - 1]) > 0) != (side(polynomial, angles[i]) > 0))
+    if ((crossing_side(polynomial, angles[i - 1]) > 0) != (crossing_side(polynomial, angles[i]) > 0))
       cross(crossing_between(polynomial, angles[i - 1], angles[i]));
   cross(std::numbers::pi);
   // Without a virtual damper a small K is stable, because the damping of the mass dissipates energy at all

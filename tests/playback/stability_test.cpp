@@ -7,8 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "firmware-host/sim/planar/linear_motion.hpp"
+#include "firmware-host/sim/planar/axis_motion.hpp"
 #include "playback/stability/free_limit.hpp"
+#include "playback/stability/passive_limit.hpp"
 #include "playback/stability/sampled_spring.hpp"
 
 namespace tacto::playback {
@@ -81,6 +82,32 @@ TEST(SampledSpring, VirtualDampingRaisesTheLimitAndThenMakesItUnstable) {
   EXPECT_NEAR(limit(30), 10.8e3, 50);
   EXPECT_GT(limit(30), limit(5));
   EXPECT_EQ(limit(70), 0);
+}
+
+/// Whether Coulomb friction stops the free axis that is let go this far from the spring's centre.
+bool comes_to_rest(const schema::DeviceAxis& axis, double period_s, double stiffness, double start_m) {
+  const firmware_host::AxisBody body{axis.mass_kg, axis.viscous_n_s_per_m, axis.coulomb_n, 0, 0};
+  firmware_host::PlaceAndSpeed state{start_m, 0};
+  for (;;) {
+    const auto next = firmware_host::moved(body, state, -stiffness * state.place_m, {}, period_s);
+    if (next.speed_mps == 0 && next.place_m == state.place_m) return true;
+    if (std::abs(next.place_m) > 2 * start_m) return false;
+    state = next;
+  }
+}
+
+// Within 1 % for w T <= 0.2 (issue 33): the describing function leaves out all harmonics of the friction.
+TEST(FrictionBasin, IsTheAmplitudeUpToWhichTheAxisComesToRest) {
+  schema::DeviceAxis axis;
+  axis.mass_kg = 0.1;
+  axis.viscous_n_s_per_m = 0.3;
+  axis.coulomb_n = 0.05;
+  for (const double stiffness : {1000.0, 2000.0, 4000.0}) {
+    const double basin_m = friction_basin_m(axis, {1e-3, 0}, stiffness, 0);
+    EXPECT_TRUE(comes_to_rest(axis, 1e-3, stiffness, 0.99 * basin_m)) << stiffness;
+    EXPECT_FALSE(comes_to_rest(axis, 1e-3, stiffness, 1.01 * basin_m)) << stiffness;
+  }
+  EXPECT_TRUE(std::isinf(friction_basin_m(axis, {1e-3, 0}, 500, 0)));
 }
 
 }  // namespace
