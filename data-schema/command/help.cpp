@@ -32,7 +32,7 @@ std::string exit_codes_text() {
   return "  0  done\n  1  internal error: please report it\n  2  command line\n  3  file or device not "
          "found\n"
          "  4  malformed file\n  5  data that cannot be used for this\n  6  file of a newer version\n"
-         "  7  cannot write\n  8  device failed\n"
+         "  7  cannot write\n  8  device failed\n  9  unstable\n"
          "With --json an error is an object on one line of stderr: what, where, remedy, exit_code.\n";
 }
 
