@@ -23,7 +23,6 @@ using schema::Result;
 namespace {
 
 constexpr double kFastestMps = 10;  // of a hand; faster is a jump of the encoder
-constexpr float kUsualReleaseS = 0.01F;
 
 // The shortest decimal number that gives this value in single precision: 1e-5, not 9.99999975e-6.
 double decimal_of(float value) {
@@ -49,7 +48,7 @@ Result<wire::ForceLimits> limits_for(const ForceRequest& request, const schema::
                 device.name,
                 fmt::format("at most {:g} s are safe: raise slew_n_per_s of the device",
                             double{core::kLongestReleaseS}));
-  limits.release_s = std::min(kUsualReleaseS, longest_s);
+  limits.release_s = std::min(static_cast<float>(schema::kReleaseS), longest_s);
   limits.watchdog_ms = request.watchdog_ms;
   limits.counts_per_tick = static_cast<std::uint32_t>(std::clamp(kFastestMps / finest_m / rate_hz, 1.0, 1e9));
   return limits;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "data-schema/base/playback_defaults.hpp"
 #include "data-schema/session/session.hpp"
 #include "firmware-host/link/client.hpp"
 #include "playback/prepare/scene/prepared_scene.hpp"
@@ -15,7 +16,7 @@ namespace tacto::playback {
 struct ForceRequest {
   std::string file;               ///< stem or file of a scene
   std::optional<double> rate_hz;  ///< default: the device's largest
-  double onset_s = 0.02;
+  double onset_s = schema::kOnsetS;
   std::uint16_t watchdog_ms = 100;
 };
 

@@ -32,7 +32,7 @@ def damper(damping):
 
 
 def write_scene(*patches, name="s"):
-    pathlib.Path(f"{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.1", "patches": list(patches)}))
+    pathlib.Path(f"{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "patches": list(patches)}))
 
 
 def write_device(mass=0.1, viscous=1.0, coulomb=0.0, step=1e-9, delay=0.0, rates=(1000,), axes="xy", name="d", without=()):

@@ -78,7 +78,7 @@ def a_project_on_one_page():
 def a_session_of_forces_is_listed():
     root = pathlib.Path("bench")
     root.mkdir()
-    (root / "bench.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.1", "patches": [
+    (root / "bench.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "patches": [
         {"name": "a", "place": {"x_m": 0.01, "y_m": 0}, "size": {"width_m": 0.1, "height_m": 0.1}, "layers": [{"type": "spring", "stiffness_n_per_m": 10, "centre_x_m": 0, "centre_y_m": 0}]}]}))
     tacto.run("play", root / "bench.scene.json", "-d", "sim:planar", "--time", "0.5s", "-o", root / "held")
     report = tacto.run_json("report", root, "-o", "bench.html")
