@@ -80,10 +80,10 @@ std::size_t clip_drive(std::vector<double>& drive_v, double rate_hz, const schem
   std::size_t changed = 0;
   double before_v = 0;
   for (double& value : drive_v) {
-    const double wished = value;
+    const double unlimited = value;
     value = std::clamp(value, -transducer.drive_limit_v, transducer.drive_limit_v);
     value = std::clamp(value, before_v - step_v, before_v + step_v);
-    changed += value != wished;
+    changed += value != unlimited;
     before_v = value;
   }
   return changed;

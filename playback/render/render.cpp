@@ -89,18 +89,19 @@ Result<void> check_inputs(std::span<const PlacedTexture> textures, const FingerP
   return check_length(path, options);
 }
 
-Clipping clipping_of(const std::vector<double>& wished, const std::vector<double>& clipped) {
-  std::vector<double> removed(wished.size());
-  std::ranges::transform(wished, clipped, removed.begin(), std::minus<>());
+Clipping clipping_of(const std::vector<double>& unlimited, const std::vector<double>& clipped) {
+  std::vector<double> removed(unlimited.size());
+  std::ranges::transform(unlimited, clipped, removed.begin(), std::minus<>());
   const auto peak = [](const std::vector<double>& v) {
     return std::abs(*std::ranges::max_element(v, {}, [](double x) { return std::abs(x); }));
   };
-  const double smallest = 1e-6 * peak(wished);
+  const double smallest = 1e-6 * peak(unlimited);
   Clipping clipping;
   clipping.samples = static_cast<std::size_t>(
       std::ranges::count_if(removed, [&](double value) { return std::abs(value) > smallest; }));
-  clipping.peak_reduced_db = level_db(peak(wished) / peak(clipped));
-  clipping.removed_db = level_db(schema::statistics_of(removed).rms() / schema::statistics_of(wished).rms());
+  clipping.peak_reduced_db = level_db(peak(unlimited) / peak(clipped));
+  clipping.removed_db =
+      level_db(schema::statistics_of(removed).rms() / schema::statistics_of(unlimited).rms());
   return clipping;
 }
 

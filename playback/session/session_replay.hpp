@@ -43,11 +43,11 @@ using UnlimitedListener = std::function<void(const schema::SessionTick& tick, fl
 /// not the force. Only the session is read. Errors: unsuitable, if there are no ticks, if a part of what is
 /// sent up to arming is missing, or if a contact gated a session whose ticks do not report it (before
 /// protocol 1.2); malformed, if a command in it is not a frame; unsuitable, if the core refuses one, with its
-/// reason. `progress` receives fractions; `wishes` doubles the cost, because a second device, without limits,
-/// is replayed too. This one comes to rest a little earlier if the slew limit delayed the other, by at most
-/// drive limit / slew limit, and then accepts a count that was unseen that much earlier.
+/// reason. `progress` receives fractions; `unlimited` doubles the cost, because a second device, without
+/// limits, is replayed too. This one comes to rest a little earlier if the slew limit delayed the other, by
+/// at most drive limit / slew limit, and then accepts a count that was unseen that much earlier.
 schema::Result<ReplayOutcome> replay_session(const std::string& name,
                                              const std::function<void(double)>& progress = {},
-                                             const UnlimitedListener& wishes = {});
+                                             const UnlimitedListener& unlimited = {});
 
 }  // namespace tacto::playback
