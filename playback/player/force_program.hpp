@@ -18,6 +18,7 @@ struct ForceRequest {
   std::optional<double> rate_hz;  ///< default: the device's largest
   double onset_s = schema::kOnsetS;
   std::uint16_t watchdog_ms = 100;
+  std::optional<std::string> only_in = {};  ///< the file must be in this folder (served_file); none: anywhere
 };
 
 /// Ready to upload. Only the player adds the rest of `session`: device, clock, initial state.
@@ -32,7 +33,8 @@ struct ForceProgram {
 schema::Device device_of(const firmware_host::Description& description);
 
 /// `device`: as its file or device_of() describes it; `own`: its axes on the wire. Errors: as read_scene,
-/// prepare_scene, force_setup_of; unsuitable: a texture; a force that falls to zero too slowly to be safe.
+/// served_file, prepare_scene, force_setup_of; unsuitable: a texture; a force that falls to zero too slowly
+/// to be safe.
 schema::Result<ForceProgram> make_force_program(const ForceRequest& request, const schema::Device& device,
                                                 const wire::Axes& own);
 

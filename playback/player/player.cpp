@@ -242,7 +242,7 @@ Result<void> Player::upload_loaded() {
 Result<void> Player::arm(const std::string& session_path) {
   TACTO_TRY(require(state_ == PlayerState::idle, "arm", "disarm first"));
   TACTO_TRY(require(loaded(), "arm", "load a texture or scene first"));
-  TACTO_TRY(may_gain(gain_));
+  if (program_) TACTO_TRY(may_gain(gain_));
   // If another program was killed during playback, the device may still ramp down.
   TACTO_TRY(wait_for_idle());
   TACTO_TRY(begin_session(session_path));
@@ -289,7 +289,7 @@ Result<void> Player::stop(const std::string& why) {
 
 Result<void> Player::may_gain(double gain) const {
   if (!std::isfinite(gain)) return fail(ErrorKind::usage, "the gain is not a finite number", uri_);
-  if (forces_ && gain != 1)
+  if (forces_)
     return fail(ErrorKind::unsuitable, "a scene of forces has no gain", uri_, "set a number of a layer");
   if (!program_) return {};
   const bool fades = recorder_ != nullptr && view_.expected() < faded_at_;
@@ -300,7 +300,7 @@ Result<void> Player::may_gain(double gain) const {
 Result<void> Player::gain(double gain) {
   TACTO_TRY(may_gain(gain));
   gain_ = gain;
-  if (!recorder_ || forces_) return {};
+  if (!recorder_) return {};
   const auto done = steer(device_gain());
   if (done) recorder_->event({view_.expected(), steady_ns(), fmt::format("gain {:g}", gain)});
   return done;

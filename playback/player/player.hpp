@@ -83,6 +83,8 @@ class Player {
   /// unsuitable; usage.
   schema::Result<void> may_load(bool forces) const;
   bool loaded() const { return program_ || forces_; }
+  /// The forces that are loaded; none: a program for a tray, or nothing.
+  const std::optional<ForceProgram>& forces() const { return forces_; }
   /// Begins a session (never over an existing file), and arms when its header and upload are on the disk.
   /// Only in idle, with a program. Errors: usage; device; cannot_write. After an error there is no session.
   schema::Result<void> arm(const std::string& session_path);
@@ -92,7 +94,7 @@ class Player {
   /// At any time; kept for the next session. Errors: as may_gain; device.
   schema::Result<void> gain(double gain);
   /// Errors: usage, for a gain that is not finite; unsuitable, for one at which the tray would exceed its
-  /// limit, with the largest that fits, and for one of forces other than 1.
+  /// limit, with the largest that fits, and for forces.
   schema::Result<void> may_gain(double gain) const;
   /// Changes a number of the forces that are played. Errors: usage, in idle and for a drive; device.
   schema::Result<void> set(const SceneCommand& command);

@@ -64,8 +64,10 @@ struct ForceDevice {
 };
 
 /// `path`, of an emulated device: the place to which the person moves the hand, or the path of the device
-/// without a hand (read_axis_paths()); empty: all axes at 0. Errors: as open_player_device, read_axis_paths,
-/// check_travel; unsuitable: no axes with forces; a path for a device that is not emulated.
-schema::Result<ForceDevice> open_force_device(const std::string& uri, const std::string& path);
+/// without a hand (read_axis_paths()), once or repeated as that of a finger; empty: all axes at 0. Errors: as
+/// open_player_device, read_axis_paths, check_travel; unsuitable: no axes with forces; a path for a device
+/// that is not emulated.
+schema::Result<ForceDevice> open_force_device(const std::string& uri, const std::string& path,
+                                              bool repeated = false);
 
 }  // namespace tacto::playback

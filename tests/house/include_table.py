@@ -86,7 +86,8 @@ MAY_INCLUDE = {
         "strokes}",
     "playback/control": "data-schema/{base control files} playback/session",
     "playback/daemon":
-        "data-schema/{base control files report scene} playback/{control host-loop model player session}",
+        "data-schema/{base control files report scene} firmware-host/sim/planar playback/{control host-loop model "
+        "player session}",
     "playback/host-loop": "data-schema/{base session} firmware-host/{core/firmware core/kernel link} playback/prepare",
     "playback/model":
         "data-schema/{base files transducer wav} firmware-host/{core/kernel core/wire} spatial/{dsp/filter "
