@@ -217,22 +217,23 @@ schema::ResultPicture z_width(const Design& design) {
   const JudgedLoop& loop = design.layers[*design.first].loop;
   schema::ResultPicture picture{
       "Largest stiffness along " + loop.axis.name, "virtual damping (N s/m)", "stiffness (N/m)", false, {}};
-  const std::vector<Holder> holders = holders_of(request);
+  std::vector<Holder> holders = holders_of(request);
+  std::erase(holders, Holder::lumped);  // without a damper that is sampled it only grows
   for (const Holder holder : holders)
-    picture.curves.push_back({holder_name(holder, request), {}, {}, holder == Holder::lumped, false});
+    picture.curves.push_back({holder_name(holder, request), {}, {}, is_proof(holder), false});
   // A sampled damper alone is unstable from 2 m / T on at the latest.
-  const double mass_kg = loop.axis.mass_kg + (request.hand ? request.hand->mass_kg : 0);
-  const double most = 2 * mass_kg / loop.period_s + loop.axis.viscous_n_s_per_m;
+  const double most = 2 * loop.axis.mass_kg / loop.period_s + loop.axis.viscous_n_s_per_m;
   constexpr int kPoints = 150;
-  bool any = true;
-  for (int i = 0; i <= kPoints && any; ++i) {
+  double best = 0;
+  for (int i = 0; i <= kPoints; ++i) {
     const double damping = most * i / kPoints;
-    any = false;
     for (std::size_t j = 0; j < holders.size(); ++j) {
       picture.curves[j].x.push_back(damping);
       picture.curves[j].y.push_back(loop.limit(holders[j], damping));
-      any = any || (holders[j] != Holder::lumped && picture.curves[j].y.back() > 0);
     }
+    const double free = picture.curves.front().y.back();  // of Holder::nothing
+    if (best > 0 && free <= 0) break;
+    best = std::max(best, free);
   }
   schema::ResultCurve layers{"layers", {}, {}, false, true};
   for (const JudgedLayer& layer : design.layers) {

@@ -73,8 +73,8 @@ std::vector<Holder> holders_of(const DesignRequest& request);
 /// "nothing held", "hand minsky-radial", "any passive hand", ...
 std::string holder_name(Holder holder, const DesignRequest& request);
 
-/// Each limit over virtual damping, up to where all are 0, on the axis of the first layer; the layers as
-/// marks. Precondition: there is a first layer.
+/// Each limit but the lumped one over virtual damping, up to where that of the free device falls to 0, on the
+/// axis of the first layer; the layers as marks. Precondition: there is a first layer.
 schema::ResultPicture z_width(const Design& design);
 
 }  // namespace tacto::analysis
