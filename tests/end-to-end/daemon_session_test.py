@@ -140,6 +140,8 @@ def a_scene_of_forces_is_played_and_set():
         session = client.must(request="arm")["session"]
         client.must(request="play")
         steady_force(client, -1.5)
+        shown = tacto.run("ctl", "top", "--time", "0s", "--socket", "control")[0]
+        assert "x -1.500 N" in shown and "drive" not in shown and "gain" not in shown, shown
         assert client.must(request="set", number=number, value=100)["over_s"] == 0.01
         steady_force(client, -3)
         tacto.run("ctl", "set", number, "20", "--over", "0s", "--socket", "control")
