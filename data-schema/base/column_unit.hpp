@@ -10,9 +10,9 @@
 
 namespace tacto::schema {
 
-/// Splits "Force (N)", "Weg [mm]", "F / N", "x_mm", "force_n", "speed_cm_per_s" into name and unit. The unit
-/// is empty if the name has none; the part after a slash or underline is a unit only if it is known. After an
-/// underline, names of this project's files count too: n, v, hz, mps, mps2, in small letters.
+/// Splits "Force (N)", "Weg [mm]", "F / N", "x_mm", "force_n", "speed_cm_per_s", "speed_cm_s" into name and
+/// unit. The unit is empty if the name has none; the part after a slash or underline is a unit only if it is
+/// known. After an underline, names of this project's files count too: n, v, hz, mps, mps2, in small letters.
 struct NameWithUnit {
   std::string name, unit;
 };

@@ -44,7 +44,7 @@ AtSpeed at_speed(const PreparedTexture& played, double gain_m_per_n, double spee
 /// The largest gain, with the sign of `gain_m_per_n`, at which no limit is passed at that speed; 0: none.
 double largest_gain_at(const PreparedTexture& played, double gain_m_per_n, double speed_mps);
 
-/// The largest range of speeds, with four digits, at which it can be played, within 1 mm/s to 2 m/s; the one
+/// The largest range of speeds, to 0.1 %, at which it can be played, within 1 mm/s to 2 m/s; the one
 /// around `near_mps` if it can be played there, else the fastest. None: at no speed. Tries speeds a quarter
 /// of an octave apart, then divides.
 std::optional<SpeedRange> playable_speeds(const PreparedTexture& played, double gain_m_per_n,

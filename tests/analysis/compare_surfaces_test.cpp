@@ -206,7 +206,7 @@ TEST(CompareSurfaces, SaysWhichSideIsSimulated) {
   const SurfaceComparison one = compared(a, b);
   EXPECT_TRUE(one.simulated().only_one());
   EXPECT_EQ(one.simulated().words(), "B by a bench; A was measured");
-  EXPECT_EQ(one.notes, std::vector{one.simulated().warning()});
+  EXPECT_EQ(one.notes.front(), one.simulated().warning());
   b.strokes[2].simulated = "";
   EXPECT_EQ(refused(a, b), ErrorKind::unsuitable) << "measured and simulated strokes on one side";
   EXPECT_EQ((SimulatedSides{"by one", "by two"}.words()), "A by one; B by two");

@@ -28,7 +28,7 @@ TEST(DaemonConfig, ANumberOutOfRangeIsToldItsRange) {
   for (const char* rate : {R"("rate_hz":500)", R"("rate_hz":"fast")"}) {
     const Error error = refused(rate);
     EXPECT_TRUE(error.where.ends_with("#/rate_hz")) << error.where;
-    EXPECT_EQ(error.remedy, "Rate of the ticks; default 2 kHz; from 1000 to 20000") << error.what;
+    EXPECT_TRUE(error.remedy.ends_with("from 1000 to 20000")) << schema::message(error);
   }
   EXPECT_TRUE(refused(R"("max_error":0)").remedy.ends_with("above 0 to 0.1"));
 }

@@ -49,13 +49,23 @@ TEST(Gain, InWordsIsReadBackAndNotLarger) {
 }
 
 TEST(ColumnUnit, IsInBracketsAfterASlashOrAfterAnUnderline) {
-  const std::array<std::string, 3> kNames[] = {
-      {"Force (N)", "Force", "N"},        {"Weg [mm]", "Weg", "mm"}, {"F / N", "F", "N"},
-      {"position_mm", "position", "mm"},  {"time_s", "time", "s"},   {"normal_force_n", "normal_force", "N"},
-      {"speed_mps", "speed", "m/s"},      {"drive_v", "drive", "V"}, {"encoder_count", "encoder_count", ""},
-      {"position", "position", ""},       {"_mm", "_mm", ""},        {"ch_1", "ch_1", ""},
-      {"force_mN", "force", "mN"},        {"x_um", "x", "um"},       {"rate_hz", "rate", "Hz"},
-      {"speed_cm_per_s", "speed", "cm/s"}};
+  const std::array<std::string, 3> kNames[] = {{"Force (N)", "Force", "N"},
+                                               {"Weg [mm]", "Weg", "mm"},
+                                               {"F / N", "F", "N"},
+                                               {"position_mm", "position", "mm"},
+                                               {"time_s", "time", "s"},
+                                               {"normal_force_n", "normal_force", "N"},
+                                               {"speed_mps", "speed", "m/s"},
+                                               {"drive_v", "drive", "V"},
+                                               {"encoder_count", "encoder_count", ""},
+                                               {"position", "position", ""},
+                                               {"_mm", "_mm", ""},
+                                               {"ch_1", "ch_1", ""},
+                                               {"force_mN", "force", "mN"},
+                                               {"x_um", "x", "um"},
+                                               {"rate_hz", "rate", "Hz"},
+                                               {"speed_cm_per_s", "speed", "cm/s"},
+                                               {"speed_mm_s", "speed", "mm/s"}};
   for (const auto& [text, name, unit] : kNames) {
     const auto split = split_unit(text);
     EXPECT_EQ(split.name, name) << text;
