@@ -9,6 +9,7 @@
 #include "analysis/identify/measure/angles.hpp"
 #include "analysis/identify/report/interval_words.hpp"
 #include "analysis/identify/report/paper_words.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -24,8 +25,12 @@ void add_head(Report& report, const schema::Transducer& found, const std::string
   const schema::Identification& about = *found.identification;
   report.add("transducer", file).add("source", about.source);
   if (!about.simulated.empty()) report.add("simulated", about.simulated);
-  report.add("conditions", about.conditions).add("verdict", verdict_word(about)).add("words", about.words);
-  if (!about.usable()) report.ends_with(schema::ErrorKind::unsuitable);
+  report.add("conditions", about.conditions).add("verdict", verdict_word(about)).add("because", about.words);
+  if (about.usable())
+    report.add("next",
+               fmt::format("tactograph play TEXTURE -d DEVICE --transducer {}", cli::shell_word(file)));
+  else
+    report.ends_with(schema::ErrorKind::unsuitable);
 }
 
 // tests/analysis/identify_bench_test.py measures these figures.
@@ -67,7 +72,8 @@ void add_model(Report& report, const ResponseFit& fit) {
     row.add("model", model.name).add("parameters", model.parameters);
     row.add("left_out_error_percent", 100 * model.left_out);
     if (fit.data.noise_is_measured()) row.add("left_out_error_over_noise", model.left_out_over_noise);
-    row.add("converged", model.converged).add("misfit", model.misfit);
+    row.add("converged", model.converged);
+    if (model.converged) row.add("misfit", model.misfit);
     rows.push_back(std::move(row));
   }
   if (!rows.empty()) report.add("tried", std::move(rows));

@@ -161,8 +161,8 @@ std::string level_words(const Evidence& e) {
 }
 
 Verdict by_level(const Evidence& e, double tolerance_db) {
-  const std::string shape =
-      fmt::format("same shape ({:.1f} dB, chance up to {:.1f} dB)", e.shape_db, e.shape_chance_db);
+  const std::string shape = fmt::format("no difference in shape found ({:.1f} dB, chance up to {:.1f} dB)",
+                                        e.shape_db, e.shape_chance_db);
   const std::string words = shape + ", " + level_words(e);
   const bool certain = e.level_low_db > 0 || e.level_high_db < 0;
   if (certain && std::abs(e.level_db) > tolerance_db)
