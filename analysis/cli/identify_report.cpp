@@ -115,7 +115,11 @@ void add_found(Report& report, const schema::Transducer& found) {
   report.add("actuator_scale", found.actuator_scale).add("sensor_scale", found.sensor_scale);
 }
 
-void add_paper(Report& report, const schema::Transducer& found, const ResponseFit& fit) {
+}  // namespace
+
+void add_paper(Report& report, const schema::Transducer& base, const schema::Transducer& found,
+               const ResponseFit& fit) {
+  if (!is_the_papers(base)) return;
   const auto figures = paper_figures(found, fit);
   if (!figures) return;
   std::vector<Report> rows;
@@ -129,8 +133,6 @@ void add_paper(Report& report, const schema::Transducer& found, const ResponseFi
   report.add("paper_against_itself", std::move(rows));
 }
 
-}  // namespace
-
 Report response_report(const ResponseFit& fit, const schema::Transducer& base,
                        const schema::Transducer& found, const std::string& file) {
   Report report;
@@ -142,7 +144,6 @@ Report response_report(const ResponseFit& fit, const schema::Transducer& base,
   report.add("not_identifiable", std::move(held));
   add_quality(report, fit);
   add_found(report, found);
-  if (is_the_papers(base)) add_paper(report, found, fit);
   return report;
 }
 

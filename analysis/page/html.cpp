@@ -79,7 +79,7 @@ std::size_t longest_word(std::string_view text) {
   return longest;
 }
 
-constexpr std::size_t kLongWord = 24, kSentence = 40;
+constexpr std::size_t kLongWord = 24, kSentence = 28;
 
 bool is_text(std::string_view cell) {
   return longest_word(cell) > kLongWord || cell.size() > kSentence;
