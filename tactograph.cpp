@@ -28,7 +28,8 @@ const cli::VerbGroup kGroups[] = {
       &playback::kReplayVerb, &playback::kExplainVerb, &analysis::kLiveVerb}},
     {"Ask",
      {&analysis::kIdentifyVerb, &analysis::kFidelityVerb, &analysis::kCompareVerb, &analysis::kExperimentVerb,
-      &analysis::kReportVerb, &analysis::kTradeVerb, &analysis::kExtremesVerb, &analysis::kDemoVerb}},
+      &analysis::kReportVerb, &analysis::kDesignVerb, &analysis::kTradeVerb, &analysis::kExtremesVerb,
+      &analysis::kDemoVerb}},
 };
 
 constexpr std::array<const cli::HelpTopic*, 1> kTopics = {&firmware_host::kSimTopic};

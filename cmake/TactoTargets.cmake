@@ -55,6 +55,18 @@ function(tacto_compile_quickly name header)
   target_compile_options(${name} PRIVATE -O1)
 endfunction()
 
+# tacto_embed(VARIABLE NAMESPACE FUNCTION file...): a source that contains these files (EmbedFiles.cmake).
+function(tacto_embed variable namespace function)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
+  add_custom_command(
+    OUTPUT ${source}
+    COMMAND ${CMAKE_COMMAND} -D OUTPUT=${source} -D NAMESPACE=${namespace} -D FUNCTION=${function} -D "FILES=${ARGN}"
+            -P ${CMAKE_SOURCE_DIR}/cmake/EmbedFiles.cmake
+    DEPENDS ${ARGN} ${CMAKE_SOURCE_DIR}/cmake/EmbedFiles.cmake VERBATIM)
+  set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON COMPILE_OPTIONS -Wno-overlength-strings)
+  set(${variable} ${source} PARENT_SCOPE)
+endfunction()
+
 # tacto_cli(NAME sources...): declares a folder's verbs and links them into the command.
 function(tacto_cli name)
   add_library(${name} STATIC ${ARGN})

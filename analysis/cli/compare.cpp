@@ -81,7 +81,7 @@ schema::Results compare_results(const CompareVerbOptions& o, const ComparedNames
   schema::Results results;
   results.verb = "compare";
   results.inputs = {o.a, o.b};
-  results.simulated = c.a_simulated.empty() ? c.b_simulated : c.a_simulated;
+  results.simulated = c.simulated.words();
   results.figures = comparison_figures(c, names);
   results.pictures = comparison_pictures(c, names);
   return results;
@@ -145,7 +145,7 @@ Result<Report> compare_strokes(const CompareVerbOptions& o, bool json, const Sur
   TACTO_TRY(comparison);
   for (const std::string& note : comparison->notes) cli::warn(note);
   results.verb = "compare";
-  results.simulated = comparison->a.simulated.empty() ? comparison->b.simulated : comparison->a.simulated;
+  results.simulated = comparison->simulated().words();
   results.figures = surfaces_figures(*comparison);
   results.pictures = surfaces_pictures(*comparison);
   Report report = json ? surfaces_report(*comparison) : brief_surfaces_report(*comparison);

@@ -115,8 +115,8 @@ void add_rms(Report& report, const Comparison& c) {
 Report compare_report(const ComparedNames& names, const Comparison& c) {
   Report report;
   report.add("a", names.a).add("b", names.b);
-  if (!c.a_simulated.empty()) report.add("a_simulated", c.a_simulated);
-  if (!c.b_simulated.empty()) report.add("b_simulated", c.b_simulated);
+  if (!c.simulated.a.empty()) report.add("a_simulated", c.simulated.a);
+  if (!c.simulated.b.empty()) report.add("b_simulated", c.simulated.b);
   if (!names.with_target) {
     report.add("beyond_measurement_noise", to_string(c.verdict.likeness)).add("because", c.verdict.because);
     report.add("tolerance_db", c.tolerance_db);

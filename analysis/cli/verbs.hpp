@@ -10,6 +10,7 @@ extern const cli::Verb kCompareVerb;
 extern const cli::Verb kExperimentVerb;
 extern const cli::Verb kFidelityVerb;
 extern const cli::Verb kDemoVerb;
+extern const cli::Verb kDesignVerb;
 extern const cli::Verb kExtremesVerb;
 extern const cli::Verb kReportVerb;
 extern const cli::Verb kIdentifyVerb;

@@ -206,8 +206,9 @@ Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b, c
   comparison.notes = comparison.pair.notes;
   comparison.window_m = static_cast<double>(*window) * comparison.pair.pitch_m;
   comparison.tolerance_db = options.tolerance_db;
-  comparison.a_simulated = a.simulated;
-  comparison.b_simulated = b.simulated;
+  comparison.simulated = {a.simulated, b.simulated};
+  if (auto warning = comparison.simulated.warning(); !warning.empty())
+    comparison.notes.push_back(std::move(warning));
   TACTO_TRY(set_band(comparison));
   TACTO_TRY(compare_spectra(comparison, *window));
   comparison.verdict = verdict_of(comparison.evidence, comparison.tolerance_db);

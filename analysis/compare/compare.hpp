@@ -9,6 +9,7 @@
 
 #include "analysis/compare/cross_spectrum.hpp"
 #include "analysis/compare/formant_match.hpp"
+#include "analysis/compare/simulated_sides.hpp"
 #include "analysis/compare/texture_pair.hpp"
 #include "analysis/compare/verdict.hpp"
 #include "data-schema/base/error.hpp"
@@ -67,7 +68,7 @@ struct Comparison {
   std::vector<schema::Formant> a_formants, b_formants;  ///< positions from the pair's first sample
   FormantMatch formants;
   double formant_resolution_per_m = 0;
-  std::string a_simulated, b_simulated;
+  SimulatedSides simulated;
   std::vector<std::string> notes;
 };
 

@@ -209,14 +209,6 @@ std::string answer_words(const Comparison& c, const ComparedNames& names) {
   return fmt::format("{}: {}.", verdict_words(c.verdict.likeness), because.substr(0, because.find("; ")));
 }
 
-std::string simulated_of(const Comparison& c) {
-  if (c.a_simulated.empty() || c.b_simulated.empty()) {
-    if (c.a_simulated.empty() && c.b_simulated.empty()) return "";
-    return c.a_simulated.empty() ? "B " + c.b_simulated : "A " + c.a_simulated;
-  }
-  return c.a_simulated;
-}
-
 }  // namespace
 
 std::vector<ResultPicture> comparison_pictures(const Comparison& c, const ComparedNames& names) {
@@ -261,13 +253,12 @@ std::vector<schema::ResultFigure> comparison_figures(const Comparison& c, const 
 }
 
 schema::Result<std::string> comparison_page(const Comparison& c, const ComparedNames& names) {
-  const std::string simulated = simulated_of(c);
-  const auto pictures = pictures_html(comparison_pictures(c, names), simulated);
+  const auto pictures = pictures_html(comparison_pictures(c, names), c.simulated.words());
   TACTO_TRY(pictures);
   std::string body = fmt::format("<h1>{} against {}</h1>\n", escaped(names.b), escaped(names.a)) +
                      answer(answer_words(c, names)) +
                      fmt::format("<p>A is {}, B is {}.</p>\n", escaped(names.a), escaped(names.b)) +
-                     simulated_box(simulated);
+                     c.simulated.box();
   body += figures_html(comparison_figures(c, names));
   for (const std::string& note : c.notes) body += fmt::format("<p class=\"note\">{}</p>\n", escaped(note));
   body +=

@@ -10,7 +10,9 @@
 #include <set>
 
 #include "analysis/compare/stroke_levels.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
+#include "data-schema/base/stroke_rule.hpp"
 #include "spatial/features/steady_part.hpp"
 #include "spatial/numbers/band_at.hpp"
 #include "spatial/texture/valid_band.hpp"
@@ -41,6 +43,7 @@ struct ComparedStroke {
   double low_per_m = 0, high_per_m = 0;
   std::optional<double> log_speed, log_load;
   std::vector<double> level_db;
+  double from_s = 0, to_s = 0;  // in the recording
 };
 
 // Mean log of the speed in the steady part, from its valid band; otherwise of the stroke's mean speed.
@@ -66,7 +69,9 @@ Result<ComparedStroke> compared_stroke(const Texture& texture, const std::string
                         name, "name the recording or the textures of single strokes");
   if (texture.signal.values.empty()) return schema::fail(ErrorKind::unsuitable, "has no samples", name);
   spatial::SteadyPart part = spatial::steady_part(texture);
-  ComparedStroke stroke{&texture, name, in_b, {}, 0, 0.5 / texture.signal.pitch_m, {}, {}, {}};
+  ComparedStroke stroke{
+      &texture,           name, in_b, {}, 0, 0.5 / texture.signal.pitch_m, {}, {}, {}, texture.source.from_s,
+      texture.source.to_s};
   if (!part.texture.valid_band.empty()) {
     const schema::BandPoint band = spatial::band_throughout(part.texture.valid_band);
     stroke.low_per_m = band.low_per_m;
@@ -103,6 +108,10 @@ Result<void> check_strokes(const Strokes& strokes) {
   const Texture& first = *strokes.front().texture;
   for (auto stroke = strokes.begin(); stroke != strokes.end(); ++stroke) {
     const Texture& texture = *stroke->texture;
+    const Texture& of_side = *std::ranges::find(strokes, stroke->in_b, &ComparedStroke::in_b)->texture;
+    if (texture.simulated.empty() != of_side.simulated.empty())
+      return schema::fail(ErrorKind::unsuitable, "one side has measured and simulated strokes", stroke->name,
+                          "compare measured strokes with measured ones, simulated with simulated ones");
     if (texture.quantity != first.quantity || texture.unit != first.unit)
       return schema::fail(ErrorKind::unsuitable,
                           fmt::format("contains {} in {}, but {} contains {} in {}", texture.quantity,
@@ -147,6 +156,45 @@ Result<void> add_levels(Strokes& strokes, const std::vector<double>& edges_per_m
                           "leave it out");
   }
   return {};
+}
+
+// Whether one continues the other behind a gap of the recording.
+bool adjoin(const ComparedStroke& a, const ComparedStroke& b) {
+  const std::string& recording = a.texture->source.recording_sha256;
+  return !recording.empty() && recording == b.texture->source.recording_sha256 && a.in_b == b.in_b &&
+         a.texture->direction == b.texture->direction &&
+         std::max(a.from_s, b.from_s) - std::min(a.to_s, b.to_s) < schema::kStrokePause_s;
+}
+
+// Means over the samples of both: of power, of log speed and log load.
+void append(ComparedStroke& stroke, const ComparedStroke& next) {
+  const auto n = static_cast<double>(stroke.values.size()), more = static_cast<double>(next.values.size());
+  const auto mean = [&](double before, double after) { return (n * before + more * after) / (n + more); };
+  for (std::size_t b = 0; b < stroke.level_db.size(); ++b)
+    stroke.level_db[b] =
+        schema::power_db(mean(std::pow(10, stroke.level_db[b] / 10), std::pow(10, next.level_db[b] / 10)));
+  for (const auto member : {&ComparedStroke::log_speed, &ComparedStroke::log_load})
+    stroke.*member = stroke.*member && next.*member ? std::optional(mean(*(stroke.*member), *(next.*member)))
+                                                    : std::nullopt;
+  stroke.values.insert(stroke.values.end(), next.values.begin(), next.values.end());
+  stroke.from_s = std::min(stroke.from_s, next.from_s);
+  stroke.to_s = std::max(stroke.to_s, next.to_s);
+}
+
+// The pieces of a stroke between gaps are alike: only the whole stroke is a draw of the finger. Returns how
+// many textures were pieces of an earlier one.
+std::size_t join_pieces(Strokes& strokes) {
+  Strokes whole;
+  for (ComparedStroke& stroke : strokes) {
+    const auto other = std::ranges::find_if(whole, [&](const auto& each) { return adjoin(each, stroke); });
+    if (other == whole.end())
+      whole.push_back(std::move(stroke));
+    else
+      append(*other, stroke);
+  }
+  const std::size_t pieces = strokes.size() - whole.size();
+  strokes = std::move(whole);
+  return pieces;
 }
 
 std::string recording_of(const ComparedStroke& stroke) {
@@ -385,11 +433,17 @@ Result<SurfaceComparison> compare_surfaces(const SurfaceSide& a, const SurfaceSi
   TACTO_TRY(edges);
   TACTO_TRY(add_levels(strokes, *edges));
   SurfaceComparison c;
+  if (const std::size_t pieces = join_pieces(strokes); pieces > 0)
+    c.notes.push_back(
+        fmt::format("{} textures continue an earlier one behind a gap of less than {:g} s: they count as one "
+                    "stroke with it",
+                    pieces, schema::kStrokePause_s));
   c.tolerance_db = tolerance_db;
   c.edges_per_m = *edges;
   c.unit = strokes.front().texture->unit;
   c.a = facts_of(strokes, a, false);
   c.b = facts_of(strokes, b, true);
+  if (auto warning = c.simulated().warning(); !warning.empty()) c.notes.push_back(std::move(warning));
   c.by_recording = std::min(c.a.recordings, c.b.recordings) >= kFewestRecordings;
   LabelledLevels data = c.by_recording ? by_recording(strokes) : by_stroke(strokes);
   c.units_a = count_of(data.in_b, false);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/compare/label_test.hpp"
+#include "analysis/compare/simulated_sides.hpp"
 #include "data-schema/base/error.hpp"
 #include "data-schema/texture/texture.hpp"
 
@@ -34,6 +35,7 @@ struct SurfaceComparison {
   SurfaceVerdict verdict = SurfaceVerdict::undecided;
   std::string because;  ///< one sentence with the decisive numbers
   SideFacts a, b;
+  SimulatedSides simulated() const { return {a.simulated, b.simulated}; }
   bool by_recording = false;  ///< the unit of the test is a recording, not a stroke
   std::size_t units_a = 0, units_b = 0;
   double tolerance_db = 0;
@@ -55,7 +57,8 @@ struct SurfaceComparison {
 /// from 12 units on: log of mean speed and of mean normal force, if known of all strokes. With 4 recordings a
 /// side or more, the unit is the recording: the mean of its strokes' levels, each less the mean of its
 /// stratum. Otherwise it is the stroke, and the answer holds for these recordings only. A texture without a
-/// recording counts as a recording.
+/// recording counts as a recording. Textures of one recording and direction with less than
+/// kStrokePause_s between them are pieces of one stroke between gaps, and count as one stroke.
 ///
 /// undecided: fewer than 5 strokes (or 4 recordings) a side; fewer than 40 exchanges of the labels; speed and
 /// load explain more than three quarters of the side. different: p is at most 0.05, and the strongest window
@@ -63,7 +66,7 @@ struct SurfaceComparison {
 ///
 /// Errors: usage: a tolerance that is not above 0, two textures of one stretch of a recording; unsuitable:
 /// different quantities or units, a mean of several strokes, fewer than 64 samples at steady speed, less than
-/// an octave in common, a stroke without power.
+/// an octave in common, a stroke without power, measured and simulated strokes on one side.
 schema::Result<SurfaceComparison> compare_surfaces(const SurfaceSide& a, const SurfaceSide& b,
                                                    double tolerance_db);
 

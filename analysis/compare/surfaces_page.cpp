@@ -64,9 +64,7 @@ std::vector<schema::ResultFigure> surfaces_figures(const SurfaceComparison& c) {
   const auto add = [&](const char* name, std::string value) { figures.push_back({name, std::move(value)}); };
   add("A", c.a.name);
   add("B", c.b.name);
-  if (const std::string& simulated = c.a.simulated.empty() ? c.b.simulated : c.a.simulated;
-      !simulated.empty())
-    add("simulated", simulated.substr(0, simulated.find(':')));
+  if (c.simulated().any()) add("simulated", c.simulated().words());
   add("holds for", c.by_recording ? "recordings like these: the unit is the recording"
                                   : "these recordings: the unit is the stroke");
   add("compared", fmt::format("{} to {}, in bands of a sixth of an octave",
@@ -107,11 +105,10 @@ std::vector<ResultPicture> surfaces_pictures(const SurfaceComparison& c) {
 }
 
 schema::Result<std::string> surfaces_page(const SurfaceComparison& c) {
-  const std::string& simulated = c.a.simulated.empty() ? c.b.simulated : c.a.simulated;
-  const auto pictures = pictures_html(surfaces_pictures(c), simulated);
+  const auto pictures = pictures_html(surfaces_pictures(c), c.simulated().words());
   TACTO_TRY(pictures);
   std::string body = fmt::format("<h1>{} against {}</h1>\n", escaped(c.b.name), escaped(c.a.name)) +
-                     answer(verdict_line(c)) + simulated_box(simulated) + figures_html(surfaces_figures(c));
+                     answer(verdict_line(c)) + c.simulated().box() + figures_html(surfaces_figures(c));
   for (const std::string& note : c.notes) body += fmt::format("<p class=\"note\">{}</p>\n", escaped(note));
   return html_document(fmt::format("{} against {}: {}", c.b.name, c.a.name, to_string(c.verdict)),
                        body + *pictures);

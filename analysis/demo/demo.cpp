@@ -173,11 +173,11 @@ spatial::LineFigure replay_figure(const playback::Rendering& rendering, const sc
 // gain determines how much of the limits any gain would use.
 Result<double> fitting_gain_m_per_n(const Made& made, const playback::FingerPath& path,
                                     const schema::Transducer& transducer, playback::RenderOptions options) {
-  const double wished = options.gain_m_per_n;
-  options.gain_m_per_n = wished * 1e-3;
+  const double asked_m_per_n = options.gain_m_per_n;
+  options.gain_m_per_n = asked_m_per_n * 1e-3;
   const auto small = playback::render(made.texture, path, transducer, options);
   TACTO_TRY(small);
-  return std::min(wished, 0.9 * options.gain_m_per_n / small->peaks.tightest().used());
+  return std::min(asked_m_per_n, 0.9 * options.gain_m_per_n / small->peaks.tightest().used());
 }
 
 Result<void> replayed(const Made& made, const schema::Transducer& transducer, DemoSurface& row) {

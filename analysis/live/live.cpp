@@ -10,14 +10,19 @@
 #include <utility>
 
 #include "analysis/live/live_access.hpp"
-#include "analysis/live/live_assets.hpp"
 #include "analysis/live/live_folder.hpp"
 #include "analysis/live/live_session.hpp"
 #include "data-schema/base/module.hpp"
 #include "data-schema/control/control.hpp"
 #include "data-schema/control/live_request.hpp"
+#include "data-schema/files/embedded_files.hpp"
 
 namespace tacto::analysis {
+
+/// The files of the page; empty if the program was built without it: without libwebsockets, clang-16 or
+/// lld-16.
+std::span<const schema::EmbeddedFile> live_assets();
+
 namespace {
 
 using schema::ErrorKind;
@@ -142,7 +147,7 @@ class Site {
         return bytes_of(part, *number);
     const std::string_view name =
         request.path == "/" ? "index.html" : std::string_view(request.path).substr(1);
-    for (const LiveAsset& asset : live_assets())
+    for (const schema::EmbeddedFile& asset : live_assets())
       if (asset.name == name) return asset_answer(asset);
     return not_found();
   }
@@ -152,10 +157,10 @@ class Site {
     answer.body = "there is no such page\n";
     return answer;
   }
-  static WebAnswer asset_answer(const LiveAsset& asset) {
+  static WebAnswer asset_answer(const schema::EmbeddedFile& asset) {
     WebAnswer answer;
     answer.type = type_of_asset(asset.name);
-    answer.body = asset.bytes;
+    answer.body = asset.content;
     return answer;
   }
   static std::optional<std::size_t> number_after(std::string_view beginning, std::string_view path) {

@@ -37,7 +37,6 @@ class RestingBoard final : public firmware_host::Transport {
   double now_s() override { return now_s_; }
 
  private:
-  static RestingBoard& of(void* board) noexcept { return *static_cast<RestingBoard*>(board); }
   core::Board board() { return browser::board(channel_, profile_.data()); }
   core::Hal hal() {
     core::Hal hal;
@@ -48,13 +47,7 @@ class RestingBoard final : public firmware_host::Transport {
     hal.enable_closed = [](void*) noexcept { return true; };
     hal.clock = [](void*) noexcept { return std::uint64_t{0}; };
     hal.set_rate = [](void*, std::uint32_t) noexcept {};
-    hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
-      return firmware_host::take_first(of(b).from_host_, {bytes, size});
-    };
-    hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
-      of(b).to_host_.insert(of(b).to_host_.end(), bytes, bytes + size);
-      return size;
-    };
+    firmware_host::use_queues<RestingBoard, &RestingBoard::from_host_, &RestingBoard::to_host_>(hal);
     hal.restart = [](void*) noexcept {};
     return hal;
   }

@@ -11,6 +11,7 @@
 #include "data-schema/recording/recording_frames.hpp"
 #include "data-schema/spectrogram/spectrogram.hpp"
 #include "data-schema/texture/texture.hpp"
+#include "playback/session/force_session.hpp"
 #include "playback/session/session_rows.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
 #include "spatial/spectrogram/spectrogram.hpp"
@@ -248,9 +249,48 @@ struct TicksShown {
   }
 };
 
+// Places and forces of the axes.
+Result<void> add_force_session(const std::string& path, const schema::SessionHeader& header,
+                               ProjectFile& file) {
+  const auto session = playback::read_force_session(path);
+  TACTO_TRY(session);
+  std::vector<Envelope> places(session->axes.size(), Envelope(session->ticks)), forces = places;
+  double last_s = 0;
+  const auto add = [&](const schema::SessionTick& tick, double time_s) {
+    last_s = time_s;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      places[i].add(time_s, 1e3 * tick.counts[i] * header.forces->axes[i].encoder_step_m);
+      forces[i].add(time_s, double{tick.force_n[i]});
+    }
+  };
+  TACTO_TRY(playback::read_force_session(path, add));
+  file.figures = {{"played", for_people(last_s, Dimension::time)},
+                  {"ticks", fmt::format("{}, {} lost, at {}", session->ticks, session->lost,
+                                        for_people(header.rate_hz, Dimension::frequency))},
+                  {"scene", name_of_file(header.scene_file)}};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const playback::ForceSessionAxis& axis = session->axes[i];
+    file.figures.push_back(
+        {"axis " + axis.name,
+         fmt::format("{} to {}; force, RMS and peak: {}, {}", for_people(axis.from_m, Dimension::length),
+                     for_people(axis.to_m, Dimension::length), for_people(axis.force_rms_n, Dimension::force),
+                     for_people(axis.force_peak_n, Dimension::force))});
+    file.pictures.push_back(
+        forces[i].picture("Force along " + axis.name, "time (s)", "force on the hand (N)", "N"));
+    file.pictures.push_back(places[i].picture("Hand along " + axis.name, "time (s)", "position (mm)", "mm"));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<void> add_session(const std::string& path, ProjectFile& file, const Progress& progress) {
+  const auto reader = schema::SessionReader::open(path);
+  TACTO_TRY(reader);
+  file.date = reader->header().created;
+  file.origin = reader->header().device_uri;
+  file.simulated = reader->header().simulated;
+  if (reader->header().forces) return add_force_session(path, reader->header(), file);
   const auto overview = playback::session_overview(path, playback::part_of(progress, 0, 0.5));
   TACTO_TRY(overview);
   playback::RowMaker maker(*overview);
@@ -260,9 +300,6 @@ Result<void> add_session(const std::string& path, ProjectFile& file, const Progr
       playback::part_of(progress, 0.5, 1));
   if (!read) return read;
   const schema::SessionHeader& header = overview->header;
-  file.date = header.created;
-  file.origin = header.device_uri;
-  file.simulated = header.simulated;
   file.figures = {{"played", for_people(ticks.last_s, Dimension::time)},
                   {"ticks", fmt::format("{}, {} lost, at {}", overview->ticks, overview->lost,
                                         for_people(header.rate_hz, Dimension::frequency))},

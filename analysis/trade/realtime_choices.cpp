@@ -46,10 +46,10 @@ double worst_error(wire::Interpolation kind, double points_per_period) {
 std::vector<schema::ErrorPoint> errors_of(wire::Interpolation kind) {
   std::vector<schema::ErrorPoint> errors;
   double worst = 0, points = kMostTickPoints;
-  for (auto wished = std::rbegin(kTickPoints); wished != std::rend(kTickPoints); ++wished) {
-    for (; points > *wished; points *= kFinerStep) worst = std::max(worst, worst_error(kind, points));
-    worst = std::max(worst, worst_error(kind, *wished));
-    errors.push_back({*wished, worst});
+  for (auto point = std::rbegin(kTickPoints); point != std::rend(kTickPoints); ++point) {
+    for (; points > *point; points *= kFinerStep) worst = std::max(worst, worst_error(kind, points));
+    worst = std::max(worst, worst_error(kind, *point));
+    errors.push_back({*point, worst});
   }
   std::ranges::reverse(errors);
   return errors;

@@ -286,6 +286,10 @@ void Import::add_warnings(RecordingHeader& header) const {
   const auto time_of = [&](std::uint64_t sample) {
     return fmt::format("{:.6g} s", schema::frame_time_s(source, sample));
   };
+  if (const auto column = time_column_of(plan_.source); column && request_.rate_hz)
+    header.warnings.push_back(fmt::format(
+        "the rate is the one given; the table's times are not read: --time-column '{}' takes it from them",
+        plan_.source.columns[*column]));
   if (derived_)
     header.warnings.push_back("no position was measured: it is " + derived_->position.channel().derivation);
   std::ranges::move(gap_warnings(source.gaps), std::back_inserter(header.warnings));

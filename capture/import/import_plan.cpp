@@ -50,13 +50,21 @@ std::string typed(const Source& source, std::size_t column) {
   return name.empty() || std::ranges::count(source.columns, name) > 1 ? std::to_string(column + 1) : name;
 }
 
+// The option that takes the rate from the table's times, if a column has a unit of time; else an example of
+// both.
+std::string clock_example(const Source& source) {
+  if (const auto column = time_column_of(source))
+    return fmt::format("--time-column '{}'", typed(source, *column));
+  return fmt::format("--rate, for example --rate 10kHz, or --time-column, for example --time-column '{}*1s'",
+                     typed(source, 0));
+}
+
 Result<void> check_clock(const ImportRequest& request, const Source& source) {
   if (request.rate_hz && !request.time_column.empty())
     return fail(ErrorKind::usage, "both --rate and --time-column were given", {}, "give only one of them");
   if (request.rate_hz || !request.time_column.empty() || source.rate_hz) return {};
   return fail(ErrorKind::usage, "the rate of the table is not known", source.file,
-              "add --rate, for example --rate 10kHz, or --time-column, for example --time-column " +
-                  typed(source, 0) + "*1s");
+              "add " + clock_example(source));
 }
 
 // The first column with a unit of force, which needs no unit in the option; otherwise the first column.
@@ -69,11 +77,13 @@ std::string force_example(const Source& source) {
 }
 
 tl::unexpected<schema::Error> no_channels(const Source& source) {
-  const std::string rate = source.rate_hz ? "" : "--rate 10kHz ";
+  const std::string clock = source.rate_hz           ? ""
+                            : time_column_of(source) ? clock_example(source) + " "
+                                                     : "--rate 10kHz ";
   return fail(
       ErrorKind::usage,
       "the channels of the columns are not known; the columns are: " + columns_in_words(source.columns),
-      source.file, fmt::format("give them, for example {}--channel '{}'", rate, force_example(source)));
+      source.file, fmt::format("give them, for example {}--channel '{}'", clock, force_example(source)));
 }
 
 // Integer codes are scaled as in an audio editor, to -1 to 1.
@@ -159,6 +169,14 @@ Result<ImportPlan> plan_import(const ImportRequest& request) {
   TACTO_TRY(time);
   plan.time = *time;
   return plan;
+}
+
+std::optional<std::size_t> time_column_of(const Source& source) {
+  for (std::size_t i = 0; i < source.units.size(); ++i) {
+    const auto unit = schema::known_unit(source.units[i], schema::Dimension::time);
+    if (unit && unit->dimension == schema::Dimension::time) return i;
+  }
+  return std::nullopt;
 }
 
 std::vector<std::size_t> columns_of(const ImportPlan& plan) {

@@ -23,6 +23,9 @@ struct ImportPlan {
 /// except those in the data.
 schema::Result<ImportPlan> plan_import(const ImportRequest& request);
 
+/// The first column with a unit of time, if there is one.
+std::optional<std::size_t> time_column_of(const Source& source);
+
 /// The columns that the plan needs, without duplicates, in ascending order.
 std::vector<std::size_t> columns_of(const ImportPlan& plan);
 

@@ -18,6 +18,7 @@ enum class ErrorKind {
   unsupported_version,  ///< written by a newer major version
   cannot_write,         ///< an output folder or file that can't be written
   device,               ///< a device that failed or refused
+  unstable,             ///< a scene that becomes unstable on its device
 };
 
 /// One failure. `where` is a file, with line, field or sample; `remedy` says what to do, and may be empty.

@@ -32,14 +32,14 @@ std::string exit_codes_text() {
   return "  0  done\n  1  internal error: please report it\n  2  command line\n  3  file or device not "
          "found\n"
          "  4  malformed file\n  5  data that cannot be used for this\n  6  file of a newer version\n"
-         "  7  cannot write\n  8  device failed\n"
+         "  7  cannot write\n  8  device failed\n  9  unstable\n"
          "With --json an error is an object on one line of stderr: what, where, remedy, exit_code.\n";
 }
 
 // The items of WORDS.md, without its marks.
 std::string glossary_text() {
   const auto files = schema::embedded_files();
-  const std::string_view page = std::ranges::find(files, "WORDS.md", &schema::EmbeddedFile::name)->text;
+  const std::string_view page = std::ranges::find(files, "WORDS.md", &schema::EmbeddedFile::name)->content;
   std::string text;
   for (std::size_t at = page.find("\n- "); at < page.size(); at = page.find("\n- ", at + 1)) {
     const std::size_t end = std::min(page.find("\n- ", at + 1), page.size());

@@ -15,8 +15,8 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 9> kControlVerbs = {"hello",  "load", "arm",    "play", "stop",
-                                                           "disarm", "gain", "status", "watch"};
+constexpr std::array<std::string_view, 10> kControlVerbs = {"hello",  "load", "arm", "play",   "stop",
+                                                            "disarm", "gain", "set", "status", "watch"};
 constexpr int kDeepestRequest = 3;
 constexpr std::string_view kRequestWhere = "request";
 
@@ -62,6 +62,9 @@ Result<void> check_members(const ControlRequest& request) {
     return bad_member("version", "hello contains no version", R"(add "version":"1.0")");
   if (request.verb == ControlVerb::load && request.file.empty())
     return bad_member("file", "load contains no file", "add the file name of a texture or scene");
+  if (request.verb == ControlVerb::set && (request.number.empty() || !request.value))
+    return bad_member("number", "set needs a number and its value",
+                      R"(add "number":"bench.0.stiffness_n_per_m","value":100)");
   const int gains =
       request.gain.has_value() + request.gain_m_per_n.has_value() + request.times_default.has_value();
   if (request.verb == ControlVerb::gain && gains == 0)
@@ -76,7 +79,7 @@ Result<void> check_members(const ControlRequest& request) {
 
 // A member of another request was meant for that request: it must not be ignored, because it may be a limit.
 Result<void> check_taken(const Json& body, ControlVerb verb) {
-  constexpr std::array<std::pair<const char*, ControlVerb>, 11> kTakenBy = {
+  constexpr std::array<std::pair<const char*, ControlVerb>, 14> kTakenBy = {
       {{"version", ControlVerb::hello},
        {"token", ControlVerb::hello},
        {"file", ControlVerb::load},
@@ -87,7 +90,10 @@ Result<void> check_taken(const Json& body, ControlVerb verb) {
        {"while_connected", ControlVerb::arm},
        {"dead_man_s", ControlVerb::arm},
        {"gain", ControlVerb::gain},
-       {"save", ControlVerb::gain}}};
+       {"save", ControlVerb::gain},
+       {"number", ControlVerb::set},
+       {"value", ControlVerb::set},
+       {"over_s", ControlVerb::set}}};
   const auto word = [](ControlVerb of) { return kControlVerbs[static_cast<std::size_t>(of)]; };
   for (const auto& [name, taker] : kTakenBy)
     if (body.contains(name) && verb != taker)
@@ -121,6 +127,9 @@ ControlRequest request_of(const Json& body) {
   request.dead_man_s = asked_number(body, "dead_man_s");
   request.gain = asked_number(body, "gain");
   request.save = body.value("save", false);
+  request.number = text_or(body, "number");
+  request.value = asked_number(body, "value");
+  request.over_s = asked_number(body, "over_s");
   for (const TextureEnds ends : {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop})
     if (text_or(body, "ends") == to_string(ends)) request.ends = ends;
   return request;
@@ -210,6 +219,9 @@ std::string control_request_line(const ControlRequest& request) {
   if (request.dead_man_s) body["dead_man_s"] = *request.dead_man_s;
   if (request.gain) body["gain"] = *request.gain;
   if (request.save) body["save"] = true;
+  put_text(body, "number", request.number);
+  if (request.value) body["value"] = *request.value;
+  if (request.over_s) body["over_s"] = *request.over_s;
   return line_of(body);
 }
 

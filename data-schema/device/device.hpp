@@ -51,10 +51,18 @@ Result<void> check_device(const Device& device, const std::string& where);
 /// The names of the devices that come with tactograph.
 std::vector<std::string_view> device_preset_names();
 
+/// Mass, friction or encoder step of an axis, where the file has none.
+struct AssumedNumber {
+  std::string place;   ///< of the axis, "axes/0"
+  std::string member;  ///< "mass_kg"
+  double value = 0;
+};
+
 /// By preset name, stem or file (NAME.device.json). Errors: not_found (with the presets), malformed (also an
 /// unknown member, with the nearest known one; in a newer minor version it is kept),
-/// unsupported_version; unsuitable: by check_device.
-Result<Device> read_device(const std::string& name);
+/// unsupported_version; unsuitable: by check_device. With `assumed`, mass, friction and encoder step may be
+/// absent: they get the values that are listed there.
+Result<Device> read_device(const std::string& name, std::vector<AssumedNumber>* assumed = nullptr);
 
 /// NAME.device.json of a stem or file name; replaces an existing file. Errors: cannot_write; unsuitable: by
 /// check_device and by the schema.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include "data-schema/device/device.hpp"
 #include "data-schema/json/json_document.hpp"
 #include "data-schema/json/known_members.hpp"
@@ -9,18 +11,40 @@ namespace {
 
 constexpr std::string_view kDeviceKind = "device";
 
+struct Mechanics {
+  const char* name;
+  double DeviceAxis::*member;
+  double assumed;
+};
+
+// The assumed values are those of a small arm. Mass, Coulomb friction and step: datasheet of the PHANToM
+// Premium 1.0 (inertia below 75 g, backdrive friction 0.04 N, resolution 0.03 mm); the viscous friction is
+// our choice, small because it makes a device stable.
+constexpr Mechanics kMechanics[] = {
+    {"mass_kg", &DeviceAxis::mass_kg, 0.075},
+    {"viscous_n_s_per_m", &DeviceAxis::viscous_n_s_per_m, 0.1},
+    {"coulomb_n", &DeviceAxis::coulomb_n, 0.04},
+    {"encoder_step_m", &DeviceAxis::encoder_step_m, 3e-5},
+};
+
 DeviceAxis axis_from(const Json& body) {
   DeviceAxis axis;
   axis.name = body["name"];
-  axis.mass_kg = body["mass_kg"];
-  axis.viscous_n_s_per_m = body["viscous_n_s_per_m"];
-  axis.coulomb_n = body["coulomb_n"];
-  axis.encoder_step_m = body["encoder_step_m"];
+  for (const auto& [name, member, assumed] : kMechanics) axis.*member = number_or(body, name, assumed);
   axis.travel_from_m = body["travel_m"][0];
   axis.travel_to_m = body["travel_m"][1];
   axis.peak_force_n = body["peak_force_n"];
   axis.continuous_force_n = body["continuous_force_n"];
   return axis;
+}
+
+// The mechanics that the axes of a file leave out.
+std::vector<AssumedNumber> left_out(const Json& axes) {
+  std::vector<AssumedNumber> all;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    for (const auto& [name, member, assumed] : kMechanics)
+      if (!axes[i].contains(name)) all.push_back({fmt::format("axes/{}", i), name, assumed});
+  return all;
 }
 
 Json axis_body(const DeviceAxis& axis) {
@@ -74,10 +98,16 @@ std::vector<std::string_view> device_preset_names() {
   return preset_names(kDeviceKind);
 }
 
-Result<Device> read_device(const std::string& name) {
+Result<Device> read_device(const std::string& name, std::vector<AssumedNumber>* assumed) {
   const auto found = open_named(kDeviceKind, name);
   TACTO_TRY(found);
   TACTO_TRY(check_document_known(found->document, kDeviceKind, found->where));
+  const auto missing = left_out(found->document.body["axes"]);
+  if (assumed != nullptr)
+    *assumed = missing;
+  else if (!missing.empty())
+    return fail(ErrorKind::malformed, fmt::format("Missing required property '{}'", missing.front().member),
+                fmt::format("{}#/{}", found->where, missing.front().place), "`design --assume` fills it");
   Device device = device_from(found->document);
   TACTO_TRY(check_device(device, found->where));
   return device;

@@ -23,7 +23,7 @@ namespace {
 
 Json embedded_json(std::string_view name) {
   for (const EmbeddedFile& file : embedded_files())
-    if (file.name == name) return Json::parse(file.text);
+    if (file.name == name) return Json::parse(file.content);
   return {};
 }
 

@@ -54,7 +54,7 @@ std::string path_of_kind(std::string_view kind, const std::string& name) {
 
 Result<NamedDocument> open_named(std::string_view kind, const std::string& name) {
   if (const EmbeddedFile* preset = preset_file(kind, name))
-    return placed(parse_document(preset->text, std::string(preset->name), kind), name);
+    return placed(parse_document(preset->content, std::string(preset->name), kind), name);
   const std::string path = existing_path(kind, name);
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))

@@ -94,7 +94,7 @@ Result<TradeTable> shipped_trade_table() {
   const auto found = std::ranges::find(files, kShippedTable, &EmbeddedFile::name);
   if (found == files.end())
     return fail(ErrorKind::internal, "is missing in the program", std::string(kShippedTable));
-  return table_of(parse_document(found->text, std::string(found->name), kTradeKind),
+  return table_of(parse_document(found->content, std::string(found->name), kTradeKind),
                   std::string(found->name));
 }
 

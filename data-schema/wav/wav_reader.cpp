@@ -94,9 +94,9 @@ struct WavReader::State {
     return static_cast<sf_count_t>(samples / info.channels);
   }
 
-  Result<std::size_t> advanced(sf_count_t got, sf_count_t wanted) {
+  Result<std::size_t> advanced(sf_count_t got, sf_count_t asked) {
     next_frame += static_cast<std::uint64_t>(got);
-    if (got < wanted && info.plain && next_frame < info.frames)
+    if (got < asked && info.plain && next_frame < info.frames)
       return truncated(path, info.frames, next_frame);
     return static_cast<std::size_t>(got);
   }
@@ -125,15 +125,15 @@ Result<WavReader> WavReader::open(const std::string& path) {
 }
 
 Result<std::size_t> WavReader::read(std::span<double> interleaved) {
-  const sf_count_t wanted = state_->room(interleaved.size());
-  return state_->advanced(sf_readf_double(state_->file.get(), interleaved.data(), wanted), wanted);
+  const sf_count_t asked = state_->room(interleaved.size());
+  return state_->advanced(sf_readf_double(state_->file.get(), interleaved.data(), asked), asked);
 }
 
 Result<std::size_t> WavReader::read(std::span<std::int32_t> interleaved) {
   if (!state_->info.integer)
     return fail(ErrorKind::unsuitable, "its samples are not integer codes", state_->path);
-  const sf_count_t wanted = state_->room(interleaved.size());
-  return state_->advanced(sf_readf_int(state_->file.get(), interleaved.data(), wanted), wanted);
+  const sf_count_t asked = state_->room(interleaved.size());
+  return state_->advanced(sf_readf_int(state_->file.get(), interleaved.data(), asked), asked);
 }
 
 Result<void> WavReader::seek(std::uint64_t frame) {

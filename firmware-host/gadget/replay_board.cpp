@@ -81,13 +81,7 @@ core::Hal ReplayBoard::hal() {
     return static_cast<std::uint64_t>(static_cast<double>(of(b).ticks_) * of(b).period_s() * kClockHz);
   };
   hal.set_rate = [](void* b, std::uint32_t rate) noexcept { of(b).set_rate(rate); };
-  hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
-    return take_first(of(b).from_host_, {bytes, size});
-  };
-  hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
-    of(b).to_host_.insert(of(b).to_host_.end(), bytes, bytes + size);
-    return size;
-  };
+  use_queues<ReplayBoard, &ReplayBoard::from_host_, &ReplayBoard::to_host_>(hal);
   hal.restart = [](void* b) noexcept { of(b).set_rate(0); };
   return hal;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "firmware-host/core/firmware/board.hpp"
+#include "firmware-host/core/firmware/hal.hpp"
 
 namespace tacto::firmware_host {
 
@@ -44,6 +45,19 @@ inline std::size_t take_first(std::vector<std::uint8_t>& waiting, std::span<std:
   std::copy_n(waiting.begin(), size, bytes.begin());
   waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(size));
   return size;
+}
+
+/// The link of a board whose bytes from and to the host wait in two of its members.
+template <class Board, auto kFromHost, auto kToHost>
+void use_queues(core::Hal& hal) {
+  hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
+    return take_first(static_cast<Board*>(b)->*kFromHost, {bytes, size});
+  };
+  hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
+    auto& to_host = static_cast<Board*>(b)->*kToHost;
+    to_host.insert(to_host.end(), bytes, bytes + size);
+    return size;
+  };
 }
 
 }  // namespace tacto::firmware_host

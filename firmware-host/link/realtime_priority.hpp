@@ -14,8 +14,8 @@ class RealtimePriority {
  public:
   explicit RealtimePriority(int priority = 1) noexcept {
     const bool known = pthread_getschedparam(pthread_self(), &policy_, &before_) == 0;
-    const sched_param wish{priority};
-    granted_ = known && priority > 0 && pthread_setschedparam(pthread_self(), SCHED_FIFO, &wish) == 0;
+    const sched_param parameters{priority};
+    granted_ = known && priority > 0 && pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
   }
   RealtimePriority(const RealtimePriority&) = delete;
   RealtimePriority& operator=(const RealtimePriority&) = delete;

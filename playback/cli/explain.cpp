@@ -126,12 +126,22 @@ Result<Report> explained_without_room(const ExplainOptions& o, const AskedProgra
   return report->ends_with(refused.kind);
 }
 
-std::string reason_of(const AtSpeed& answer) {
+std::string reason_of(const AtSpeed& answer, const std::optional<SpeedRange>& range) {
   if (!answer.fits_limits())
     return fmt::format("the {} would need {:.0f} % of its limit", answer.tightest.name,
                        100 * answer.tightest.used());
-  return fmt::format("{:.0f} % of the texture's power is in the band, less than {:g} %",
-                     answer.power_kept_percent, kLeastPowerPercent);
+  const std::string reason = fmt::format("{:.0f} % of the texture's power is in the band, less than {:g} %",
+                                         answer.power_kept_percent, kLeastPowerPercent);
+  if (!range) return reason;
+  return reason + (answer.speed_mps < range->from_mps ? ": too slow" : ": too fast");
+}
+
+void add_speeds(Report& report, const std::optional<SpeedRange>& range) {
+  if (!range) {
+    report.add("playable_speeds", "none from 1 mm/s to 2 m/s");
+    return;
+  }
+  report.add("smallest_speed_mps", range->from_mps).add("largest_speed_mps", range->to_mps);
 }
 
 // Whether a finger of that speed can feel it.
@@ -144,25 +154,24 @@ Result<Report> explained_at_speed(const Program& program, double speed_mps) {
   const auto texture = schema::read_texture(program.name());
   TACTO_TRY(texture);
   const schema::Transducer& transducer = program.session.transducer;
-  RenderOptions render;
-  render.gain_m_per_n = program.gain_m_per_n;
-  const auto answer = at_speed(*texture, transducer, render, speed_mps);
-  TACTO_TRY(answer);
-  const auto largest = largest_speed_mps(*texture, transducer, render);
+  const PreparedTexture played{*texture, transducer, program.prepared, program.options};
+  const double gain_m_per_n = program.gain_m_per_n;
+  const AtSpeed answer = at_speed(played, gain_m_per_n, speed_mps);
+  const auto range = playable_speeds(played, gain_m_per_n, speed_mps);
   Report report;
-  report.add("can_be_played", answer->can_be_played());
-  if (!answer->can_be_played()) report.add("because", reason_of(*answer));
+  report.add("can_be_played", answer.can_be_played());
+  if (!answer.can_be_played()) report.add("because", reason_of(answer, range));
   report.add("speed_mps", speed_mps);
-  if (largest)
-    report.add("largest_speed_mps", *largest);
-  else
-    report.add("largest_speed", "none from 1 mm/s to 2 m/s");
+  add_speeds(report, range);
   report.add("texture", program.name()).add("transducer", transducer.name);
-  add_gain(report, program.gain_m_per_n, program.default_gain_m_per_n);
-  report.add("tightest_limit", answer->tightest.name).add("of_limit_percent", 100 * answer->tightest.used());
-  return report.add("power_kept_percent", answer->power_kept_percent)
-      .add("low_hz", render.band.low_hz)
-      .add("high_hz", render.band.high_hz);
+  add_gain(report, gain_m_per_n, program.default_gain_m_per_n);
+  if (const double largest = largest_gain_at(played, gain_m_per_n, speed_mps); largest != 0)
+    report.add("largest_gain_m_per_n", largest)
+        .add("largest_gain_times_default", largest / program.default_gain_m_per_n);
+  report.add("rate_hz", program.options.rate_hz).add("tightest_limit", answer.tightest.name);
+  return report.add("of_limit_percent", 100 * answer.tightest.used())
+      .add("power_kept_percent", answer.power_kept_percent)
+      .add("band", fmt::format("{:g}-{:g} Hz", program.options.band.low_hz, program.options.band.high_hz));
 }
 
 Result<Report> run_explain(ExplainOptions o) {
@@ -170,6 +179,7 @@ Result<Report> run_explain(ExplainOptions o) {
   TACTO_TRY(budget);
   o.program.budget = *budget;
   if (o.device_memory > 0) o.prepare.most_samples = o.device_memory;
+  o.program.any_displacement = o.speed_mps.has_value();  // the answer names the limit
   const AskedProgram asked{o.program, o.transducer, o.prepare};
   const auto program = make_program(asked.request, asked.transducer, asked.options);
   if (!program) return explained_without_room(o, asked, program.error());
@@ -189,7 +199,8 @@ cli::Action declare_explain(CLI::App& app) {
   cli::add_quantity(
       app, "--speed", o.speed_mps, Dimension::speed,
       "Can a finger of this speed feel the texture: yes or no, how much of the tightest limit and of "
-      "the texture's power, and the largest speed at which it can");
+      "the texture's power, the speeds at which it can, and the largest gain at this speed");
+  cli::add_gain(app, o.program.gain, "Gain of a texture: ", kDefaultGain);
   cli::declare_unfit_transducer(app, o.program.unfit_transducer);
   cli::refuse_force(app);
   app.add_flag("--implausible", o.program.implausible,

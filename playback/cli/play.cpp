@@ -21,7 +21,6 @@
 #include "playback/cli/loop_report.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
-#include "playback/player/scene_play.hpp"
 #include "playback/player/session_name.hpp"
 
 namespace tacto::playback {
@@ -36,6 +35,7 @@ struct PlayVerbOptions {
   PlayOptions play;
   FingerPathOption path;
   std::optional<std::string> session;
+  std::string script;
   AskedBudget budget;
   CLI::Option* rate = nullptr;
 };
@@ -96,6 +96,18 @@ void add_played(Report& report, const PlayOutcome& outcome) {
   cli::add_choices(report, outcome.choices);
 }
 
+Report add_end(Report report, const PlayOutcome& outcome) {
+  if (!outcome.recorder.failure.empty()) {
+    cli::warn(fmt::format("the session is incomplete, {} ticks are not in it: {}", outcome.recorder.lost(),
+                          outcome.recorder.failure));
+    report.ends_with(schema::ErrorKind::cannot_write);
+  }
+  if (outcome.status.state != PlayerState::fault) return report;
+  cli::warn("playing ended in a fault: " + outcome.status.fault);
+  report.add("fault", outcome.status.fault).ends_with(schema::ErrorKind::device);
+  return report;
+}
+
 Report play_report(const PlayOptions& o, const PlayOutcome& outcome, const cli::Pace& pace, bool explain) {
   Report report;
   report.add("session", o.session).add("device", outcome.device);
@@ -110,46 +122,37 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, const cli::
   if (outcome.decision) add_decision(report, *outcome.decision, explain);
   cli::warn_grouped(outcome.notes);
   if (outcome.off_note) cli::warn(*outcome.off_note);
-  if (!outcome.recorder.failure.empty()) {
-    cli::warn(fmt::format("the session is incomplete, {} ticks are not in it: {}", outcome.recorder.lost(),
-                          outcome.recorder.failure));
-    report.ends_with(schema::ErrorKind::cannot_write);
-  }
-  if (outcome.status.state != PlayerState::fault) return report;
-  cli::warn("playing ended in a fault: " + outcome.status.fault);
-  report.add("fault", outcome.status.fault).ends_with(schema::ErrorKind::device);
-  return report;
+  return add_end(std::move(report), outcome);
 }
 
 Result<Report> run_play_forces(const PlayVerbOptions& asked) {
   const PlayOptions& o = asked.play;
-  ScenePlayOptions play;
-  play.scene = o.program.file;
+  ForcePlayOptions play;
+  play.program.file = o.program.file;
+  if (asked.rate->count() > 0) play.program.rate_hz = o.prepare.rate_hz;
+  play.program.onset_s = o.prepare.onset_s;
   play.device_uri = o.device_uri;
   play.path = asked.path.file;
+  play.script = asked.script;
   play.time_s = o.time_s;
-  if (asked.rate->count() > 0) play.rate_hz = o.prepare.rate_hz;
-  play.onset_s = o.prepare.onset_s;
   play.session = schema::session_path(asked.session.value_or(session_named_after(o.program.file)));
   const cli::StopSignals signals;
   cli::Progress progress("playing");
-  const auto outcome = play_scene(
+  const auto outcome = play_forces_once(
       play, [&] { return signals.stop_asked(); }, [&](double part) { progress.update(part); });
   TACTO_TRY(outcome);
+  const TickView& ticks = outcome->status.ticks;
   Report report;
   report.add("session", play.session).add("device", outcome->device);
   if (!outcome->simulated.empty()) report.add("simulated", outcome->simulated);
-  report.add("rate_hz", outcome->rate_hz).add("ticks", outcome->recorder.ticks);
-  report.add("lost_ticks", outcome->link_lost + outcome->recorder.lost());
-  report.add("peak_limited_ticks", outcome->peak_limited)
-      .add("slew_limited_ticks", outcome->slew_limited)
-      .add("rms_limited_ticks", outcome->rms_limited)
-      .add("force_peak_n", outcome->force_peak_n);
-  for (const std::string& note : outcome->notes) cli::warn(note);
-  if (outcome->fault.empty()) return report;
-  cli::warn("playing ended in a fault: " + outcome->fault);
-  report.add("fault", outcome->fault).ends_with(schema::ErrorKind::device);
-  return report;
+  report.add("rate_hz", ticks.rate_hz()).add("ticks", outcome->recorder.ticks);
+  report.add("lost_ticks", ticks.lost() + outcome->recorder.lost());
+  report.add("peak_limited_ticks", ticks.peak_limited())
+      .add("slew_limited_ticks", ticks.slew_limited())
+      .add("rms_limited_ticks", ticks.energy_limited())
+      .add("force_peak_n", ticks.force_peak_n());
+  cli::warn_grouped(outcome->notes);
+  return add_end(std::move(report), *outcome);
 }
 
 Result<Report> run_play(const PlayVerbOptions& asked) {
@@ -173,10 +176,14 @@ Result<Report> run_play(const PlayVerbOptions& asked) {
   return play_report(o, *outcome, pace, asked.budget.options.explain);
 }
 
-// The options of a tray have no effect on forces: they are refused.
-Result<void> check_scene_options(const CLI::App& app, const PlayOptions& o) {
-  if (!plays_forces(o.program.file, o.device_uri)) return {};
-  return check_force_options(app, {"device", "output", "finger-path", "time", "rate", "onset"});
+// The options of a tray have no effect on forces, nor a script on a tray: they are refused.
+Result<void> check_scene_options(const CLI::App& app, const PlayVerbOptions& asked) {
+  const PlayOptions& o = asked.play;
+  if (plays_forces(o.program.file, o.device_uri))
+    return check_force_options(app, {"device", "output", "finger-path", "time", "rate", "onset", "script"});
+  if (asked.script.empty()) return {};
+  return schema::fail(schema::ErrorKind::usage, "--script changes a scene of forces", o.program.file,
+                      "leave it out, or play a scene with force patches");
 }
 
 cli::Action declare_play(CLI::App& app) {
@@ -189,6 +196,12 @@ cli::Action declare_play(CLI::App& app) {
   app.add_option(
       "-o,--output", options->session,
       "The session: NAME.session; default: the texture's name and the time of day, in this folder");
+  app.add_option(
+      "--script", options->script,
+      "Changes of a scene of forces: a CSV with the columns time_s,command, where a command is 'set "
+      "PATCH.LAYER.MEMBER VALUE', or '... VALUE over 50ms' (default: 10 ms). LAYER is the layer's index "
+      "or type, VALUE a number within the member's slider, in the unit of its name ('info' lists "
+      "the sliders). A command is sent up to 20 ms after its time; the session has its tick");
   declare_texture(app, options->play);
   declare_loop(app, *options);
   declare_choices(app, options->play.program.choices);
@@ -200,7 +213,7 @@ cli::Action declare_play(CLI::App& app) {
       "Ctrl-C ends the program at once; then the device ramps\nto zero by itself, and 'session' and "
       "'replay' read the session up to its last ticks.");
   return [options, &app]() -> Result<Report> {
-    TACTO_TRY(check_scene_options(app, options->play));
+    TACTO_TRY(check_scene_options(app, *options));
     return run_play(*options);
   };
 }
@@ -211,7 +224,7 @@ const cli::Verb kPlayVerb{"play", "Play a texture or scene on a device, live, an
                           "tactograph play oak -d usb: --time 60s -o first\n"
                           "  tactograph play oak -d sim: --finger-path path.csv -o first\n"
                           "  tactograph play plane.scene.json -d sim:planar,hand=minsky-radial --finger-path "
-                          "hand.csv -o held\n"
+                          "hand.csv --script sliders.csv -o held\n"
                           "  tactograph play oak -d usb: -o first --max-error 0.2% --explain\n"
                           "  tactograph play oak -d usb: -o first --contact 0.3N --energy-limit 2V "
                           "--reconstruction butterworth3",

@@ -70,6 +70,27 @@ std::string gain_words(const ControlFields& fields) {
   return fmt::format("   gain {:.4g} mm/N", 1e3 * schema::control_number(fields, "gain_m_per_n"));
 }
 
+std::string drive_line(const ControlFields& fields) {
+  const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
+  return fmt::format("drive    {:8.3f} V    rms {:.3f} V   peak {:.3f} V{}\n", number("drive_v"),
+                     number("drive_rms_v"), number("drive_peak_v"), gain_words(fields));
+}
+
+// Of each axis, and the peak: force_x_n, ... Empty without forces.
+std::string force_line(const ControlFields& fields) {
+  std::string line;
+  for (const auto& [name, value] : fields)
+    if (const auto* force_n = std::get_if<double>(&value); force_n != nullptr && name.starts_with("force_"))
+      line += fmt::format("   {} {:.3f} N", name.substr(6, name.size() - 8), *force_n);
+  return line.empty() ? line : "force " + line + "\n";
+}
+
+// Of the drive; forces have none.
+std::string band_words(const ControlFields& fields) {
+  const double band_hz = schema::control_number(fields, "passes_to_hz", NAN);
+  return std::isnan(band_hz) ? "" : fmt::format("   band up to {:.4g} Hz", band_hz);
+}
+
 }  // namespace
 
 std::string top_screen(const ControlFields& fields) {
@@ -80,12 +101,12 @@ std::string top_screen(const ControlFields& fields) {
   const std::string why = schema::control_text(fields, "why");
   fmt::format_to(out, "{:<8} {}\n", schema::control_text(fields, "state"),
                  why.empty() ? schema::control_text(fields, "fault") : why);
-  fmt::format_to(out, "period   {:8.1f} us   round trip {:.2f} ms   band up to {:.4g} Hz\n",
-                 1e6 * number("period_s"), 1e3 * number("round_trip_s"), number("passes_to_hz"));
+  fmt::format_to(out, "period   {:8.1f} us   round trip {:.2f} ms{}\n", 1e6 * number("period_s"),
+                 1e3 * number("round_trip_s"), band_words(fields));
   fmt::format_to(out, "finger   {:8.2f} mm   {:8.1f} mm/s\n", 1e3 * number("position_m"),
                  1e3 * number("speed_mps"));
-  fmt::format_to(out, "drive    {:8.3f} V    rms {:.3f} V   peak {:.3f} V{}\n", number("drive_v"),
-                 number("drive_rms_v"), number("drive_peak_v"), gain_words(fields));
+  const std::string forces = force_line(fields);
+  text += forces.empty() ? drive_line(fields) : forces;
   fmt::format_to(out, "ticks    {:8.0f}      late {:.0f}   lost {:.0f}   limited {:.0f}   energy {:.0f}",
                  number("ticks"), number("late_ticks"), number("lost_ticks"), number("limited_ticks"),
                  number("energy_limited_ticks"));

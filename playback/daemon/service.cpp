@@ -12,10 +12,13 @@
 #include "data-schema/files/files.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/version.hpp"
+#include "firmware-host/sim/planar/planar_device.hpp"
 #include "playback/daemon/status_fields.hpp"
 #include "playback/host-loop/locked_memory.hpp"
 #include "playback/model/gain_sign.hpp"
+#include "playback/player/play.hpp"
 #include "playback/player/program.hpp"
+#include "playback/player/served_folder.hpp"
 #include "playback/player/session_name.hpp"
 
 namespace tacto::playback {
@@ -110,14 +113,29 @@ Result<std::unique_ptr<Service>> Service::open(const schema::DaemonConfig& confi
   return service;
 }
 
+Result<PlayerDevice> Service::open_device() {
+  const std::string uri = paced(config_.device);
+  if (uri.starts_with(firmware_host::kPlanarScheme)) {
+    auto opened = open_force_device(uri, config_.finger_path, true);
+    TACTO_TRY(opened);
+    force_device_ = std::move(opened->about);
+    return std::move(opened->player);
+  }
+  const auto script = read_finger_script(config_.finger_path);
+  TACTO_TRY(script);
+  auto opened = open_player_device(uri, *script);
+  TACTO_TRY(opened);
+  if (const auto& about = opened->client->description(); about.axes) force_device_ = device_of(about);
+  return opened;
+}
+
 Result<void> Service::connect() {
   player_.reset();
   here_.client.reset();
   here_.loop.reset();
   device_ = {};
-  const auto script = read_finger_script(config_.finger_path);
-  TACTO_TRY(script);
-  auto device = open_player_device(paced(config_.device), *script);
+  force_device_.reset();
+  auto device = open_device();
   TACTO_TRY(device);
   PlayerOptions player_options;
   player_options.heartbeat_s = 1e-3 * config_.watchdog_ms / 4;
@@ -176,8 +194,13 @@ Result<void> Service::begin_load(const ControlRequest& request) {
   if (const auto may = may_begin("load"); !may) return may;
   if (player_->state() == PlayerState::lost)
     if (const auto connected = connect(); !connected) return connected;
-  if (const auto may = player_->may_load(); !may) return may;
   load_request_ = request;
+  const auto file =
+      request.by_tcp ? served_file(config_.files, request.file) : Result<std::string>(resolved(request.file));
+  TACTO_TRY(file);
+  const bool forces = force_device_ && plays_forces(*file, device_.uri);
+  if (const auto may = player_->may_load(forces); !may) return may;
+  if (forces) return begin_load_of_forces(request);
   ProgramRequest target{resolved(request.file), request.at_m, request.ends, gain_of(request)};
   target.only_in = request.by_tcp ? std::optional(config_.files) : std::nullopt;
   if (request.by_tcp) target.file = request.file;
@@ -185,9 +208,30 @@ Result<void> Service::begin_load(const ControlRequest& request) {
   target.choices = request.playback;
   target.defaults = config_.playback;
   const bool idle = player_->state() == PlayerState::idle;
-  loader_.begin([target, transducer = config_.transducer,
-                 options = options()] { return make_program(target, transducer, options); },
-                idle ? ProgramLoader::Beside::nothing : ProgramLoader::Beside::playing);
+  loader_.begin(
+      [target, transducer = config_.transducer, options = options()]() -> Result<AnyProgram> {
+        return make_program(target, transducer, options);
+      },
+      idle ? ProgramLoader::Beside::nothing : ProgramLoader::Beside::playing);
+  return {};
+}
+
+Result<void> Service::begin_load_of_forces(const ControlRequest& request) {
+  if (request.at_m || request.ends || gain_of(request) || request.fade_s ||
+      request.playback != schema::PlaybackChoices{})
+    return fail(ErrorKind::usage, "a scene of forces has no place, ends, gain, fade or playback choices",
+                request.file, "send only its file");
+  ForceRequest target{request.by_tcp ? request.file : resolved(request.file),
+                      {},
+                      config_.onset_s,
+                      static_cast<std::uint16_t>(config_.watchdog_ms),
+                      {}};
+  if (request.by_tcp) target.only_in = config_.files;
+  loader_.begin(
+      [target, device = *force_device_, own = *client().description().axes]() -> Result<AnyProgram> {
+        return make_force_program(target, device, own);
+      },
+      ProgramLoader::Beside::nothing);
   return {};
 }
 
@@ -195,7 +239,7 @@ std::optional<Result<ControlFields>> Service::finished_load() {
   auto program = loader_.take();
   if (!program) return std::nullopt;
   if (!*program) return schema::forward_error(*program);
-  return load(std::move(**program));
+  return std::visit([this](auto&& made) { return load(std::move(made)); }, std::move(**program));
 }
 
 Result<ControlFields> Service::load(Program program) {
@@ -222,6 +266,20 @@ Result<ControlFields> Service::load(Program program) {
   if (changes) fields.emplace_back("fade_s", fade_s);
   if (changes) return fields;
   TACTO_TRY(player_->gain(1));
+  return fields;
+}
+
+Result<ControlFields> Service::load(ForceProgram forces) {
+  ControlFields fields{{"file", load_request_.file},
+                       {"rate_hz", forces.session.rate_hz},
+                       {"patches", static_cast<std::int64_t>(forces.scene.patches.size())},
+                       {"block_bytes", static_cast<std::int64_t>(forces.scene.bytes())}};
+  for (std::size_t i = 0; i < forces.notes.size(); ++i)
+    fields.emplace_back(fmt::format("note_{}", i + 1), forces.notes[i]);
+  TACTO_TRY(player_->load(std::move(forces)));
+  loaded_ = load_request_.file;
+  loop_period_m_ = loop_seam_m_ = 0;
+  filter_.reset();
   return fields;
 }
 
@@ -325,8 +383,25 @@ Result<ControlFields> Service::gain(const ControlRequest& request) {
   return fields;
 }
 
+Result<ControlFields> Service::set(const ControlRequest& request) {
+  if (!player_->forces()) return fail(ErrorKind::usage, "no scene of forces is loaded", {}, "load one first");
+  const double over_s = request.over_s.value_or(kUsualSetRampS);
+  const auto command = set_command(request.number, *request.value, over_s, player_->forces()->scene);
+  TACTO_TRY(command);
+  TACTO_TRY(player_->set(*command));
+  ControlFields fields{{"number", request.number}, {"value", *request.value}, {"over_s", over_s}};
+  ControlFields event = fields;
+  event.emplace_back("device_s", 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns));
+  publish_("set", event);
+  return fields;
+}
+
 void Service::add_present_gain(ControlFields& fields, double factor) const {
-  if (!loaded_.empty()) fields.emplace_back("gain_m_per_n", factor * loaded_gain_m_per_n_);
+  if (!loaded_.empty()) {
+    fields.emplace_back("gain_m_per_n", factor * loaded_gain_m_per_n_);
+    if (default_gain_m_per_n_ != 0)
+      fields.emplace_back("gain_times_default", factor * loaded_gain_m_per_n_ / default_gain_m_per_n_);
+  }
   add_inversion(fields, factor * loaded_gain_m_per_n_);
 }
 
@@ -356,20 +431,25 @@ ControlFields Service::hello() const {
 
 ControlFields Service::status() const {
   const PlayerStatus status = player_->status();
-  ControlFields fields{{"state", std::string(to_string(status.state))}, {"gain", status.gain}};
-  add_present_gain(fields, status.gain);
+  const auto& forces = player_->forces();
+  ControlFields fields{{"state", std::string(to_string(status.state))}};
+  if (!forces) fields.emplace_back("gain", status.gain);
+  if (!forces) add_present_gain(fields, status.gain);
   if (!status.fault.empty()) fields.emplace_back("fault", status.fault);
   if (!why_.empty()) fields.emplace_back("why", why_);
   if (status.state != PlayerState::idle) add_stay(fields, stay_.rules());
   if (!loaded_.empty()) fields.emplace_back("loaded", loaded_);
-  if (!loaded_.empty()) fields.emplace_back("passes_to_hz", passes_to_hz_);
+  if (!loaded_.empty() && !forces) fields.emplace_back("passes_to_hz", passes_to_hz_);
   add_loop(fields, loop_period_m_, loop_seam_m_);
   if (!status.session.empty()) fields.emplace_back("session", status.session);
   fields.emplace_back("round_trip_s", status.round_trip_s);
   add_ticks(fields, status.ticks, status.recorder ? status.recorder->lost() : 0);
-  add_limits(fields, status);
+  if (forces)
+    add_forces(fields, status.ticks, *forces->session.forces);
+  else
+    add_limits(fields, status);
   if (status.recorder) add_recorder(fields, *status.recorder);
-  fields.emplace_back("period_s", 1 / config_.rate_hz);
+  fields.emplace_back("period_s", 1 / (forces ? forces->session.rate_hz : config_.rate_hz));
   if (here_) {
     HostLoopStatus loop = here_.loop->status();
     loop.missed_ticks -= missed_before_;
@@ -395,6 +475,8 @@ std::optional<Result<ControlFields>> Service::handle(const ControlRequest& reque
       return disarm();
     case ControlVerb::gain:
       return gain(request);
+    case ControlVerb::set:
+      return set(request);
     case ControlVerb::status:
     case ControlVerb::watch:
       return status();

@@ -48,12 +48,16 @@ class Service {
   Service(const schema::DaemonConfig& config, Publish publish)
       : config_(config), publish_(std::move(publish)) {}
   schema::Result<void> connect();
+  schema::Result<PlayerDevice> open_device();
   firmware_host::Client& client() { return here_ ? *here_.client : *device_.client; }
   schema::Result<void> begin_load(const schema::ControlRequest& request);
   schema::Result<schema::ControlFields> load(Program program);
+  schema::Result<schema::ControlFields> load(ForceProgram forces);
+  schema::Result<void> begin_load_of_forces(const schema::ControlRequest& request);
   schema::Result<void> may_begin(const char* what) const;
   schema::Result<schema::ControlFields> arm(const schema::ControlRequest& request);
   schema::Result<schema::ControlFields> gain(const schema::ControlRequest& request);
+  schema::Result<schema::ControlFields> set(const schema::ControlRequest& request);
   schema::Result<void> save_gain(double factor, const std::string& who);
   schema::Result<void> save_scene_gain(double factor, const std::string& who);
   void report_losses(const RecorderCounts& counts, bool last);
@@ -71,6 +75,7 @@ class Service {
   schema::DaemonConfig config_;
   Publish publish_;
   PlayerDevice device_;
+  std::optional<schema::Device> force_device_;  // if it has axes with forces
   HostLoopClient here_;
   std::uint64_t missed_before_ = 0;  // periods that the loop on this computer missed before the session
   std::unique_ptr<Player> player_;

@@ -25,6 +25,15 @@ void add_ticks(ControlFields& fields, const TickView& view, std::uint64_t not_re
   fields.emplace_back("drive_peak_v", view.drive_peak_v());
 }
 
+void add_forces(ControlFields& fields, const TickView& view, const schema::SessionForces& forces) {
+  for (std::size_t i = 0; i < forces.axes.size(); ++i) {
+    const schema::DeviceAxis& axis = forces.axes[i];
+    fields.emplace_back(axis.name + "_m", view.last().counts[i] * axis.encoder_step_m);
+    fields.emplace_back("force_" + axis.name + "_n", double{view.last().force_n[i]});
+  }
+  fields.emplace_back("force_peak_n", view.force_peak_n());
+}
+
 void add_limits(ControlFields& fields, const PlayerStatus& status) {
   if (status.ticks.limited() + status.ticks.energy_limited() == 0) return;
   const LimitsTook& took = status.limits;

@@ -13,6 +13,8 @@ namespace tacto::playback {
 
 /// `not_recorded`: ticks that are missing in the session; they are counted as lost.
 void add_ticks(schema::ControlFields& fields, const TickView& view, std::uint64_t not_recorded);
+/// Of a scene of forces: place and force of each axis.
+void add_forces(schema::ControlFields& fields, const TickView& view, const schema::SessionForces& forces);
 /// If the device's flags report limited ticks: what the limits removed, in dB, live, or why it is unknown;
 /// and the command that reports it for each stroke.
 void add_limits(schema::ControlFields& fields, const PlayerStatus& status);

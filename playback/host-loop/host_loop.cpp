@@ -203,14 +203,14 @@ void HostLoop::take_faults() {
 
 // The device is armed exactly while the loop is armed.
 void HostLoop::follow_arming() {
-  const bool wanted = board_->wants_drive();
-  if (wanted == armed_) return;
-  armed_ = wanted;
+  const bool drives = board_->wants_drive();
+  if (drives == armed_) return;
+  armed_ = drives;
   to_trim_ = to_pad_ = 0;
   last_drive_v_ = 0;
   while (board_->drives().front() != nullptr) board_->drives().pop();
   sound_ = true;  // disarming clears a fault, as on a device
-  if (!wanted) return (void)device_.command(wire::Disarm{});
+  if (!drives) return (void)device_.command(wire::Disarm{});
   {
     const std::lock_guard lock(fault_mutex_);
     fault_.clear();

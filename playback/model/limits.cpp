@@ -47,6 +47,16 @@ double proportional_fit(const Peaks& peaks, double gain_m_per_n) {
   return schema::rounded_down(gain_m_per_n / peaks.tightest().used());
 }
 
+double fitting_gain(double gain_m_per_n, Peaks peaks, const std::function<Peaks(double gain_m_per_n)>& at) {
+  constexpr int kMostGains = 30;
+  for (int tries = 0; tries < kMostGains && gain_m_per_n != 0; ++tries) {
+    gain_m_per_n = proportional_fit(peaks, gain_m_per_n);
+    peaks = at(gain_m_per_n);
+    if (peaks.fit()) return gain_m_per_n;
+  }
+  return 0;
+}
+
 tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_per_n,
                                            double default_gain_m_per_n, bool may_clip) {
   const std::string fits =
@@ -70,10 +80,10 @@ std::size_t clip_drive(std::vector<double>& drive_v, double rate_hz, const schem
   std::size_t changed = 0;
   double before_v = 0;
   for (double& value : drive_v) {
-    const double wished = value;
+    const double unlimited = value;
     value = std::clamp(value, -transducer.drive_limit_v, transducer.drive_limit_v);
     value = std::clamp(value, before_v - step_v, before_v + step_v);
-    changed += value != wished;
+    changed += value != unlimited;
     before_v = value;
   }
   return changed;

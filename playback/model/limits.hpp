@@ -2,6 +2,7 @@
 // The transducer's limits: how much of them a drive uses, and how to clip a drive to them.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,11 @@ schema::Result<void> check_limits(const Peaks& peaks, double gain_m_per_n, doubl
 /// The gain at which the tightest peak just fits if all peaks are proportional to it: gain / used, rounded
 /// down in the fourth digit.
 double proportional_fit(const Peaks& peaks, double gain_m_per_n);
+
+/// The largest gain whose peaks fit, by proportional estimates that are tested, because with an energy limit
+/// or a hysteresis the peaks are not proportional to the gain. `peaks` are those at `gain_m_per_n`, `at`
+/// gives them at another gain. 0: none of 30 fits.
+double fitting_gain(double gain_m_per_n, Peaks peaks, const std::function<Peaks(double gain_m_per_n)>& at);
 
 /// The error of check_limits() for one peak, with the gain that fits (0: none is known) and as a factor of
 /// the default; `may_clip` adds the hint to clip.

@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "data-schema/files/files.hpp"
 #include "firmware-host/link/wire_device.hpp"
+#include "firmware-host/sim/planar/planar_device.hpp"
 #include "playback/host-loop/locked_memory.hpp"
 #include "playback/player/host_loop_client.hpp"
+#include "playback/player/placed_textures.hpp"
 #include "playback/player/player_device.hpp"
 #include "playback/player/silent_play.hpp"
 #include "playback/session/session_limits.hpp"
@@ -29,11 +32,11 @@ double time_of(const PlayOptions& options) {
   return options.finger_path ? options.finger_path->duration_s() : kUsualS;
 }
 
-Result<void> check_play_options(const PlayOptions& options) {
-  if (options.time_s && !(*options.time_s > 0))
-    return fail(ErrorKind::usage, fmt::format("the time {:g} s is not above 0", *options.time_s), {},
+Result<void> check_play_options(const std::optional<double>& time_s, const std::string& session) {
+  if (time_s && !(*time_s > 0))
+    return fail(ErrorKind::usage, fmt::format("the time {:g} s is not above 0", *time_s), {},
                 "give a time above 0 s");
-  return schema::check_stem(schema::stem_of("/" + options.session, ".session").substr(1));
+  return schema::check_stem(schema::stem_of("/" + session, ".session").substr(1));
 }
 
 Result<std::string> transducer_for(const PlayOptions& options, const firmware_host::Capabilities& about) {
@@ -60,9 +63,23 @@ struct PlayTime {
   double from_s = 0, to_s = 0;
 };
 
-Result<void> run_until(Player& player, const PlayTime& time, const std::function<bool()>& stop_asked,
-                       const std::function<void(double)>& progress) {
+// Commands are sent between messages of ticks, at most this many, because a device holds 16 until a tick.
+constexpr std::size_t kMostCommandsAtOnce = 8;
+
+// Sends the commands that are due.
+Result<void> follow_script(Player& player, double played_s, std::span<const TimedSceneCommand>& script) {
+  for (std::size_t i = 0; i < kMostCommandsAtOnce; ++i) {
+    if (script.empty() || script.front().time_s > played_s) return {};
+    TACTO_TRY(player.set(script.front().command));
+    script = script.subspan(1);
+  }
+  return {};
+}
+
+Result<void> run_until(Player& player, const PlayTime& time, std::span<const TimedSceneCommand> script,
+                       const std::function<bool()>& stop_asked, const std::function<void(double)>& progress) {
   while (player.armed_s() < time.to_s && !stop_asked()) {
+    TACTO_TRY(follow_script(player, player.armed_s() - time.from_s, script));
     if (const auto done = player.step(kPlayStepS); !done) return done;
     if (player.state() == PlayerState::fault) break;
     if (progress) progress(std::max(0.0, (player.armed_s() - time.from_s) / (time.to_s - time.from_s)));
@@ -107,24 +124,36 @@ PlayOutcome outcome_of(const Program& program) {
 
 // The device, loop and player of one playback.
 struct Playing {
-  PlayerDevice& device;
+  const PlayerDevice& device;
   const HostLoopClient& here;
   Player& player;
+  std::span<const TimedSceneCommand> script = {};
 };
 
-Result<void> play_through(const Playing& playing, const PlayOptions& options,
+// Precondition: the program is loaded.
+Result<void> play_through(const Playing& playing, const std::string& session,
                           const std::function<bool()>& stop_asked,
                           const std::function<void(double)>& progress, PlayOutcome& outcome) {
   Player& player = playing.player;
-  if (const auto done = player.gain(options.gain); !done) return done;
-  if (const auto done = player.arm(options.session); !done) return done;
-  if (const auto done = player.play(); !done) return done;
+  outcome.device = playing.device.uri;
+  outcome.real_time = playing.device.device->is_real_time();
+  outcome.simulated = firmware_host::simulated_device(playing.device.client->description());
+  TACTO_TRY(player.arm(session));
+  TACTO_TRY(player.play());
   const PlayTime time = begin_path(player, playing.device, playing.here, outcome.asked_s);
-  if (const auto done = run_until(player, time, stop_asked, progress); !done) return done;
+  TACTO_TRY(run_until(player, time, playing.script, stop_asked, progress));
   outcome.status = player.status();
-  if (player.state() != PlayerState::fault)
-    if (const auto done = ramp_down(player); !done) return done;
-  return player.disarm();
+  if (player.state() != PlayerState::fault) TACTO_TRY(ramp_down(player));
+  TACTO_TRY(player.disarm());
+  outcome.recorder = player.last_session();
+  return {};
+}
+
+// Emulated time can wait, so nothing may be lost.
+PlayerOptions options_for(const PlayerDevice& device) {
+  PlayerOptions options;
+  options.full_queue = device.device->is_real_time() ? FullQueue::lose : FullQueue::wait;
+  return options;
 }
 
 void tell_limits(const std::string& session, PlayOutcome& outcome) {
@@ -149,43 +178,78 @@ HostLoopFigures looped_by(const HostLoop& loop) {
   return {loop.latency(), loop.delay_s(), loop.status().missed_ticks};
 }
 
+Result<std::vector<TimedSceneCommand>> script_for(const std::string& file, const PreparedScene& scene,
+                                                  double time_s) {
+  if (file.empty()) return std::vector<TimedSceneCommand>();
+  auto script = read_scene_script(file, scene);
+  TACTO_TRY(script);
+  if (script->back().time_s < time_s) return script;
+  return fail(ErrorKind::malformed,
+              fmt::format("its last command is at {:g} s, but the playback ends at {:g} s",
+                          script->back().time_s, time_s),
+              file, "play longer, with --time");
+}
+
 }  // namespace
 
 Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
                               const std::function<void(double)>& progress) {
-  TACTO_TRY(check_play_options(options));
+  TACTO_TRY(check_play_options(options.time_s, options.session));
   std::optional<FingerScript> script;
   // The emulated finger moves from the stream's beginning on. With this computer's loop that is before the
   // loop's delay is measured, so the finger waits.
   if (options.finger_path) script = FingerScript{*options.finger_path, false, options.loop_here};
   auto device = open_player_device(options.device_uri, script);
   TACTO_TRY(device);
-  PlayerOptions player_options;
-  // Emulated time can wait, so nothing may be lost.
-  player_options.full_queue = device->device->is_real_time() ? FullQueue::lose : FullQueue::wait;
+  PlayerOptions player_options = options_for(*device);
   const auto here = loop_of(options, *device, player_options);
   TACTO_TRY(here);
   const auto player = Player::make(*here ? *here->client : *device->client, device->uri, player_options);
   TACTO_TRY(player);
+  TACTO_TRY((*player)->may_load(false));
   auto program = program_for(options, *device, *here, (*player)->metres_per_count());
   TACTO_TRY(program);
   PlayOutcome outcome = outcome_of(*program);
   const PlayableRange what = playable_range(*program);
-  outcome.device = device->uri;
-  outcome.real_time = device->device->is_real_time();
-  outcome.simulated = firmware_host::simulated_device(device->client->description());
   outcome.asked_s = time_of(options);
   TACTO_TRY((*player)->load(std::move(*program)));
+  TACTO_TRY((*player)->gain(options.gain));
   if (*here) lock_memory();
-  const auto played = play_through({*device, *here, **player}, options, stop_asked, progress, outcome);
-  TACTO_TRY(played);
-  outcome.recorder = (*player)->last_session();
+  TACTO_TRY(play_through({*device, *here, **player}, options.session, stop_asked, progress, outcome));
   if (*here) outcome.looped = looped_by(*here->loop);
   tell_limits(options.session, outcome);
   if (auto silence = note_of_silence(outcome.status.ticks, what))
     outcome.notes.push_back(std::move(*silence));
   else
     outcome.off_note = note_off_textures(outcome.status.ticks, what);
+  return outcome;
+}
+
+bool plays_forces(const std::string& what, const std::string& device_uri) {
+  if (device_uri.starts_with(firmware_host::kPlanarScheme)) return true;
+  if (!names_a_scene(what)) return false;
+  const auto scene = schema::read_scene(what);
+  return scene && !scene->patches.empty();
+}
+
+Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std::function<bool()>& stop_asked,
+                                     const std::function<void(double)>& progress) {
+  TACTO_TRY(check_play_options(options.time_s, options.session));
+  const auto device = open_force_device(options.device_uri, options.path);
+  TACTO_TRY(device);
+  firmware_host::Client& client = *device->player.client;
+  auto program = make_force_program(options.program, device->about, *client.description().axes);
+  TACTO_TRY(program);
+  const auto player = Player::make(client, device->player.uri, options_for(device->player));
+  TACTO_TRY(player);
+  PlayOutcome outcome;
+  outcome.notes = program->notes;
+  outcome.asked_s = options.time_s.value_or(device->path_s.value_or(kUsualS));
+  const auto script = script_for(options.script, program->scene, outcome.asked_s);
+  TACTO_TRY(script);
+  TACTO_TRY((*player)->load(std::move(*program)));
+  const Playing playing{device->player, {}, **player, *script};
+  TACTO_TRY(play_through(playing, options.session, stop_asked, progress, outcome));
   return outcome;
 }
 

@@ -56,4 +56,21 @@ struct PlayOutcome {
 schema::Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
                                       const std::function<void(double)>& progress = {});
 
+/// Whether `play` has to play forces: on an emulated force device, or if the file is a scene with patches.
+bool plays_forces(const std::string& what, const std::string& device_uri);
+
+struct ForcePlayOptions {
+  ForceRequest program;
+  std::string device_uri, session;
+  std::string path;              ///< of the hand or device (open_force_device)
+  std::string script;            ///< file of commands (read_scene_script); empty: none
+  std::optional<double> time_s;  ///< default: as long as the path, or 10 s
+};
+
+/// The same for the force patches of a scene. Errors: as open_force_device, make_force_program,
+/// read_scene_script, Player; malformed, for a command of the script after the end.
+schema::Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options,
+                                             const std::function<bool()>& stop_asked,
+                                             const std::function<void(double)>& progress = {});
+
 }  // namespace tacto::playback

@@ -41,12 +41,36 @@ bool runs(PlayerState state) {
   return state == PlayerState::armed || state == PlayerState::playing;
 }
 
+bool has_drive(const firmware_host::Description& about) {
+  return (about.welcome.features & wire::kFeatureDrive) != 0;
+}
+
 Result<double> encoder_step(const firmware_host::Description& about, const std::string& uri) {
+  if (!has_drive(about)) return double{about.axes->axes[0].metres_per_count};
   for (const wire::Channel& channel : about.channels)
     if (std::strcmp(channel.quantity, "position") == 0 && std::isfinite(channel.scale) && channel.scale != 0)
       return channel.scale;
   return fail(ErrorKind::device, "the device does not report its encoder step", uri,
               "it has no channel of the quantity position");
+}
+
+schema::SessionTick row_of(const wire::Ticks& message, std::uint8_t i) {
+  schema::SessionTick row;
+  row.encoder = message.ticks[i].encoder;
+  row.drive_v = message.ticks[i].drive_v;
+  row.flags = message.ticks[i].flags;
+  return row;
+}
+
+schema::SessionTick row_of(const wire::AxisTicks& message, std::uint8_t i) {
+  const wire::AxisTick& tick = message.ticks[i];
+  schema::SessionTick row;
+  row.encoder = tick.counts[0];
+  row.flags = tick.flags;
+  row.axes = message.axes;
+  std::copy_n(tick.counts, message.axes, row.counts.begin());
+  std::copy_n(tick.force_n, message.axes, row.force_n.begin());
+  return row;
 }
 
 // A device reports no file names, so they are added here.
@@ -82,7 +106,7 @@ Player::~Player() {
 
 Result<std::unique_ptr<Player>> Player::make(firmware_host::Client& client, std::string uri,
                                              const PlayerOptions& options) {
-  if ((client.description().welcome.features & wire::kFeatureDrive) == 0)
+  if (!has_drive(client.description()) && !client.description().axes)
     return fail(ErrorKind::device, "the device has no output", uri);
   const auto step = encoder_step(client.description(), uri);
   TACTO_TRY(step);
@@ -110,12 +134,20 @@ Result<void> Player::steer(const Message& message) {
   return done;
 }
 
-Result<void> Player::may_load() const {
+Result<void> Player::may_load(bool forces) const {
+  const firmware_host::Description& about = client_.description();
+  if (forces && !about.axes)
+    return fail(ErrorKind::unsuitable, "this device has no axes with forces", uri_,
+                "play the scene on a force device, for example sim:planar");
+  if (!forces && !has_drive(about))
+    return fail(ErrorKind::unsuitable, "this device has forces, but no tray", uri_,
+                "play a scene with force patches on it");
+  if (forces || forces_) return require(state_ == PlayerState::idle, "load", "disarm first");
   return require(state_ == PlayerState::idle || runs(state_), "load", "disarm first");
 }
 
 Result<void> Player::load(Program program, double fade_s) {
-  TACTO_TRY(may_load());
+  TACTO_TRY(may_load(false));
   const double factor = runs(state_) ? gain_ : 1;
   TACTO_TRY(within_reach(program, program.tray_peak_m, factor));
   const wire::Welcome& about = client_.description().welcome;
@@ -126,6 +158,15 @@ Result<void> Player::load(Program program, double fade_s) {
   if (auto fits = check_upload(client_, program.prepared); !fits)
     return tl::unexpected(naming(fits.error(), program));
   program_ = std::move(program);
+  forces_.reset();
+  return {};
+}
+
+Result<void> Player::load(ForceProgram forces) {
+  TACTO_TRY(may_load(true));
+  forces_ = std::move(forces);
+  program_.reset();
+  gain_ = 1;
   return {};
 }
 
@@ -156,6 +197,7 @@ Result<void> Player::change(Program program, double fade_s) {
 }
 
 void Player::view_textures() {
+  if (!program_) return;
   const bool stops = program_->options.ends == Ends::stop;
   view_.textures_from(stops ? program_->start_m : -INFINITY,
                       stops ? program_->start_m + program_->length_m : INFINITY);
@@ -163,7 +205,7 @@ void Player::view_textures() {
 
 schema::SessionHeader Player::session_header() const {
   const firmware_host::Description& about = client_.description();
-  schema::SessionHeader header = program_->session;
+  schema::SessionHeader header = loaded_header();
   header.clock_hz = about.welcome.clock_hz;
   header.loop = options_.loop;
   header.device_uri = uri_;
@@ -181,7 +223,7 @@ Result<void> Player::begin_session(const std::string& path) {
   const schema::SessionHeader header = session_header();
   const std::size_t samples = client_.description().welcome.profile_samples;
   std::unique_ptr<LiveLimits> limits;
-  if (options_.tell_limits) limits = std::make_unique<LiveLimits>(header, samples);
+  if (options_.tell_limits && !forces_) limits = std::make_unique<LiveLimits>(header, samples);
   auto recorder = FlightRecorder::begin(path, header, options_.full_queue, limits.get());
   TACTO_TRY(recorder);
   recorder_ = std::move(*recorder);
@@ -190,23 +232,31 @@ Result<void> Player::begin_session(const std::string& path) {
   return {};
 }
 
+Result<void> Player::upload_loaded() {
+  if (forces_) return upload_scene(client_, *forces_);
+  device_gain_m_per_n_ = program_->prepared.gain_m_per_n;
+  TACTO_TRY(upload(client_, program_->prepared));
+  return client_.command(device_gain());
+}
+
 Result<void> Player::arm(const std::string& session_path) {
   TACTO_TRY(require(state_ == PlayerState::idle, "arm", "disarm first"));
   TACTO_TRY(require(loaded(), "arm", "load a texture or scene first"));
-  TACTO_TRY(may_gain(gain_));
+  if (program_) TACTO_TRY(may_gain(gain_));
   // If another program was killed during playback, the device may still ramp down.
   TACTO_TRY(wait_for_idle());
   TACTO_TRY(begin_session(session_path));
   fault_.clear();
   stopped_because_.clear();
-  view_.begin(program_->prepared.rate_hz, metres_per_count_);
+  const schema::SessionHeader& header = loaded_header();
+  view_.begin(header.rate_hz, header.metres_per_count);
   view_textures();
-  device_gain_m_per_n_ = program_->prepared.gain_m_per_n;
   faded_at_ = 0;
-  const wire::Arm arm{wire::DriveSource::profile, firmware_host::millihertz(program_->prepared.rate_hz)};
-  auto done = upload(client_, program_->prepared);
-  if (done) done = client_.command(device_gain());
+  const wire::Arm arm{forces_ ? wire::DriveSource::scene : wire::DriveSource::profile,
+                      firmware_host::millihertz(header.rate_hz)};
+  auto done = upload_loaded();
   client_.take_ticks();  // ticks of an earlier run, possibly of another program
+  client_.take_axis_ticks();
   if (done) done = recorder_->start();
   if (done) done = client_.command(arm);
   if (!done) {
@@ -239,6 +289,8 @@ Result<void> Player::stop(const std::string& why) {
 
 Result<void> Player::may_gain(double gain) const {
   if (!std::isfinite(gain)) return fail(ErrorKind::usage, "the gain is not a finite number", uri_);
+  if (forces_)
+    return fail(ErrorKind::unsuitable, "a scene of forces has no gain", uri_, "set a number of a layer");
   if (!program_) return {};
   const bool fades = recorder_ != nullptr && view_.expected() < faded_at_;
   const double peak_m = std::max(program_->tray_peak_m, fades ? leaving_peak_m_ : 0);
@@ -251,6 +303,13 @@ Result<void> Player::gain(double gain) {
   if (!recorder_) return {};
   const auto done = steer(device_gain());
   if (done) recorder_->event({view_.expected(), steady_ns(), fmt::format("gain {:g}", gain)});
+  return done;
+}
+
+Result<void> Player::set(const SceneCommand& command) {
+  TACTO_TRY(require(forces_ && runs(state_), "set", "arm a scene of forces first"));
+  const auto done = steer(command.set);
+  if (done) recorder_->event({view_.expected(), steady_ns(), command.text});
   return done;
 }
 
@@ -283,8 +342,8 @@ Result<void> Player::disarm(const std::string& why) {
 // A device that closes the loop itself reads the encoder and sets the drive in the same tick.
 std::string Player::latency_words() const {
   if (options_.latency) return options_.latency();
-  return fmt::format("from the encoder's edge to the drive: the device's own tick, at most {:g} ms",
-                     1e3 / program_->prepared.rate_hz);
+  return fmt::format("from the encoder's edge to the {}: the device's own tick, at most {:g} ms",
+                     forces_ ? "force" : "drive", 1e3 / loaded_header().rate_hz);
 }
 
 Result<void> Player::end_session() {
@@ -325,7 +384,10 @@ Result<void> Player::step(double timeout_s) {
   return {};
 }
 
-void Player::take(const wire::Ticks& message) {
+// Ticks of an earlier run may still arrive: they are ignored.
+template <class Message>
+void Player::take(const Message& message) {
+  if (!recorder_ || message.count == 0 || message.first_tick < view_.expected()) return;
   if (message.first_tick > view_.expected()) {
     const std::uint64_t lost = message.first_tick - view_.expected();
     view_.take_loss(lost);
@@ -334,33 +396,26 @@ void Player::take(const wire::Ticks& message) {
   const wire::Welcome& about = client_.description().welcome;
   const double ns_per_clock = 1e9 / std::max(1U, about.clock_hz);
   const auto time_ns = std::llround(static_cast<double>(message.device_ticks) * ns_per_clock);
-  const double period_ns = 1e9 / program_->prepared.rate_hz;
+  const double period_ns = 1e9 / loaded_header().rate_hz;
   for (std::uint8_t i = 0; i < message.count; ++i) {
-    const wire::Tick& tick = message.ticks[i];
     const std::uint64_t number = message.first_tick + i;
-    const schema::SessionTick row{
-        number,
-        options_.due_ns ? options_.due_ns(number) : time_ns + std::llround(i * period_ns),
-        tick.encoder,
-        tick.drive_v,
-        tick.flags,
-        options_.lateness_ns ? options_.lateness_ns(number) : schema::SessionTick::kLatenessUnknown};
+    schema::SessionTick row = row_of(message, i);
+    row.tick = number;
+    row.time_ns = options_.due_ns ? options_.due_ns(number) : time_ns + std::llround(i * period_ns);
+    if (options_.lateness_ns) row.lateness_ns = options_.lateness_ns(number);
     view_.take(row);
     recorder_->tick(row);
     if (tray_.run() != nullptr && options_.measured) options_.measured(number, *tray_.run());
   }
+  const PlayerState seen = state_of(view_.last().flags);
+  if (seen != state_ && state_ != PlayerState::fault && state_ != PlayerState::idle)
+    enter(seen, seen == PlayerState::armed ? stopped_because_ : fault_);
 }
 
-// Ticks of an earlier run may still arrive: they are ignored.
 void Player::take_ticks() {
   tray_.take();
-  for (const wire::Ticks& message : client_.take_ticks()) {
-    if (!recorder_ || message.count == 0 || message.first_tick < view_.expected()) continue;
-    take(message);
-    const PlayerState seen = state_of(view_.last().flags);
-    if (seen != state_ && state_ != PlayerState::fault && state_ != PlayerState::idle)
-      enter(seen, seen == PlayerState::armed ? stopped_because_ : fault_);
-  }
+  for (const wire::Ticks& message : client_.take_ticks()) take(message);
+  for (const wire::AxisTicks& message : client_.take_axis_ticks()) take(message);
 }
 
 void Player::take_faults() {

@@ -11,7 +11,9 @@
 #include "firmware-host/link/client.hpp"
 #include "playback/host-loop/tray_samples.hpp"
 #include "playback/player/flight_recorder.hpp"
+#include "playback/player/force_program.hpp"
 #include "playback/player/program.hpp"
+#include "playback/player/scene_command.hpp"
 #include "playback/session/tick_view.hpp"
 
 namespace tacto::playback {
@@ -60,12 +62,13 @@ class Player {
   /// Called at each change of state, with its cause.
   using Listener = std::function<void(PlayerState state, const std::string& why, double device_s)>;
 
-  /// The client must outlive the player. Errors: device: no output, or no encoder with a known step.
+  /// The client must outlive the player. Errors: device: neither a drive nor forces, or no encoder with a
+  /// known step.
   static schema::Result<std::unique_ptr<Player>> make(firmware_host::Client& client, std::string uri,
                                                       const PlayerOptions& options);
   ~Player();
 
-  /// The encoder's step, m per count.
+  /// The step of the encoder, or of the first axis of a device that has only forces, m per count.
   double metres_per_count() const { return metres_per_count_; }
   void listen(Listener listener) { listener_ = std::move(listener); }
 
@@ -74,9 +77,14 @@ class Player {
   /// state, while an earlier change still fades, or for another fade; unsuitable, if the tray would exceed
   /// its limit; as of check_texture_change(); device. After an error the current texture continues.
   schema::Result<void> load(Program program, double fade_s = kUsualFadeS);
-  /// Whether load() is possible in this state. Errors: usage.
-  schema::Result<void> may_load() const;
-  bool loaded() const { return program_.has_value(); }
+  /// The same for a scene of forces, only in idle; its gain is 1.
+  schema::Result<void> load(ForceProgram forces);
+  /// Whether load() of a program, or of forces, is possible on this device and in this state. Errors:
+  /// unsuitable; usage.
+  schema::Result<void> may_load(bool forces) const;
+  bool loaded() const { return program_ || forces_; }
+  /// The forces that are loaded; none: a program for a tray, or nothing.
+  const std::optional<ForceProgram>& forces() const { return forces_; }
   /// Begins a session (never over an existing file), and arms when its header and upload are on the disk.
   /// Only in idle, with a program. Errors: usage; device; cannot_write. After an error there is no session.
   schema::Result<void> arm(const std::string& session_path);
@@ -86,8 +94,10 @@ class Player {
   /// At any time; kept for the next session. Errors: as may_gain; device.
   schema::Result<void> gain(double gain);
   /// Errors: usage, for a gain that is not finite; unsuitable, for one at which the tray would exceed its
-  /// limit, with the largest that fits.
+  /// limit, with the largest that fits, and for forces.
   schema::Result<void> may_gain(double gain) const;
+  /// Changes a number of the forces that are played. Errors: usage, in idle and for a drive; device.
+  schema::Result<void> set(const SceneCommand& command);
   /// Ramps to zero, waits for idle (a second at most), and closes the session; `why` as in stop(). Errors:
   /// device; cannot_write.
   schema::Result<void> disarm(const std::string& why = {});
@@ -119,10 +129,15 @@ class Player {
   schema::Result<void> require(bool allowed, const char* what, const char* remedy) const;
   schema::Result<void> change(Program program, double fade_s);
   schema::Result<void> may_change(const Program& program, double fade_s) const;
+  const schema::SessionHeader& loaded_header() const {
+    return forces_ ? forces_->session : program_->session;
+  }
   schema::SessionHeader session_header() const;
+  schema::Result<void> upload_loaded();
   schema::Result<void> begin_session(const std::string& path);
   void take_ticks();
-  void take(const wire::Ticks& message);
+  template <class Message>
+  void take(const Message& message);
   void take_faults();
   void watch_lateness();
   void enter(PlayerState state, const std::string& why);
@@ -137,6 +152,7 @@ class Player {
   double metres_per_count_ = 0;
   Listener listener_;
   std::optional<Program> program_;
+  std::optional<ForceProgram> forces_;  // or this one
   std::unique_ptr<LiveLimits> limits_;  // if requested; declared before the recorder, which uses it
   std::unique_ptr<FlightRecorder> recorder_;
   std::string session_path_;

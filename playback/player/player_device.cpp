@@ -16,6 +16,9 @@
 
 #include "firmware-host/open_device.hpp"
 #include "firmware-host/sim/device/sim_device.hpp"
+#include "firmware-host/sim/planar/planar_device.hpp"
+#include "playback/player/force_program.hpp"
+#include "playback/render/plane_render.hpp"
 #include "spatial/dsp/resample/hermite.hpp"
 
 namespace tacto::playback {
@@ -39,10 +42,8 @@ std::string lock_path(const std::string& device_name) {
 // Positions along a path at any time; only the knots are stored, because a path may last for hours.
 class Script {
  public:
-  explicit Script(const FingerScript& script)
-      : repeated_(script.repeated),
-        closed_(ends_where_it_began(script.path)),
-        knots_(std::make_shared<const Knots>(script.path)) {}
+  Script(const FingerScript& script, bool closed)
+      : repeated_(script.repeated), closed_(closed), knots_(std::make_shared<const Knots>(script.path)) {}
 
   double operator()(double time_s) const { return knots_->curve(on_path(time_s)); }
   /// Precondition: the path has a normal force.
@@ -75,6 +76,22 @@ class Script {
   std::shared_ptr<const Knots> knots_;
 };
 
+// Of each axis of the device; an axis z stays at 0.
+firmware_host::PlaneScript plane_script(const schema::Device& device, const std::vector<FingerPath>& paths,
+                                        bool repeated) {
+  std::vector<std::optional<Script>> ways;
+  const bool closed = std::ranges::all_of(paths, ends_where_it_began);
+  auto path = paths.begin();
+  for (const schema::DeviceAxis& axis : device.axes)
+    ways.push_back(axis.name == "z" ? std::nullopt
+                                    : std::optional(Script(FingerScript{*path++, repeated}, closed)));
+  return [ways](double time_s) {
+    std::vector<double> places_m;
+    for (const auto& way : ways) places_m.push_back(way ? (*way)(time_s) : 0);
+    return places_m;
+  };
+}
+
 struct ScriptedDevice {
   std::unique_ptr<firmware_host::Device> device;
   std::function<void()> begin_path;
@@ -88,7 +105,7 @@ Result<ScriptedDevice> open_scripted(const std::string& uri, const FingerScript&
   }
   auto device = firmware_host::make_sim_device(uri, std::string_view(uri).substr(kSimScheme.size()));
   TACTO_TRY(device);
-  const Script way(script);
+  const Script way(script, ends_where_it_began(script.path));
   std::function<double(double)> force_n;
   if (!script.path.normal_force_n.empty()) force_n = [way](double time_s) { return way.force_n(time_s); };
   firmware_host::SimBoard& board = (*device)->board();
@@ -154,6 +171,31 @@ Result<PlayerDevice> open_player_device(const std::string& uri, const std::optio
   TACTO_TRY(lock);
   player.lock = std::move(*lock);
   return player;
+}
+
+Result<ForceDevice> open_force_device(const std::string& uri, const std::string& path, bool repeated) {
+  const bool emulated = uri.starts_with(firmware_host::kPlanarScheme);
+  if (!path.empty() && !emulated)
+    return fail(ErrorKind::unsuitable, "only an emulated hand follows a path", uri,
+                "leave the path out, or play on sim:planar");
+  auto player = open_player_device(uri, std::nullopt);
+  TACTO_TRY(player);
+  if (!player->client->description().axes)
+    return fail(ErrorKind::unsuitable, "this device has no axes with forces", player->uri,
+                "play the scene on a force device, for example sim:planar");
+  if (!emulated) {
+    schema::Device about = device_of(player->client->description());
+    return ForceDevice{std::move(*player), std::move(about), std::nullopt};
+  }
+  firmware_host::PlanarBoard& board = static_cast<firmware_host::PlanarDevice&>(*player->device).board();
+  ForceDevice opened{std::move(*player), board.device(), std::nullopt};
+  if (path.empty()) return opened;
+  const auto paths = read_axis_paths(path, plane_axes_of(opened.about));
+  TACTO_TRY(paths);
+  TACTO_TRY(check_travel(opened.about, *paths, path));
+  board.set_script(plane_script(opened.about, *paths, repeated));
+  opened.path_s = paths->front().duration_s();
+  return opened;
 }
 
 }  // namespace tacto::playback

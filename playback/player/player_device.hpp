@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "data-schema/device/device.hpp"
 #include "firmware-host/link/client.hpp"
 #include "firmware-host/link/device.hpp"
 #include "playback/model/finger_path.hpp"
@@ -54,5 +55,19 @@ struct PlayerDevice {
 /// one; another program plays on it.
 schema::Result<PlayerDevice> open_player_device(const std::string& uri,
                                                 const std::optional<FingerScript>& script);
+
+/// A force device, as its file describes it, or as it describes itself.
+struct ForceDevice {
+  PlayerDevice player;
+  schema::Device about;
+  std::optional<double> path_s;  ///< duration of the path
+};
+
+/// `path`, of an emulated device: the place to which the person moves the hand, or the path of the device
+/// without a hand (read_axis_paths()), once or repeated as that of a finger; empty: all axes at 0. Errors: as
+/// open_player_device, read_axis_paths, check_travel; unsuitable: no axes with forces; a path for a device
+/// that is not emulated.
+schema::Result<ForceDevice> open_force_device(const std::string& uri, const std::string& path,
+                                              bool repeated = false);
 
 }  // namespace tacto::playback

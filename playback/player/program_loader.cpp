@@ -14,7 +14,7 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-Result<Program> made_within_memory(const ProgramLoader::Make& make) try {
+Result<AnyProgram> made_within_memory(const ProgramLoader::Make& make) try {
   return make();
 } catch (const std::bad_alloc&) {
   return fail(ErrorKind::unsuitable, "needs more memory than is available", "load", "play a shorter part");
@@ -75,14 +75,14 @@ void ProgramLoader::give_up() {
   if (given_up_ && works() && work_->thread.load() != 0) step_back(work_->thread.load());
 }
 
-std::optional<Result<Program>> ProgramLoader::take() {
+std::optional<Result<AnyProgram>> ProgramLoader::take() {
   start_next();
   if (!target_ || (busy() && !given_up_)) return std::nullopt;
   target_ = false;
   next_.reset();
   if (given_up_)
     return fail(ErrorKind::usage, "the load was cancelled by stop or disarm", "load", "load again");
-  std::optional<Result<Program>> result = std::move(work_->result);
+  std::optional<Result<AnyProgram>> result = std::move(work_->result);
   forget();
   return result;
 }

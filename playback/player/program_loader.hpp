@@ -9,17 +9,22 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <variant>
 
+#include "playback/player/force_program.hpp"
 #include "playback/player/program.hpp"
 
 namespace tacto::playback {
+
+/// A program for a tray, or the forces of a scene.
+using AnyProgram = std::variant<Program, ForceProgram>;
 
 /// Prepares one program at a time, on a thread of its own for which no caller has to wait: a long texture
 /// takes seconds, and cannot be interrupted. A program requested after one that was cancelled follows when
 /// that thread has ended, so that only one is in memory. For one calling thread.
 class ProgramLoader {
  public:
-  using Make = std::function<schema::Result<Program>()>;
+  using Make = std::function<schema::Result<AnyProgram>()>;
 
   ProgramLoader() = default;
   ProgramLoader(const ProgramLoader&) = delete;
@@ -40,13 +45,13 @@ class ProgramLoader {
   void give_up();
   /// The result, once; none while the program is being made, or if there was none. Errors: of `make`;
   /// unsuitable: not enough memory for it; usage: it was cancelled.
-  std::optional<schema::Result<Program>> take();
+  std::optional<schema::Result<AnyProgram>> take();
 
  private:
   struct Work {
     std::atomic<bool> done{false};
     std::atomic<pid_t> thread{0};
-    std::optional<schema::Result<Program>> result;
+    std::optional<schema::Result<AnyProgram>> result;
   };
   struct Next {
     Make make;

@@ -44,9 +44,9 @@ class Designer {
 
   /// For the normalised chain.
   std::vector<double> taps() {
-    const double wished = 4 * std::ceil(kFilterS * rate_hz_ / 4);
+    const double usual = 4 * std::ceil(kFilterS * rate_hz_ / 4);
     count_ =
-        design_.taps > 0 ? design_.taps : static_cast<std::size_t>(std::clamp(wished, kLeastTaps, kMostTaps));
+        design_.taps > 0 ? design_.taps : static_cast<std::size_t>(std::clamp(usual, kLeastTaps, kMostTaps));
     penalties_.assign(kGrid + 1, kFirstPenalty);
     std::vector<double> taps = solved();
     for (int round = 0; round < kMostLawsonRounds && raise_penalties(taps); ++round) taps = solved();

@@ -60,7 +60,7 @@ Result<void> check_prepare_options(const PrepareOptions& o) {
   if (!(o.metres_per_count > 0 && o.metres_per_count < 1))
     return wrong("the encoder's step is not above 0", "give the length of one count");
   if (!(o.gain_m_per_n >= 0 && o.gain_m_per_n <= 1))
-    return wrong("the gain is not between 0 and 1 m/N", "a fingertip needs about 1mm/N");
+    return wrong("the gain is below 0, or larger than 1 m/N", "a fingertip needs about 1mm/N");
   if (!(o.band.low_hz > 0 && o.band.low_hz < o.band.high_hz && o.band.high_hz < kMostRateHz))
     return wrong("the band is empty or reaches 0 Hz", "0 < low < high");
   if (!(o.delay_s >= 0 && o.delay_s <= 0.02)) return wrong("the delay is outside 0 to 20 ms", "2ms is usual");

@@ -65,8 +65,8 @@ LevelGrid first_grid(const schema::SpaceSignal& signal, const PyramidShape& shap
   const double period_m = static_cast<double>(continued_size(signal, shape.ends)) * signal.pitch_m;
   // In a mirror, half the period has a whole number of steps on each level, too.
   const std::size_t step = std::size_t{shape.ends == Ends::mirror ? 2U : 1U} << ((shape.levels - 1) / 2);
-  const double wished = period_m * shape.finest_per_m * shape.samples_per_period / static_cast<double>(step);
-  const auto steps = static_cast<std::size_t>(std::ceil(std::max(wished, 8.0)));
+  const double needed = period_m * shape.finest_per_m * shape.samples_per_period / static_cast<double>(step);
+  const auto steps = static_cast<std::size_t>(std::ceil(std::max(needed, 8.0)));
   LevelGrid grid;
   grid.period = step * steps_that_fit(steps, step, period_m, signal.length_m(), shape);
   grid.pitch_m = period_m / static_cast<double>(grid.period);

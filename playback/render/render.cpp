@@ -48,7 +48,7 @@ Result<void> check_options(const RenderOptions& o) {
     return wrong(fmt::format("a rate of {:g} Hz can't hold a band up to {:g} Hz", o.rate_hz, o.band.high_hz),
                  fmt::format("use a --rate above {:g}Hz", 2 * o.band.high_hz));
   if (!(o.gain_m_per_n > 0 && o.gain_m_per_n <= kLargestGain))
-    return wrong("the gain is not between 0 and 1 m/N", "a fingertip needs about 1mm/N");
+    return wrong("the gain is 0, or larger than 1 m/N", "a fingertip needs about 1mm/N");
   if (!std::isfinite(o.at_m)) return wrong("the texture's place is not finite", "give --at a length");
   if (const double onset_s = o.onset_s.value_or(0); !(onset_s >= 0 && std::isfinite(onset_s)))
     return wrong("the onset is below 0", "0s turns it off");
@@ -89,18 +89,19 @@ Result<void> check_inputs(std::span<const PlacedTexture> textures, const FingerP
   return check_length(path, options);
 }
 
-Clipping clipping_of(const std::vector<double>& wished, const std::vector<double>& clipped) {
-  std::vector<double> removed(wished.size());
-  std::ranges::transform(wished, clipped, removed.begin(), std::minus<>());
+Clipping clipping_of(const std::vector<double>& unlimited, const std::vector<double>& clipped) {
+  std::vector<double> removed(unlimited.size());
+  std::ranges::transform(unlimited, clipped, removed.begin(), std::minus<>());
   const auto peak = [](const std::vector<double>& v) {
     return std::abs(*std::ranges::max_element(v, {}, [](double x) { return std::abs(x); }));
   };
-  const double smallest = 1e-6 * peak(wished);
+  const double smallest = 1e-6 * peak(unlimited);
   Clipping clipping;
   clipping.samples = static_cast<std::size_t>(
       std::ranges::count_if(removed, [&](double value) { return std::abs(value) > smallest; }));
-  clipping.peak_reduced_db = level_db(peak(wished) / peak(clipped));
-  clipping.removed_db = level_db(schema::statistics_of(removed).rms() / schema::statistics_of(wished).rms());
+  clipping.peak_reduced_db = level_db(peak(unlimited) / peak(clipped));
+  clipping.removed_db =
+      level_db(schema::statistics_of(removed).rms() / schema::statistics_of(unlimited).rms());
   return clipping;
 }
 

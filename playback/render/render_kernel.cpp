@@ -18,8 +18,6 @@ using schema::Result;
 
 namespace {
 
-constexpr int kMostGains = 30;
-
 PrepareOptions kernel_options(const RenderOptions& o, double onset_s) {
   PrepareOptions options;
   options.rate_hz = o.rate_hz;
@@ -68,27 +66,12 @@ struct KernelRun {
   }
 };
 
-// With an energy limit or a hysteresis the peaks are not proportional to the gain, so each proportional
-// estimate is tested. Returns 0 if none fits.
-double fitting_gain(const KernelRun& run, Peaks peaks) {
-  double gain_m_per_n = run.job.options.gain_m_per_n;
-  for (int tries = 0; tries < kMostGains && gain_m_per_n > 0; ++tries) {
-    gain_m_per_n = proportional_fit(peaks, gain_m_per_n);
-    peaks = run.asked_at(gain_m_per_n);
-    if (peaks.fit()) return gain_m_per_n;
-  }
-  return 0;
-}
-
-tl::unexpected<schema::Error> refuse_cut(const KernelRun& run, bool may_clip) {
-  const Peaks asked = run.asked_at(run.job.options.gain_m_per_n);
-  return limit_passed(asked.tightest(), fitting_gain(run, asked), run.job.options.default_gain_m_per_n,
-                      may_clip);
-}
-
-tl::unexpected<schema::Error> refuse_displacement(const KernelRun& run, const Peak& displacement_m) {
-  const Peaks asked = run.asked_at(run.job.options.gain_m_per_n);
-  return limit_passed(displacement_m, fitting_gain(run, asked), run.job.options.default_gain_m_per_n, false);
+// `passed`: the peak that the error names; none: the tightest one.
+tl::unexpected<schema::Error> refuse(const KernelRun& run, const std::optional<Peak>& passed, bool may_clip) {
+  const RenderOptions& o = run.job.options;
+  const Peaks asked = run.asked_at(o.gain_m_per_n);
+  const double fits = fitting_gain(o.gain_m_per_n, asked, [&](double gain) { return run.asked_at(gain); });
+  return limit_passed(passed.value_or(asked.tightest()), fits, o.default_gain_m_per_n, may_clip);
 }
 
 // Reports what was clipped; a displacement beyond its limit is refused, because nothing clips it.
@@ -97,8 +80,8 @@ Result<ExactDrive> within_limits(Rendering& rendering, const KernelRun& run, con
       static_cast<std::size_t>(std::max(drive.tally.amplitude_limited(), drive.tally.slew_limited()));
   ExactDrive moved = modelled_from(drive.drive_v, run.job.target, run.job.chain);
   const bool too_far = moved.peaks.displacement_m.used() > 1;
-  if (clipped > 0 && run.job.options.over_limit == OverLimit::refuse) return refuse_cut(run, !too_far);
-  if (too_far) return refuse_displacement(run, moved.peaks.displacement_m);
+  if (clipped > 0 && run.job.options.over_limit == OverLimit::refuse) return refuse(run, {}, !too_far);
+  if (too_far) return refuse(run, moved.peaks.displacement_m, false);
   if (clipped > 0) rendering.clipping = {clipped, 0, drive.tally.removed_db()};
   rendering.energy_limited_samples = drive.tally.energy_limited();
   if (drive.tally.removed_any()) rendering.removed_db = drive.tally.removed_db();

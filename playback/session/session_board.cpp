@@ -116,13 +116,7 @@ core::Hal SessionBoard::hal() {
   hal.enable_closed = [](void* b) noexcept { return of(b).enabled_; };
   hal.clock = [](void* b) noexcept { return of(b).clock_; };
   hal.set_rate = [](void*, std::uint32_t) noexcept {};
-  hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
-    return firmware_host::take_first(of(b).from_host_, {bytes, size});
-  };
-  hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
-    of(b).to_host_.insert(of(b).to_host_.end(), bytes, bytes + size);
-    return size;
-  };
+  firmware_host::use_queues<SessionBoard, &SessionBoard::from_host_, &SessionBoard::to_host_>(hal);
   hal.restart = [](void*) noexcept {};
   return hal;
 }

@@ -89,14 +89,14 @@ Result<std::optional<schema::Error>> read_unlimited_where_known(
     const std::function<void(const SessionTick& tick, std::optional<float> unlimited_v)>& listener,
     const std::function<void(double)>& progress) {
   std::uint64_t heard = 0;
-  const auto wishes = read_unlimited(
+  const auto read = read_unlimited(
       session, [&](const SessionTick& tick, float unlimited_v) { ++heard, listener(tick, unlimited_v); },
       progress);
-  if (wishes) return std::optional<schema::Error>();
+  if (read) return std::optional<schema::Error>();
   const auto rest = hear_ticks(
       session, heard, [&](const SessionTick& tick) { listener(tick, std::nullopt); }, progress);
   TACTO_TRY(rest);
-  return std::optional(wishes.error());
+  return std::optional(read.error());
 }
 
 Result<LimitTally> tally_session(const std::string& session) {

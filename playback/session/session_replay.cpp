@@ -56,9 +56,10 @@ Result<Overview> overview_of(const std::string& name) {
 
 class SessionPlayer {
  public:
-  SessionPlayer(const schema::SessionHeader& header, const HostBeats& beats, const UnlimitedListener& wishes)
-      : board_(header), beats_(beats), wishes_(wishes) {
-    if (wishes_) unlimited_ = std::make_unique<SessionBoard>(header, BoardLimits::lifted);
+  SessionPlayer(const schema::SessionHeader& header, const HostBeats& beats,
+                const UnlimitedListener& listener)
+      : board_(header), beats_(beats), listener_(listener) {
+    if (listener_) unlimited_ = std::make_unique<SessionBoard>(header, BoardLimits::lifted);
   }
 
   void hand(const SessionCommand& command) { commands_.hand(command, obey_); }
@@ -104,7 +105,7 @@ class SessionPlayer {
   void report_unlimited(const SessionTick& tick, bool beats) {
     if (beats) unlimited_->say(wire::Heartbeat{});
     const float unlimited_v = unlimited_->tick(tick);
-    if (!outcome_.first_difference) wishes_(tick, unlimited_v);
+    if (!outcome_.first_difference) listener_(tick, unlimited_v);
   }
   // Of the first axis that differs.
   void compare_forces(const SessionTick& tick) {
@@ -125,7 +126,7 @@ class SessionPlayer {
   SessionBoard board_;
   std::unique_ptr<SessionBoard> unlimited_;  // if the caller needs its drive
   HostBeats beats_;
-  const UnlimitedListener& wishes_;
+  const UnlimitedListener& listener_;
   SessionCommands commands_;
   SessionCommands::Obey obey_ = [this](const SessionCommand& command) { obey(command); };
   std::optional<std::string> refused_;
@@ -158,13 +159,13 @@ Result<void> check_replayable(const Overview& seen, const schema::SessionReader&
 }  // namespace
 
 Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress,
-                                     const UnlimitedListener& wishes) {
+                                     const UnlimitedListener& listener) {
   const auto seen = overview_of(name);
   TACTO_TRY(seen);
   auto reader = schema::SessionReader::open(name);
   TACTO_TRY(reader);
   TACTO_TRY(check_replayable(*seen, *reader));
-  SessionPlayer player(reader->header(), seen->beats, wishes);
+  SessionPlayer player(reader->header(), seen->beats, listener);
   TACTO_TRY(hand_over_commands(name, player));
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) player.play(*ticks);

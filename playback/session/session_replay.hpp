@@ -41,13 +41,13 @@ using UnlimitedListener = std::function<void(const schema::SessionTick& tick, fl
 /// has to equal the recorded one to the bit. A fault is reproduced if its cause is in the ticks (enable
 /// input, jump, not a number) or is the host's silence. For a contact gate the ticks contain its decision,
 /// not the force. Only the session is read. Errors: unsuitable, if there are no ticks, if a part of what is
-/// sent up to arming is missing, or if a contact gated a session whose ticks do not report it (before
-/// protocol 1.2); malformed, if a command in it is not a frame; unsuitable, if the core refuses one, with its
-/// reason. `progress` receives fractions; `wishes` doubles the cost, because a second device, without limits,
-/// is replayed too. This one comes to rest a little earlier if the slew limit delayed the other, by at most
-/// drive limit / slew limit, and then accepts a count that was unseen that much earlier.
+/// sent up to arming is missing; malformed, if a command in it is not a frame; unsuitable, if the core
+/// refuses one, with its reason. `progress` receives fractions; `listener` doubles the cost, because a second
+/// device, without limits, is replayed too. This one comes to rest a little earlier if the slew limit delayed
+/// the other, by at most drive limit / slew limit, and then accepts a count that was unseen that much
+/// earlier.
 schema::Result<ReplayOutcome> replay_session(const std::string& name,
                                              const std::function<void(double)>& progress = {},
-                                             const UnlimitedListener& wishes = {});
+                                             const UnlimitedListener& listener = {});
 
 }  // namespace tacto::playback

@@ -38,11 +38,16 @@ void TickView::take(const schema::SessionTick& tick) {
   off_ += playing && (position_m() < from_m_ || position_m() > to_m_);
   blind_ += (tick.flags & wire::kTickBlind) != 0;
   limited_ += (tick.flags & kAnyLimit) != 0;
+  peak_limited_ += (tick.flags & wire::kTickAmplitudeLimited) != 0;
+  slew_limited_ += (tick.flags & wire::kTickSlewLimited) != 0;
   energy_limited_ += (tick.flags & wire::kTickEnergyLimited) != 0;
   gated_ += (tick.flags & kHeldBack) == kHeldBack;
   const double drive_v = tick.drive_v;
   mean_square_ += share_ * (drive_v * drive_v - mean_square_);
   peak_v_ = std::max(peak_v_, std::abs(drive_v));
+  double force_n = 0;
+  for (const float axis_n : tick.force_n) force_n = std::hypot(force_n, axis_n);
+  force_peak_n_ = std::max(force_peak_n_, force_n);
   const auto second = static_cast<std::uint64_t>(kLateOverS * rate_hz_);
   if (ticks_ - second_from_ < second) return;
   late_part_ = static_cast<double>(late_ - late_before_) / static_cast<double>(second);

@@ -26,7 +26,10 @@ class TickView {
   std::uint64_t lost() const { return lost_; }
   std::uint64_t late() const { return late_; }
   std::uint64_t limited() const { return limited_; }
-  /// Ticks whose drive was reduced to keep its RMS limit.
+  /// Those whose force was limited at its peak, or in its change.
+  std::uint64_t peak_limited() const { return peak_limited_; }
+  std::uint64_t slew_limited() const { return slew_limited_; }
+  /// Ticks whose drive or force was reduced to keep its RMS limit.
   std::uint64_t energy_limited() const { return energy_limited_; }
   /// Ticks during playback in which the contact gate reduced the drive: no contact, or contact began or ended
   /// just now.
@@ -52,15 +55,17 @@ class TickView {
   /// Over about the last 100 ms.
   double drive_rms_v() const;
   double drive_peak_v() const { return peak_v_; }
+  double force_peak_n() const { return force_peak_n_; }  ///< of the vector
+  double rate_hz() const { return rate_hz_; }
 
  private:
   static constexpr std::size_t kPlaces = 512;  // 25 ms at 20 kHz
   double rate_hz_ = 1, metres_per_count_ = 0;
   std::uint64_t expected_ = 0, ticks_ = 0, lost_ = 0, late_ = 0, limited_ = 0, blind_ = 0;
-  std::uint64_t energy_limited_ = 0, gated_ = 0, playing_ = 0, off_ = 0;
+  std::uint64_t peak_limited_ = 0, slew_limited_ = 0, energy_limited_ = 0, gated_ = 0, playing_ = 0, off_ = 0;
   double from_m_ = -INFINITY, to_m_ = INFINITY;
   std::uint64_t second_from_ = 0, late_before_ = 0;
-  double late_part_ = 0, mean_square_ = 0, share_ = 0, peak_v_ = 0;
+  double late_part_ = 0, mean_square_ = 0, share_ = 0, peak_v_ = 0, force_peak_n_ = 0;
   std::int64_t count_ = 0, least_ = INT64_MAX, greatest_ = INT64_MIN;  // continue beyond 2^31
   schema::SessionTick last_;
   std::array<std::int32_t, kPlaces> counts_{};

@@ -35,14 +35,6 @@ FingerPath path_of(std::span<const JudgedRow> rows, double rate_hz) {
   return path;
 }
 
-Result<schema::Texture> same_texture(const SessionTexture& played) {
-  auto texture = schema::read_texture(played.file);
-  if (!texture) return texture;
-  const auto wav = schema::texture_wav(played.file);
-  if (wav && wav->sha256 == played.sha256) return texture;
-  return fail(ErrorKind::unsuitable, "has changed since it was played", played.file);
-}
-
 TextureMix mix_of(std::span<const JudgedRow> rows, const std::vector<bool>& known) {
   std::vector<MixRow> mix(rows.size());
   std::ranges::transform(rows, mix.begin(), &JudgedRow::mix);
@@ -60,6 +52,14 @@ std::vector<bool> at_finger(const std::vector<bool>& driven, double look_ahead_t
 }
 
 }  // namespace
+
+Result<schema::Texture> same_texture(const SessionTexture& played) {
+  auto texture = schema::read_texture(played.file);
+  if (!texture) return texture;
+  const auto wav = schema::texture_wav(played.file);
+  if (wav && wav->sha256 == played.sha256) return texture;
+  return fail(ErrorKind::unsuitable, "has changed since it was played", played.file);
+}
 
 // The part of a set is linear between two rows.
 class TargetReader::PartOfReadings {

@@ -29,6 +29,9 @@ struct ReadAgain {
   bool used = false;  ///< in the last section
 };
 
+/// A texture of the session from its file. Errors: as read_texture; unsuitable: it has changed (by SHA-256).
+schema::Result<schema::Texture> same_texture(const schema::SessionTexture& played);
+
 /// Gain x textures along the path between the recorded counts (monotone cubics through the places where the
 /// count changed), read exactly (render/reference/exact_target.hpp). Gain and changes of texture follow the
 /// kernel's ramps and fades (texture_mix.hpp), and are delayed like the drive that looked ahead: by

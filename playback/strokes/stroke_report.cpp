@@ -12,6 +12,8 @@
 #include "data-schema/base/quantity.hpp"
 #include "playback/session/session_limits.hpp"
 #include "playback/strokes/block_judge.hpp"
+#include "playback/strokes/session_target.hpp"
+#include "spatial/features/band_kept.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -167,6 +169,23 @@ void keep_stroke(const PlayedStroke& stroke, const StrokeListener& listener, Str
   if (listener.stroke) listener.stroke(stroke);
 }
 
+void add_power(StrokeReport& report, const SessionOverview& overview) {
+  double length_m = 0, time_s = 0;
+  for (const PlayedStroke& stroke : report.strokes) {
+    length_m += std::abs(stroke.to_m - stroke.from_m);
+    time_s += stroke.to_s - stroke.from_s;
+  }
+  if (!(time_s > 0)) return;
+  report.mean_speed_mps = length_m / time_s;
+  const bool changed =
+      std::ranges::any_of(overview.steps, [](const SteeringStep& step) { return step.turn.has_value(); });
+  if (overview.header.textures.size() != 1 || changed) return;
+  const auto texture = same_texture(overview.header.textures.front());
+  if (texture)
+    report.power_kept_percent =
+        spatial::band_kept_percent(*texture, report.mean_speed_mps, {report.low_hz, report.high_hz});
+}
+
 }  // namespace
 
 Result<StrokeReport> report_strokes(const std::string& name, const StrokeListener& listener,
@@ -199,6 +218,7 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
     report.notes.push_back(note_of_unmeasured(unmeasured, report.stroke_count));
   if (*unknown) report.notes.push_back(schema::message(**unknown));
   if (!*unknown) report.limits = whole;
+  add_power(report, *overview);
   return report;
 }
 

@@ -43,8 +43,12 @@ struct StrokeReport {
   std::uint64_t stroke_count = 0;     ///< of all
   std::optional<LimitTally> limits;   ///< of the whole session; none: unknown
   double low_hz = 0, high_hz = 0;     ///< the band of all displacements
-  std::vector<std::string> notes;     ///< what could not be judged, and why
-  bool damaged = false;               ///< the file is damaged, and the rest of it is not in the report
+  double mean_speed_mps = 0;          ///< of the strokes kept; 0: there is none
+  /// Share of the texture's power in the band at that speed (spatial::band_kept_percent); none: several
+  /// textures, or not the one that was played.
+  std::optional<double> power_kept_percent;
+  std::vector<std::string> notes;  ///< what could not be judged, and why
+  bool damaged = false;            ///< the file is damaged, and the rest of it is not in the report
 };
 
 /// An hour at three strokes a second.

@@ -180,6 +180,39 @@ TEST(CompareSurfaces, FourRecordingsASideAreTheUnit) {
   EXPECT_FALSE(compared(side(10, "a", 3), side(20, "b", 4)).by_recording);
 }
 
+// Five pieces of one stroke, with gaps of 2 ms, have its level: they are no evidence of a spread.
+TEST(CompareSurfaces, PiecesOfAStrokeBetweenGapsCountOnce) {
+  const auto cut = [](SurfaceSide side) {
+    for (std::size_t i = 0; i < side.strokes.size(); ++i) {
+      schema::Texture& piece = side.strokes[i];
+      piece.direction = 1;
+      piece.source.from_s = 0.1 * static_cast<double>(i) + (i < 5 ? 0 : 5);
+      piece.source.to_s = piece.source.from_s + 0.098;
+    }
+    return side;
+  };
+  const SurfaceComparison c = compared(cut(noise_side("a", 1, 10)), cut(noise_side("b", 2, 10)));
+  EXPECT_EQ(c.units_a, 2U);
+  EXPECT_EQ(c.a.strokes, 2U);
+  EXPECT_EQ(c.verdict, SurfaceVerdict::undecided);
+  EXPECT_EQ(c.notes.size(), 1U);
+}
+
+TEST(CompareSurfaces, SaysWhichSideIsSimulated) {
+  const SurfaceSide a = noise_side("a", 1, 6);
+  SurfaceSide b = noise_side("b", 2, 6);
+  EXPECT_EQ(compared(a, b).simulated().words(), "");
+  for (schema::Texture& stroke : b.strokes) stroke.simulated = "by a bench";
+  const SurfaceComparison one = compared(a, b);
+  EXPECT_TRUE(one.simulated().only_one());
+  EXPECT_EQ(one.simulated().words(), "B by a bench; A was measured");
+  EXPECT_EQ(one.notes, std::vector{one.simulated().warning()});
+  b.strokes[2].simulated = "";
+  EXPECT_EQ(refused(a, b), ErrorKind::unsuitable) << "measured and simulated strokes on one side";
+  EXPECT_EQ((SimulatedSides{"by one", "by two"}.words()), "A by one; B by two");
+  EXPECT_EQ((SimulatedSides{"by one", "by one"}.words()), "by one");
+}
+
 TEST(CompareSurfaces, UnsuitableSidesAreRefused) {
   const SurfaceSide a = noise_side("a", 1, 6), b = noise_side("b", 2, 6);
   EXPECT_EQ(refused(a, a), ErrorKind::usage) << "the same strokes on both sides";

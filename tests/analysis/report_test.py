@@ -75,6 +75,18 @@ def a_project_on_one_page():
     assert "study.html" not in tacto.run(*again, "--force")[1]
 
 
+def a_session_of_forces_is_listed():
+    root = pathlib.Path("bench")
+    root.mkdir()
+    (root / "bench.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "patches": [
+        {"name": "a", "place": {"x_m": 0.01, "y_m": 0}, "size": {"width_m": 0.1, "height_m": 0.1}, "layers": [{"type": "spring", "stiffness_n_per_m": 10, "centre_x_m": 0, "centre_y_m": 0}]}]}))
+    tacto.run("play", root / "bench.scene.json", "-d", "sim:planar", "--time", "0.5s", "-o", root / "held")
+    report = tacto.run_json("report", root, "-o", "bench.html")
+    assert {(row["kind"], row["simulated"]) for row in report["files"]} == {("scene", False), ("session", True)}, report
+    page = Page(pathlib.Path("bench.html").read_text())
+    assert len(page.pictures) == 4, page.pictures  # place and force of two axes
+
+
 def broken_files_do_not_stop_the_rest():
     root = make_project("study")
     odd = '<img src=x onerror=alert(1)> & "odd".json'
@@ -176,6 +188,6 @@ def folders_that_are_none_are_refused():
 
 
 if __name__ == "__main__":
-    for test in (a_project_on_one_page, broken_files_do_not_stop_the_rest, a_torn_curve_leaves_out_its_file_only, samples_are_those_that_the_sidecar_names, what_is_no_file_is_named,
+    for test in (a_project_on_one_page, a_session_of_forces_is_listed, broken_files_do_not_stop_the_rest, a_torn_curve_leaves_out_its_file_only, samples_are_those_that_the_sidecar_names, what_is_no_file_is_named,
                  sixty_files_make_a_small_page, a_speed_that_is_missing_is_named, folders_that_are_none_are_refused):
         tacto.in_folder(test)

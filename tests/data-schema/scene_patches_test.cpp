@@ -445,7 +445,7 @@ TEST(ScenePatches, SchemaAndTypesHaveTheSameMembers) {
     for (const auto& [name, number] : numbers_of(each)) known.emplace(name);
   std::set<std::string> in_schema;
   const auto file = std::ranges::find(embedded_files(), "scene.schema.json", &EmbeddedFile::name);
-  const Body layer_rule = Body::parse(file->text)["definitions"]["force_layer"];
+  const Body layer_rule = Body::parse(file->content)["definitions"]["force_layer"];
   for (const auto& [name, rule] : layer_rule["properties"].items()) in_schema.insert(name);
   EXPECT_EQ(in_schema, known);
 }

@@ -108,6 +108,62 @@ def wrong_files_are_refused():
     assert done.returncode == 4 and "device_" in done.stderr, done
 
 
+def a_scene_of_forces_is_played_and_set():
+    prepare_files(device="sim:planar,paced=0", finger_path="still.csv")
+    pathlib.Path("still.csv").write_text("time_s,x_m,y_m\n0,0.03,0\n1,0.03,0\n")
+    spring = {"type": "spring", "stiffness_n_per_m": {"value": 50, "slider": {"from": 0, "to": 200}},
+              "centre_x_m": {"value": 0, "slider": {"from": -0.02, "to": 0.02}}, "centre_y_m": 0}
+    pathlib.Path("bench.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.1", "patches": [
+        {"name": "bench", "place": {"x_m": 0, "y_m": 0}, "size": {"width_m": 0.2, "height_m": 0.2}, "layers": [spring]}]}))
+    number = "bench.spring.stiffness_n_per_m"
+
+    def refused(client, fault, **request):
+        answer = client.ask(**request)
+        assert not answer["ok"] and answer["error"]["fault"] == fault, answer
+
+    def steady_force(client, newtons):
+        """At 4 kHz a change is over after 41 ticks, and the ticks come every 10 ms."""
+        wait_until_played(client, client.must(request="status")["played_s"] + 0.1)
+        status = client.must(request="status")
+        assert abs(status["force_x_n"] - newtons) < 1e-6 and status["force_y_n"] == 0 and abs(status["x_m"] - 0.03) < 1e-9, status
+
+    with daemon():
+        client, watcher = Client(), Client()
+        watcher.must(request="watch")
+        refused(client, 1, request="set", number=number, value=100)
+        refused(client, 4, request="load", file="oak")
+        refused(client, 1, request="load", file="bench.scene.json", at_m=0.01)
+        loaded = client.must(request="load", file="bench.scene.json")
+        assert loaded["rate_hz"] == 4000 and loaded["patches"] == 1, loaded
+        refused(client, 1, request="set", number=number, value=100)
+        refused(client, 4, request="gain", gain=0.5)
+        session = client.must(request="arm")["session"]
+        client.must(request="play")
+        steady_force(client, -1.5)
+        shown = tacto.run("ctl", "top", "--time", "0s", "--socket", "control")[0]
+        assert "x -1.500 N" in shown and "drive" not in shown and "gain" not in shown, shown
+        assert client.must(request="set", number=number, value=100)["over_s"] == 0.01
+        steady_force(client, -3)
+        tacto.run("ctl", "set", number, "20", "--over", "0s", "--socket", "control")
+        steady_force(client, -0.6)
+        tacto.run("ctl", "set", "bench.0.centre_x_m", "-0.01", "--socket", "control")
+        steady_force(client, -0.8)
+        refused(client, 1, request="set", number=number, value=201)
+        refused(client, 1, request="set", number="bench.spring.centre_y_m", value=0)
+        refused(client, 1, request="load", file="bench.scene.json")
+        refused(client, 3, request="set", number=number)
+        assert "'spring'" in tacto.run("ctl", "set", "bench.sprng.stiffness_n_per_m", "20", "--socket", "control", code=2)[1]
+        client.must(request="stop")
+        wait_for_state(client, "armed")
+        client.must(request="disarm")
+        wait_for_state(client, "idle")
+        told = [event for event in watcher.rest_of_events() if event["event"] == "set"]
+        assert [(event["number"], event["value"], event["over_s"]) for event in told] == [(number, 100, 0.01), (number, 20, 0), ("bench.0.centre_x_m", -0.01, 0.01)], told
+    assert tacto.run_json("replay", session)["same_to_the_bit"] is True
+    events = [event["event"] for event in tacto.run_json("session", session)["events"]]
+    assert f"set {number} 100 over 0.01 s" in events and f"set {number} 20 over 0 s" in events, events
+
+
 if __name__ == "__main__":
-    for test in (load_arm_play_stop, a_jump_of_the_encoder_is_a_fault, wrong_files_are_refused):
+    for test in (load_arm_play_stop, a_scene_of_forces_is_played_and_set, a_jump_of_the_encoder_is_a_fault, wrong_files_are_refused):
         tacto.in_folder(test)

@@ -86,14 +86,15 @@ MAY_INCLUDE = {
         "strokes}",
     "playback/control": "data-schema/{base control files} playback/session",
     "playback/daemon":
-        "data-schema/{base control files report scene} playback/{control host-loop model player session}",
+        "data-schema/{base control files report scene} firmware-host/sim/planar playback/{control host-loop model "
+        "player session}",
     "playback/host-loop": "data-schema/{base session} firmware-host/{core/firmware core/kernel link} playback/prepare",
     "playback/model":
         "data-schema/{base files transducer wav} firmware-host/{core/kernel core/wire} spatial/{dsp/filter "
         "dsp/fourier dsp/resample}",
     "playback/player":
-        "data-schema/{base files scene session texture} firmware-host/{. core/firmware core/kernel core/wire link "
-        "sim/device sim/planar} playback/{choose host-loop model prepare prepare/scene render session} "
+        "data-schema/{base device files scene session texture} firmware-host/{. core/firmware core/kernel core/wire "
+        "link sim/device sim/planar} playback/{choose host-loop model prepare prepare/scene render session} "
         "spatial/dsp/resample",
     "playback/prepare":
         "data-schema/{base texture transducer} firmware-host/{core/kernel core/wire link} playback/model "
@@ -109,14 +110,15 @@ MAY_INCLUDE = {
     "playback/session":
         "data-schema/{base control files session wav} firmware-host/{core/firmware core/kernel core/wire link} "
         "playback/model",
+    "playback/stability": "data-schema/{device scene} firmware-host/sim/planar",
     "playback/strokes":
         "data-schema/{base texture} firmware-host/{core/kernel core/wire} playback/{choose model render "
-        "render/reference session}",
+        "render/reference session} spatial/features",
     "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":
-        "analysis/{compare demo experiment extremes fidelity identify/fit identify/measure identify/report live page report trade "
-        "trade/rows} data-schema/{base command files kinds report results scene texture} playback/{model player "
-        "session} spatial/{cli picture}",
+        "analysis/{compare demo design experiment extremes fidelity identify/fit identify/measure identify/report live page report trade "
+        "trade/rows} data-schema/{base command device files kinds report results scene texture} playback/{model "
+        "player prepare/scene session stability} spatial/{cli picture}",
     "analysis/compare":
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
         "dsp/fourier dsp/resample features numbers spectrogram strokes texture}",
@@ -124,6 +126,8 @@ MAY_INCLUDE = {
         "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
         "sim/bench sim/physics} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
     "analysis/experiment": "analysis/{page psychometrics} capture/table data-schema/{base results}",
+    "analysis/design":
+        "analysis/page data-schema/{base device results scene} playback/stability",
     "analysis/extremes":
         "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/recording "
         "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram strokes}",

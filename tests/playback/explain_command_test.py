@@ -58,11 +58,16 @@ def check_speed(folder):
         # The ends of the path, where the force begins, ring by up to a tenth.
         assert abs(answer["of_limit_percent"] / (100 * asked) - 1) < 0.12, (answer, asked)
         assert answer["can_be_played"] == (not limited) == ("because" not in answer), answer
-    largest = answer["largest_speed_mps"]
-    yes, no = (made.report_of("explain", folder / "sine", "--speed", f"{1e3 * factor * largest:g}mm/s") for factor in (0.999, 1.02))
-    assert yes["can_be_played"] and not no["can_be_played"], (yes, no)
-    # Below 15 mm/s the line is below the band; above 500 mm/s beyond it.
-    assert not made.report_of("explain", folder / "sine", "--speed", "12mm/s")["can_be_played"]
+    # With the gain that it names the limit is not passed, with a hundredth more it is.
+    for factor, fits in ((1, True), (1.01, False)):
+        gain = f"{1e3 * factor * answer['largest_gain_m_per_n']:.9g}mm/N"
+        assert made.report_of("explain", folder / "sine", "--speed", "300mm/s", "--gain", gain)["can_be_played"] == fits, (gain, fits)
+    for edge, inside in (("largest_speed_mps", 1), ("smallest_speed_mps", -1)):
+        yes, no = (made.report_of("explain", folder / "sine", "--speed", f"{1e3 * answer[edge] * (1 - inside * off):.9g}mm/s") for off in (1e-5, -1e-3))
+        assert yes["can_be_played"] and not no["can_be_played"], (edge, yes, no)
+    # The line leaves the band below 15 mm/s.
+    slow = made.report_of("explain", folder / "sine", "--speed", "12mm/s")
+    assert not slow["can_be_played"] and 0.0135 < slow["smallest_speed_mps"] < 0.0165, slow
     refused(USAGE, "above zero", "explain", folder / "sine", "--speed", "0mm/s")
 
 

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`play`, `session` and `replay` of a scene of springs and dampers on sim:planar: the same forces as `render`, and again to the bit."""
+import hashlib
 import pathlib
+import struct
 
 import numpy as np
 
 import tacto
-from plane_render_test import KNOTS, UNSUITABLE, USAGE, damper, patch, sampled_loop, spring, write_hand, write_line, write_path, write_scene
+from plane_render_test import KNOTS, MALFORMED, UNSUITABLE, USAGE, damper, patch, sampled_loop, spring, write_hand, write_line, write_path, write_scene
 from tacto import run, run_json
 
 DEVICE_FAILED = 8
@@ -31,7 +33,7 @@ def a_played_scene_has_the_forces_of_render():
         assert again["same_to_the_bit"] is True and again["ticks_compared"] == report["ticks"], again
         said = run_json("session", name, "-o", f"{name}.csv")
         assert [axis["axis"] for axis in said["axes"]] == ["x", "y"] and said["ticks"] == report["ticks"], said
-        assert [event["event"] for event in said["events"]] == ["armed", "playing", "idle"], said
+        assert [event["event"] for event in said["events"]][:4] == ["armed", "playing", "armed", "idle"], said
         run("render", "bench.scene.json", "--finger-path", "path.csv", "--device", "sandpaper-1990", *hand, "-o", "f.csv", "--force")
         played, rendered = table(f"{name}.csv"), table("f.csv")
         rows = 8000
@@ -99,6 +101,110 @@ def a_jump_of_the_encoder_ends_in_a_fault():
     assert table("jumped.csv")["fault"].any() and table("jumped.csv")["force_x_n"][-1] == 0
 
 
+def with_slider(value, least, most):
+    return {"value": value, "slider": {"from": least, "to": most}}
+
+
+def write_sliders():
+    elastic = {"type": "spring", "stiffness_n_per_m": with_slider(50, 0, 200), "centre_x_m": with_slider(0, -0.02, 0.02), "centre_y_m": 0}
+    write_scene("bench", patch("ice", layers=[damper(1)], order=-1), patch("bench", layers=[{"type": "damper", "damping_n_s_per_m": with_slider(1, 0, 5)}, elastic, spring(10)]))
+
+
+def write_script(name, times, commands):
+    pathlib.Path(name).write_text("time_s,command\n" + "".join(f"{time:.4f},{command}\n" for time, command in zip(times, commands)))
+
+
+def bit_of_a_force_changed(name, tick):
+    """Flips the lowest bit of a tick's last force, and seals its block again (SESSION.md)."""
+    data = bytearray(pathlib.Path(name).read_bytes())
+    at = 0
+    while at < len(data):
+        kind, size = data[at + 4], struct.unpack_from("<I", data, at + 8)[0]
+        payload = at + 20
+        if kind == 8:
+            first, _, count, axes = struct.unpack_from("<QqII", data, payload)
+            if first <= tick < first + count:
+                data[payload + 24 + (tick - first) * (8 + 8 * axes) + 8 * axes] ^= 1
+                data[at + 12:at + 20] = hashlib.sha256(data[at + 4:at + 5] + data[at + 8:at + 12] + data[payload:payload + size]).digest()[:8]
+                return bytes(data)
+        at = payload + size
+    raise AssertionError(tick)
+
+
+def sliders_move_the_force_and_are_replayed():
+    rng = np.random.default_rng(3110)
+    write_sliders()
+    times = 0.3 * np.arange(199) + 0.1 + 0.1 * rng.random(199)
+    springs = [("stiffness_n_per_m", round(rng.uniform(0, 80), 3)) if rng.random() < 0.6 else ("centre_x_m", round(rng.uniform(-0.02, 0.02), 5)) for _ in times]
+    ramps = rng.choice(["", " over 0s", " over 50ms"], len(times))
+    write_script("sliders.csv", times, [f"set bench.1.{member} {value}{ramp}" for (member, value), ramp in zip(springs, ramps)])
+    write_path("still.csv", {"time_s": [0, 60], "x_m": [0.03, 0.03], "y_m": [0, 0]})
+    report = play("bench.scene.json", "sim:planar", "set", "--rate", "1kHz", "--finger-path", "still.csv", "--script", "sliders.csv", "--onset", "0s")
+    assert report["lost_ticks"] == report["slew_limited_ticks"] == report["rms_limited_ticks"] == 0, report
+    run("session", "set", "-o", "set.csv")
+    found = table("set.csv")["force_x_n"][:60000]
+    # The hand is at 0.03 m: -stiffness (0.03 - centre) of this spring, -10 x 0.03 of the other one.
+    numbers = {"stiffness_n_per_m": 50.0, "centre_x_m": 0.0}
+    settled = 0
+    for i, ((member, value), ramp) in enumerate(zip(springs, ramps)):
+        begin, end = round(1000 * times[i]), round(1000 * times[i + 1]) if i + 1 < len(times) else 60000
+        before = -numbers["stiffness_n_per_m"] * (0.03 - numbers["centre_x_m"]) - 0.3
+        numbers[member] = value
+        after = -numbers["stiffness_n_per_m"] * (0.03 - numbers["centre_x_m"]) - 0.3
+        ticks = {"": 10, " over 0s": 1, " over 50ms": 50}[ramp]
+        changed = begin + np.flatnonzero(np.abs(found[begin:end] - before) > 1e-6)
+        if abs(after - before) > 1e-3:
+            # Within 20 ms after its time and one tick, linearly; single precision: 50 steps of 6e-8 x 10 N.
+            assert begin <= changed[0] <= begin + 21, (i, begin, changed[0])
+            line = before + (after - before) * np.minimum(np.arange(1, end - changed[0] + 1) / ticks, 1)
+            assert np.abs(found[changed[0]:end] - line).max() < 3e-5, (i, ramp)
+            settled += 1
+    assert settled > 190, settled
+    events = [event["event"] for event in run_json("session", "set")["events"]]
+    assert f"set bench.1.stiffness_n_per_m {springs[[m for m, _ in springs].index('stiffness_n_per_m')][1]}" in "|".join(events), events[:5]
+    assert run_json("replay", "set")["same_to_the_bit"] is True
+    pathlib.Path("other.session").write_bytes(bit_of_a_force_changed("set.session", 43210))
+    other = run_json("replay", "other", code=UNSUITABLE)
+    assert other["first_difference_tick"] == 43210 and "recorded_n" in other, other
+
+
+def a_hand_under_sliders_is_replayed():
+    write_sliders()
+    rng = np.random.default_rng(3111)
+    times = np.sort(rng.choice(59000, 200, replace=False)) / 1000 + 0.1
+    kinds = [("bench.damper.damping_n_s_per_m", 0, 5), ("bench.1.stiffness_n_per_m", 0, 200), ("bench.1.centre_x_m", -0.02, 0.02)]
+    write_script("many.csv", times, [f"set {name} {rng.uniform(least, most):.4f}" for name, least, most in (kinds[k] for k in rng.integers(0, 3, 200))])
+    seconds = np.linspace(0, 60, 241)
+    write_path("long.csv", {"time_s": seconds, "x_m": 0.03 * np.sin(4 * seconds), "y_m": 0.02 * np.cos(3 * seconds)})
+    report = play("bench.scene.json", "sim:planar,hand=minsky-radial", "held", "--finger-path", "long.csv", "--script", "many.csv")
+    assert report["lost_ticks"] == 0 and report["ticks"] > 240000, report
+    assert run_json("replay", "held")["same_to_the_bit"] is True
+
+
+def a_wrong_script_plays_nothing():
+    write_sliders()
+    good = "0.5,set bench.1.stiffness_n_per_m 100"
+    for line, word, *rows in (
+            (2, "bench", "1,set bnech.1.stiffness_n_per_m 100"), (2, "damper", "1,set bench.dampr.damping_n_s_per_m 1"), (2, "index", "1,set bench.spring.centre_y_m 0"),
+            (2, "stiffness_n_per_m", "1,set bench.1.stifness_n_per_m 1"), (2, "damper", "1,set bench.3.stiffness_n_per_m 1"), (2, "slider", "1,set bench.1.centre_y_m 0"),
+            (2, "200", "1,set bench.1.stiffness_n_per_m 201"), (2, "nan", "1,set bench.1.stiffness_n_per_m nan"), (2, "1e999", "1,set bench.1.stiffness_n_per_m 1e999"),
+            (2, "10 s", "1,set bench.1.stiffness_n_per_m 1 over 11s"), (2, "ms", "1,set bench.1.stiffness_n_per_m 1 over 10"), (2, "inf", "inf,set bench.1.stiffness_n_per_m 1"),
+            (2, "-1", "-1,set bench.1.stiffness_n_per_m 1"), (2, "shift", "1,shift bench 1"), (2, "bench.1", "1,set bench.1 1"),
+            (4, "increase", good, "", "0.5,set bench.1.stiffness_n_per_m 90"), (3, "increase", good, "0.4,set bench.1.stiffness_n_per_m 90")):
+        pathlib.Path("script.csv").write_text("\n".join(("time_s,command", *rows)))
+        _, said = run("play", "bench.scene.json", "-d", "sim:planar", "--time", "5s", "--script", "script.csv", "-o", "x", code=MALFORMED)
+        assert f"script.csv, line {line}" in said and word in said and len(said.strip().split("\n")) <= 2 and not pathlib.Path("x.session").exists(), said
+    for text, word in ((good, "line 1"), ("time_mm,command\n" + good, "line 1"), ("", "time_s"), ("time_s,command\n", "time_s"), ("time_s,command\n" + good.replace("0.5", "6"), "--time")):
+        pathlib.Path("script.csv").write_text(text)
+        _, said = run("play", "bench.scene.json", "-d", "sim:planar", "--time", "5s", "--script", "script.csv", "-o", "x", code=MALFORMED)
+        assert word in said and not pathlib.Path("x.session").exists(), said
+    _, said = run("play", "oak", "-d", "sim:", "--script", "script.csv", "-o", "x", code=USAGE)
+    assert "--script" in said, said
+    pathlib.Path("script.csv").write_text("time_ms,command\r\n500, set bench.1.stiffness_n_per_m 100\r\n")
+    play("bench.scene.json", "sim:planar", "done", "--time", "1s", "--script", "script.csv")
+    assert "set bench.1.stiffness_n_per_m 100 over 0.01 s" in [event["event"] for event in run_json("session", "done")["events"]]
+
+
 if __name__ == "__main__":
-    for test in (a_played_scene_has_the_forces_of_render, a_hand_on_sim_planar_is_scipys_loop, wrong_uses_are_refused, a_jump_of_the_encoder_ends_in_a_fault):
+    for test in (sliders_move_the_force_and_are_replayed, a_hand_under_sliders_is_replayed, a_wrong_script_plays_nothing, a_played_scene_has_the_forces_of_render, a_hand_on_sim_planar_is_scipys_loop, wrong_uses_are_refused, a_jump_of_the_encoder_ends_in_a_fault):
         tacto.in_folder(test)

@@ -218,7 +218,7 @@ def a_hand_on_a_spring_and_a_damper_is_scipys_loop():
 
 
 def a_stiff_spring_is_stable_at_1_khz_and_not_at_100_hz():
-    # Minsky 1990: 2773 N/m with 1.17 + 5 N s/m. With the hand's own spring continuous, the greatest period is 4.50 ms.
+    # Minsky 1990: 2773 N/m with 1.17 + 5 N s/m. With the hand's own spring continuous, the greatest period is 4.48 ms.
     write_path("still.csv", {"time_s": [0, 2, 4], "x_m": [0.001, 0.001, 0.001]})
     write_hand("mine", 0.7, 5, 400)
     write_scene("bench", patch(layers=[spring(2773)]))

@@ -266,6 +266,18 @@ TEST(EdgeSpeed, AMotionThatBeginsAndEnds) {
   EXPECT_GT(speed.track(17), 0);
 }
 
+// A slow hand that was beside a border at the start, or after a rest longer than the longest window: one edge
+// is no speed yet, two of them are one count in 100 ticks.
+TEST(EdgeSpeed, TheFirstEdgeAfterARestIsNoSpeed) {
+  for (const std::uint32_t rest : {1U, 7U, core::kLongestSpeedTicks + 3}) {
+    core::EdgeSpeed speed;
+    speed.rest();
+    for (std::uint32_t tick = 0; tick < rest; ++tick) ASSERT_EQ(speed.track(3), 0);
+    for (int tick = 0; tick < 100; ++tick) ASSERT_EQ(speed.track(4), 0) << rest << ' ' << tick;
+    EXPECT_FLOAT_EQ(speed.track(5), 0.01F) << rest;
+  }
+}
+
 // A hand that accelerates: the mean of the window lags by half of it, and the window shortens.
 TEST(EdgeSpeed, AnAccelerationShortensTheWindow) {
   core::EdgeSpeed speed;

@@ -189,22 +189,22 @@ Reply Firmware::reply_to_scene(const wire::Frame& frame) noexcept {
   return {AnswerCode::unknown_type, frame.header.type};
 }
 
-Reply Firmware::force_limits(const wire::ForceLimits& wish) noexcept {
+Reply Firmware::force_limits(const wire::ForceLimits& asked) noexcept {
   const wire::Axes& own = *board_.axes;
   for (uint8_t i = 0; i < own.count; ++i) {
-    if (!(wish.axis_peak_n[i] > 0 && wish.axis_peak_n[i] <= own.axes[i].peak_n)) return bad_value(0);
-    if (!(wish.axis_continuous_n[i] > 0 && wish.axis_continuous_n[i] <= own.axes[i].continuous_n))
+    if (!(asked.axis_peak_n[i] > 0 && asked.axis_peak_n[i] <= own.axes[i].peak_n)) return bad_value(0);
+    if (!(asked.axis_continuous_n[i] > 0 && asked.axis_continuous_n[i] <= own.axes[i].continuous_n))
       return bad_value(1);
   }
-  if (!(wish.peak_n > 0 && wish.peak_n <= own.peak_n)) return bad_value(2);
-  if (!(wish.continuous_n > 0 && wish.continuous_n <= own.continuous_n)) return bad_value(3);
-  if (!(wish.slew_n_per_s > 0 && wish.slew_n_per_s <= own.slew_n_per_s)) return bad_value(4);
-  if (!within(wish.onset_s, 0, kLongestOnsetS)) return bad_value(5);
-  if (!(wish.release_s >= 0 && wish.release_s + wish.peak_n / wish.slew_n_per_s <= kLongestReleaseS))
+  if (!(asked.peak_n > 0 && asked.peak_n <= own.peak_n)) return bad_value(2);
+  if (!(asked.continuous_n > 0 && asked.continuous_n <= own.continuous_n)) return bad_value(3);
+  if (!(asked.slew_n_per_s > 0 && asked.slew_n_per_s <= own.slew_n_per_s)) return bad_value(4);
+  if (!within(asked.onset_s, 0, kLongestOnsetS)) return bad_value(5);
+  if (!(asked.release_s >= 0 && asked.release_s + asked.peak_n / asked.slew_n_per_s <= kLongestReleaseS))
     return bad_value(6);
-  if (wish.watchdog_ms < kLeastWatchdogMs || wish.watchdog_ms > kMostWatchdogMs) return bad_value(7);
-  if (wish.counts_per_tick < 1) return bad_value(9);
-  force_limits_ = wish;
+  if (asked.watchdog_ms < kLeastWatchdogMs || asked.watchdog_ms > kMostWatchdogMs) return bad_value(7);
+  if (asked.counts_per_tick < 1) return bad_value(9);
+  force_limits_ = asked;
   force_limited_ = true;
   return {};
 }
@@ -302,16 +302,16 @@ Reply Firmware::stream_stop() noexcept {
   return {};
 }
 
-Reply Firmware::limits(const wire::Limits& wish) noexcept {
+Reply Firmware::limits(const wire::Limits& asked) noexcept {
   const wire::Welcome& about = board_.about;
-  if (!(wish.drive_v > 0 && wish.drive_v <= about.drive_limit_v)) return bad_value(0);
-  if (!(wish.slew_v_per_s > 0 && wish.slew_v_per_s <= about.slew_limit_v_per_s)) return bad_value(1);
-  if (!within(wish.onset_s, 0, kLongestOnsetS)) return bad_value(2);
-  if (!(wish.release_s >= 0 && wish.release_s + wish.drive_v / wish.slew_v_per_s <= kLongestReleaseS))
+  if (!(asked.drive_v > 0 && asked.drive_v <= about.drive_limit_v)) return bad_value(0);
+  if (!(asked.slew_v_per_s > 0 && asked.slew_v_per_s <= about.slew_limit_v_per_s)) return bad_value(1);
+  if (!within(asked.onset_s, 0, kLongestOnsetS)) return bad_value(2);
+  if (!(asked.release_s >= 0 && asked.release_s + asked.drive_v / asked.slew_v_per_s <= kLongestReleaseS))
     return bad_value(3);
-  if (wish.watchdog_ms < kLeastWatchdogMs || wish.watchdog_ms > kMostWatchdogMs) return bad_value(4);
-  if (wish.counts_per_tick < 1) return bad_value(5);
-  limits_ = wish;
+  if (asked.watchdog_ms < kLeastWatchdogMs || asked.watchdog_ms > kMostWatchdogMs) return bad_value(4);
+  if (asked.counts_per_tick < 1) return bad_value(5);
+  limits_ = asked;
   limited_ = true;
   return {};
 }

@@ -96,7 +96,7 @@ float EdgeSpeed::track(int32_t count) noexcept {
   const bool turned = way * way_ < 0;
   if (turned) begin(tick_ - 1, count_);
   add(count);
-  const bool same_border = turned && moved == way;
+  const bool same_border = (turned || way_ == 0) && moved == way;
   if (same_border) begin(tick_, count);
   speed_ = same_border ? 0 : slope();
   count_ = count;

@@ -14,7 +14,8 @@ inline constexpr uint32_t kLongestSpeedTicks = UINT32_C(1) << 20;  ///< a slower
 /// adaptive window of Janabi-Sharifi, Hayward and Chen 2000, over edges instead of samples). A hand that
 /// accelerates so that a count differs from the line by more shortens the window, down to the difference of
 /// two ticks. Between edges the speed is at most 1 count / time since the last edge. An edge of one count
-/// against the last direction is the same border crossed twice: then the speed is 0.
+/// against the last direction is the same border crossed twice: then the speed is 0. So it is at the first
+/// edge of one count after a rest, because the hand may have been beside the border.
 /// At constant speed the error is below 1 count / (ticks of the window): relative to the speed, below 1 / 15
 /// from one count per tick on and below that at lower speeds; a difference of two ticks has 1 count per tick.
 /// The slope is that of the middle of the window. All comparisons are exact, in whole numbers.

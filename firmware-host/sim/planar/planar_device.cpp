@@ -84,13 +84,7 @@ core::Hal PlanarBoard::hal() {
     return board.clock_before_ + ticks;
   };
   hal.set_rate = [](void* b, std::uint32_t rate) noexcept { of(b).set_rate(rate); };
-  hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
-    return take_first(of(b).from_host_, {bytes, size});
-  };
-  hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
-    of(b).to_host_.insert(of(b).to_host_.end(), bytes, bytes + size);
-    return size;
-  };
+  use_queues<PlanarBoard, &PlanarBoard::from_host_, &PlanarBoard::to_host_>(hal);
   hal.restart = [](void* b) noexcept { of(b).set_rate(0); };
   return hal;
 }
@@ -124,10 +118,10 @@ void PlanarBoard::step() {
 }
 
 Result<std::unique_ptr<PlanarDevice>> PlanarDevice::open(std::string uri, schema::Device device,
-                                                         std::optional<schema::Hand> hand) {
-  std::unique_ptr<PlanarDevice> opened(new PlanarDevice());
+                                                         std::optional<schema::Hand> hand, bool paced) {
+  std::unique_ptr<PlanarDevice> opened(new PlanarDevice(paced));
   opened->board_ = std::make_unique<PlanarBoard>(std::move(device), std::move(hand));
-  auto client = Client::connect(std::make_unique<SimTransport>(*opened->board_, false), uri);
+  auto client = Client::connect(std::make_unique<SimTransport>(*opened->board_, paced), uri);
   TACTO_TRY(client);
   opened->client_ = std::move(*client);
   const wire::Welcome& welcome = opened->client_->description().welcome;
@@ -147,16 +141,22 @@ Result<void> PlanarDevice::start() {
 
 Result<std::unique_ptr<PlanarDevice>> make_planar_device(const std::string& uri,
                                                          std::string_view parameters) {
-  std::string device_name = "sandpaper-1990", hand_name;
+  std::string device_name = "sandpaper-1990", hand_name, paced = "0";
   while (!parameters.empty()) {
     const std::string_view part = parameters.substr(1, parameters.find(',', 1) - 1);
     const std::string_view key = part.substr(0, part.find('='));
-    if (parameters.front() != ',' || (key != "device" && key != "hand") || key.size() == part.size())
+    std::string* const value = key == "device"  ? &device_name
+                               : key == "hand"  ? &hand_name
+                               : key == "paced" ? &paced
+                                                : nullptr;
+    if (parameters.front() != ',' || value == nullptr || key.size() == part.size())
       return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a part of sim:planar", parameters), uri,
-                          "for example sim:planar,device=sandpaper-1990,hand=minsky-radial");
-    (key == "device" ? device_name : hand_name) = part.substr(key.size() + 1);
+                          "for example sim:planar,device=sandpaper-1990,hand=minsky-radial,paced=1");
+    *value = part.substr(key.size() + 1);
     parameters.remove_prefix(1 + part.size());
   }
+  if (paced != "0" && paced != "1")
+    return schema::fail(ErrorKind::usage, fmt::format("paced is '{}'", paced), uri, "use paced=1 or paced=0");
   auto device = schema::read_device(device_name);
   TACTO_TRY(device);
   std::optional<schema::Hand> hand;
@@ -165,7 +165,7 @@ Result<std::unique_ptr<PlanarDevice>> make_planar_device(const std::string& uri,
     TACTO_TRY(read);
     hand = std::move(*read);
   }
-  return PlanarDevice::open(uri, std::move(*device), std::move(hand));
+  return PlanarDevice::open(uri, std::move(*device), std::move(hand), paced == "1");
 }
 
 Result<std::unique_ptr<Device>> open_planar_device(const std::string& uri, std::string_view parameters) {

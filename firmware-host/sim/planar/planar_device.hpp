@@ -61,28 +61,29 @@ class PlanarBoard final : public EmulatedBoard {
 class PlanarDevice final : public Device {
  public:
   static schema::Result<std::unique_ptr<PlanarDevice>> open(std::string uri, schema::Device device,
-                                                            std::optional<schema::Hand> hand);
+                                                            std::optional<schema::Hand> hand, bool paced);
 
   const Capabilities& capabilities() const override { return capabilities_; }
   schema::Result<void> start() override;
   schema::Result<std::size_t> read(std::span<std::int32_t> /*interleaved*/) override { return 0; }
   schema::Result<void> stop() override { return {}; }
   StreamCounts counts() const override { return {}; }
-  bool is_real_time() const override { return false; }
+  bool is_real_time() const override { return paced_; }
   Client* conversation() override { return client_.get(); }
   PlanarBoard& board() { return *board_; }
 
  private:
-  PlanarDevice() = default;
+  explicit PlanarDevice(bool paced) : paced_(paced) {}
   std::unique_ptr<PlanarBoard> board_;
   std::unique_ptr<Client> client_;
+  bool paced_;
   Capabilities capabilities_;
 };
 
 inline constexpr std::string_view kPlanarScheme = "sim:planar";
 
-/// `parameters` follows "sim:planar": ",device=NAME,hand=NAME"; default: sandpaper-1990, no hand. Errors:
-/// usage, for another key; as read_device, read_hand.
+/// `parameters` follows "sim:planar": ",device=NAME,hand=NAME,paced=1"; default: sandpaper-1990, no hand, as
+/// fast as possible. Errors: usage, for another key; as read_device, read_hand.
 schema::Result<std::unique_ptr<PlanarDevice>> make_planar_device(const std::string& uri,
                                                                  std::string_view parameters);
 schema::Result<std::unique_ptr<Device>> open_planar_device(const std::string& uri,

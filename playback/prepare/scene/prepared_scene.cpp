@@ -121,6 +121,13 @@ core::SceneView PreparedScene::view() const {
   return view;
 }
 
+std::vector<std::string_view> numbers_in_block(const ForceLayer& layer) {
+  std::vector<std::string_view> names;
+  if (!data_of(layer)) return names;
+  for (const auto& [name, number] : numbers_of(layer)) names.push_back(name);
+  return names;
+}
+
 std::size_t layer_bytes(const ForceLayer& layer) {
   const MaybeData data = data_of(layer);
   return data ? sizeof(core::SceneLayer) + data->numbers.size() * sizeof(float) : 0;

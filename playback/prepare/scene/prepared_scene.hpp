@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data-schema/scene/scene.hpp"
@@ -24,6 +25,10 @@ struct PreparedScene {
 
 /// The bytes of a layer in the block.
 std::size_t layer_bytes(const schema::ForceLayer& layer);
+
+/// The members of a layer that are numbers in the block, in its order: they can change while the scene plays
+/// (core::SceneKernel::change). Empty for a type that cannot be played yet.
+std::vector<std::string_view> numbers_in_block(const schema::ForceLayer& layer);
 
 /// Builds what the scene names and nothing else. Equal orders: the later patch is above. `where` is the
 /// scene's file. Precondition: a scene as read_scene() gives it. Errors: unsuitable, if it has no patches; by

@@ -173,7 +173,7 @@ double ExactKernel::energy_limited(double value) {
 
 double ExactKernel::tick(const Input& input) {
   track(input.count);
-  const double wished = sectioned(played(filtered(gain(input.gain) * texture_at(place_, speed_))));
+  const double unlimited = sectioned(played(filtered(gain(input.gain) * texture_at(place_, speed_))));
   if (prepared_.gate_on_n > 0) {
     touching_ = input.normal_force_n >= (touching_ ? prepared_.gate_off_n : prepared_.gate_on_n);
     gate_ = ramped(gate_, touching_, 0.02 * rate_hz_, 0.02 * rate_hz_);
@@ -181,7 +181,7 @@ double ExactKernel::tick(const Input& input) {
   const wire::Limits& limits = prepared_.limits;
   level_ = ramped(level_, input.raise, limits.onset_s * rate_hz_, limits.release_s * rate_hz_);
   const double touch = prepared_.gate_on_n > 0 ? smooth_weight(gate_) : 1;
-  const double held = std::clamp<double>(energy_limited(wished * smooth_weight(level_) * touch),
+  const double held = std::clamp<double>(energy_limited(unlimited * smooth_weight(level_) * touch),
                                          -limits.drive_v, limits.drive_v);
   const double step_v = limits.slew_v_per_s / rate_hz_;
   return last_v_ = std::clamp(held, last_v_ - step_v, last_v_ + step_v);

@@ -50,10 +50,11 @@ double ExactScene::track(Speed& speed, std::int64_t count) {
   }
   const int way = moved > 0 ? 1 : -1;
   const bool turned = way == -speed.way;
+  const bool same_border = (turned || speed.way == 0) && std::abs(moved) == 1;
   if (turned) edges = {{tick_ - 1, speed.count}};
   speed.count = count;
   speed.way = way;
-  if (turned && std::abs(moved) == 1) {
+  if (same_border) {
     edges = {{tick_, count}};
     return speed.per_tick = 0;
   }

@@ -71,10 +71,10 @@ ReadingGrid reading_grid(double duration_s, double rate_hz, const spatial::Band&
   grid.samples = static_cast<std::size_t>(std::floor(duration_s * rate_hz * (1 + 1e-12))) + 1;
   const double padding_s = std::max(kLeastPaddingS, kPaddingPeriods / band.low_hz);
   grid.period = spatial::fast_length(grid.samples + static_cast<std::size_t>(padding_s * rate_hz));
-  const double wished = std::max(1.0, kReadingMargin * finest_hz / rate_hz);
+  const double needed = std::max(1.0, kReadingMargin * finest_hz / rate_hz);
   const std::size_t most = std::max<std::size_t>(1, kMostReadings / grid.period);
-  grid.capped = wished > static_cast<double>(most);
-  grid.oversampling = grid.capped ? most : spatial::fast_length(static_cast<std::size_t>(std::ceil(wished)));
+  grid.capped = needed > static_cast<double>(most);
+  grid.oversampling = grid.capped ? most : spatial::fast_length(static_cast<std::size_t>(std::ceil(needed)));
   return grid;
 }
 

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How stiff a scene may be on a device: the limit of each layer, the layer that becomes unstable first, and
+// what changes that.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/design/judged_loop.hpp"
+#include "data-schema/results/results.hpp"
+#include "data-schema/scene/scene.hpp"
+
+namespace tacto::analysis {
+
+struct DesignRequest {
+  schema::Device device;
+  std::optional<schema::Hand> hand;  ///< for Holder::hand and lumped
+  std::optional<double> speed_mps;   ///< for Holder::slower
+  double rate_hz = 0;
+  Holder judged = Holder::nothing;  ///< which limit decides
+};
+
+enum class Stability {
+  stable,
+  unstable,
+  not_known,   ///< beyond what is proved, or with a layer whose stiffness is not computed
+  not_reached  ///< outside the travel, or hidden
+};
+
+/// "stable", "unstable", "not known", "not reached".
+std::string_view to_string(Stability verdict);
+
+/// A layer, where the layers that act there together are nearest to their limit.
+struct JudgedLayer {
+  std::string patch, type;
+  std::size_t index = 0;   ///< in its patch
+  VirtualLoad own, total;  ///< its own, and of all layers that act at that place; sliders at the worse end
+  double x_m = 0, y_m = 0;
+  JudgedLoop loop;    ///< of the axis that is nearest to its limit
+  double margin = 0;  ///< JudgedLoop::margin() of the judged limit
+  Stability verdict = Stability::not_reached;
+  std::string because;  ///< "proved for each passive hand", "computed by eigenvalues", ...
+};
+
+/// A change that alone makes the layer stable.
+struct Remedy {
+  std::string change, now, needed;      ///< `needed` has the value, or says that none suffices
+  std::optional<double> limit_n_per_m;  ///< computed again with the change
+};
+
+struct Design {
+  DesignRequest request;
+  std::vector<JudgedLayer> layers;
+  std::optional<std::size_t> first;  ///< the layer of smallest margin
+  std::vector<Remedy> remedies;      ///< for it, if it is not stable
+  bool is_unstable() const;
+};
+
+/// Springs and dampers of all patches on the axes x and y. Patches that act at one place add up. Errors:
+/// unsuitable: the scene has no patches; the delay is beyond 50 ticks. `where` is the scene's file.
+/// Precondition: a device with an axis x or y, and a rate that it has.
+schema::Result<Design> design_scene(const schema::Scene& scene, const std::string& where,
+                                    const DesignRequest& request);
+
+/// Stiffness, rate, damping, delay and encoder step, each changed alone. Rates are those of the device.
+std::vector<Remedy> remedies_for(const JudgedLayer& layer, const DesignRequest& request);
+
+/// The holders whose limits this request has: nothing, any, and those for which it has a hand or a speed;
+/// lumped if it is judged.
+std::vector<Holder> holders_of(const DesignRequest& request);
+
+/// "nothing held", "hand minsky-radial", "any passive hand", ...
+std::string holder_name(Holder holder, const DesignRequest& request);
+
+/// Each limit but the lumped one over virtual damping, up to where that of the free device falls to 0, on the
+/// axis of the first layer; the layers as marks. Precondition: there is a first layer.
+schema::ResultPicture z_width(const Design& design);
+
+}  // namespace tacto::analysis

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/player/scene_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "data-schema/base/column_unit.hpp"
+#include "data-schema/base/nearest_word.hpp"
+#include "data-schema/files/files.hpp"
+
+namespace tacto::playback {
+
+using schema::Dimension;
+using schema::ErrorKind;
+using schema::fail;
+using schema::Result;
+
+namespace {
+
+constexpr double kLongestRampS = 10;  // limit of the wire
+constexpr std::string_view kForm = "write 'set PATCH.LAYER.MEMBER VALUE' or '... VALUE over 10ms'";
+constexpr std::string_view kHeaderForm =
+    "write a header line such as 'time_s,command', then one row per command";
+
+using Words = std::vector<std::string>;
+
+std::optional<double> number_in_text(std::string_view text) {
+  double value = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = fault == std::errc() && end == text.data() + text.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+Words words_in(std::string_view text, std::string_view separators) {
+  Words words;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find_first_of(separators, at), text.size());
+    if (end > at) words.emplace_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return words;
+}
+
+// The place of a name among those that exist.
+Result<std::size_t> place_of(std::string_view kind, const std::string& name, const Words& names) {
+  const auto found = std::ranges::find(names, name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  return fail(ErrorKind::usage,
+              fmt::format("there is no {} '{}'{}", kind, name, schema::did_you_mean(name, names)), {},
+              fmt::format("it has: {}", fmt::join(names, ", ")));
+}
+
+Result<std::size_t> layer_place(const schema::Patch& patch, const std::string& name) {
+  Words types;
+  for (const schema::ForceLayer& layer : patch.layers) types.emplace_back(type_of(layer));
+  for (std::size_t i = 0; i < types.size(); ++i)
+    if (name == std::to_string(i)) return i;
+  if (std::ranges::count(types, name) > 1)
+    return fail(ErrorKind::usage,
+                fmt::format("the patch '{}' has several layers of the type {}", patch.name, name), {},
+                fmt::format("name one by its index, from 0 to {}", types.size() - 1));
+  return place_of(fmt::format("layer in the patch '{}' named", patch.name), name, types);
+}
+
+Result<void> check_value(const schema::NamedLayerNumber& member, double value) {
+  const auto& slider = member.number.slider;
+  if (!slider)
+    return fail(ErrorKind::usage, fmt::format("{} has no slider in the scene", member.name), {},
+                "give it one, as in {\"value\": 3, \"slider\": {\"from\": 1, \"to\": 5}}");
+  if (value >= slider->from && value <= slider->to) return {};
+  return fail(ErrorKind::usage, fmt::format("{} {:g} is outside its slider", member.name, value), {},
+              fmt::format("set a value from {:g} to {:g}", slider->from, slider->to));
+}
+
+// The layer's index in the block, and the number's index in the layer.
+Result<wire::Set> target_of(const Words& path, double value, const PreparedScene& scene) {
+  Words patches;
+  for (const schema::Patch& patch : scene.patches) patches.push_back(patch.name);
+  const auto at_patch = place_of("patch", path[0], patches);
+  TACTO_TRY(at_patch);
+  const schema::Patch& patch = scene.patches[*at_patch];
+  const auto at_layer = layer_place(patch, path[1]);
+  TACTO_TRY(at_layer);
+  const schema::ForceLayer& layer = patch.layers[*at_layer];
+  Words members;
+  const auto numbers = numbers_of(layer);
+  for (const auto& [name, number] : numbers) members.emplace_back(name);
+  const auto at_member = place_of(fmt::format("member in the {} named", type_of(layer)), path[2], members);
+  TACTO_TRY(at_member);
+  TACTO_TRY(check_value(numbers[*at_member], value));
+  const auto in_block = numbers_in_block(layer);
+  const auto number = std::ranges::find(in_block, path[2]);
+  if (number == in_block.end())
+    return fail(ErrorKind::usage, fmt::format("{} cannot change during playback", path[2]), {},
+                fmt::format("of this layer these can: {}", fmt::join(in_block, ", ")));
+  std::size_t before = *at_layer;
+  for (std::size_t i = 0; i < *at_patch; ++i) before += scene.patches[i].layers.size();
+  return wire::Set{static_cast<std::uint16_t>(before), static_cast<std::uint16_t>(number - in_block.begin()),
+                   static_cast<float>(value), 0};
+}
+
+// Up to the first comma, and after it.
+struct ScriptLine {
+  std::string where;
+  std::string_view time, command;
+};
+
+// Without the empty ones.
+std::vector<ScriptLine> lines_of_script(std::string_view text, const std::string& file) {
+  std::vector<ScriptLine> lines;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    const std::size_t comma = std::min(line.find(','), line.size());
+    if (schema::without_blanks(line).empty()) continue;
+    lines.push_back({fmt::format("{}, line {}", file, number), schema::without_blanks(line.substr(0, comma)),
+                     schema::without_blanks(line.substr(std::min(comma + 1, line.size())))});
+  }
+  return lines;
+}
+
+Result<double> time_unit_of(const ScriptLine& header) {
+  const auto [name, unit_name] = schema::split_unit(header.time);
+  const auto unit = schema::known_unit(unit_name, Dimension::time);
+  if (name == "time" && unit && unit->dimension == Dimension::time && header.command == "command")
+    return unit->si;
+  return fail(ErrorKind::malformed, "this is not the header of a script", header.where,
+              std::string(kHeaderForm));
+}
+
+Result<double> time_in(const ScriptLine& line, double unit_s, double last_s) {
+  const auto time = number_in_text(line.time);
+  if (!time || *time < 0)
+    return fail(ErrorKind::malformed, fmt::format("'{}' is not a time", line.time), line.where,
+                "write a number from 0 on, in the unit of the header");
+  if (*time * unit_s > last_s) return *time * unit_s;
+  return fail(ErrorKind::malformed,
+              fmt::format("the time does not increase: {:g} s after {:g} s", *time * unit_s, last_s),
+              line.where, "each row must be later than the one before");
+}
+
+}  // namespace
+
+Result<SceneCommand> set_command(const std::string& number, double value, double ramp_s,
+                                 const PreparedScene& scene) {
+  const Words path = words_in(number, ".");
+  if (path.size() != 3)
+    return fail(ErrorKind::usage, fmt::format("'{}' does not name a number of a layer", number), {},
+                "name it as PATCH.LAYER.MEMBER");
+  auto set = target_of(path, value, scene);
+  TACTO_TRY(set);
+  if (!(ramp_s >= 0 && ramp_s <= kLongestRampS))
+    return fail(ErrorKind::usage, fmt::format("the ramp is {:g} s", ramp_s), {}, "use 0 s to 10 s");
+  set->ramp_s = static_cast<float>(ramp_s);
+  return SceneCommand{*set, fmt::format("set {} {} over {} s", number, value, ramp_s)};
+}
+
+Result<SceneCommand> parse_scene_command(std::string_view text, const PreparedScene& scene) {
+  const Words words = words_in(text, " \t");
+  const bool over = words.size() == 5 && words[3] == "over";
+  if ((words.size() != 3 && !over) || words[0] != "set")
+    return fail(ErrorKind::usage, fmt::format("'{}' is not a command", text), {}, std::string(kForm));
+  const auto value = number_in_text(words[2]);
+  if (!value)
+    return fail(ErrorKind::usage, fmt::format("'{}' is not a number", words[2]), {},
+                "write a plain number; its unit is in the name of the member");
+  const auto ramp_s = over ? schema::parse_quantity(words[4], Dimension::time) : kUsualSetRampS;
+  TACTO_TRY(ramp_s);
+  return set_command(words[1], *value, *ramp_s, scene);
+}
+
+Result<std::vector<TimedSceneCommand>> read_scene_script(const std::string& file,
+                                                         const PreparedScene& scene) {
+  const auto text = schema::read_file(file);
+  TACTO_TRY(text);
+  const std::vector<ScriptLine> lines = lines_of_script(*text, file);
+  const auto unit_s = time_unit_of(lines.empty() ? ScriptLine{file, {}, {}} : lines.front());
+  TACTO_TRY(unit_s);
+  if (lines.size() < 2)
+    return fail(ErrorKind::malformed, "the script has no commands", file, std::string(kHeaderForm));
+  std::vector<TimedSceneCommand> script;
+  for (const ScriptLine& line : std::span(lines).subspan(1)) {
+    const auto time_s = time_in(line, *unit_s, script.empty() ? -1 : script.back().time_s);
+    TACTO_TRY(time_s);
+    auto command = parse_scene_command(line.command, scene);
+    if (!command) return fail(ErrorKind::malformed, command.error().what, line.where, command.error().remedy);
+    script.push_back({*time_s, std::move(*command)});
+  }
+  return script;
+}
+
+}  // namespace tacto::playback
