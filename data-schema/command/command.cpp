@@ -30,7 +30,8 @@ namespace {
 
 constexpr std::string_view kFooter =
     "Exit codes: 0 done, 1 internal error, 2 command line, 3 file or device not found, 4 malformed file,\n"
-    "5 data that cannot be used for this, 6 file of a newer version, 7 cannot write, 8 device failed.\n"
+    "5 data that cannot be used for this, 6 file of a newer version, 7 cannot write, 8 device failed, 9 "
+    "unstable.\n"
     "Quantities have a unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
 
 constexpr std::size_t kHelpColumn = 34;  // in which descriptions of options begin

@@ -31,6 +31,7 @@ const UsualOptions kUsualOptions[] = {
     {"play", {"device", "output", "transducer", "time", "gain", "at", "ends", "finger-path"}},
     {"ctl", {"socket", "at", "gain", "ends", "fade", "save", "time"}},
     {"compare", {"a", "b", "output", "tolerance", "align", "max-shift", "stroke-a", "stroke-b"}},
+    {"design", {"device", "hand", "rate", "speed", "output", "table", "z-width", "force"}},
     {"fidelity", {"device", "transducer", "speed", "time", "gain", "output", "force", "rate"}},
     {"trade", {"output", "transducer", "stroke", "force", "calibrate"}},
     {"identify",
