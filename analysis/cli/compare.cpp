@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <functional>
 #include <memory>
+#include <span>
 
 #include "analysis/cli/compare_report.hpp"
 #include "analysis/cli/compared_input.hpp"
@@ -115,9 +117,11 @@ Result<Report> compare_named_pair(const CompareVerbOptions& o, const Tell& tell)
 }
 
 SurfaceSide surface_side(const std::vector<std::string>& names, std::vector<spatial::NamedTexture> textures) {
+  constexpr std::size_t kNamed = 6;  // as many fit into a legend
+  const std::size_t named = names.size() > kNamed ? kNamed - 1 : names.size();
   SurfaceSide side;
-  side.name =
-      names.size() == 1 ? names.front() : fmt::format("{} and {} more", names.front(), names.size() - 1);
+  side.name = fmt::format("{}", fmt::join(std::span(names).first(named), ", "));
+  if (named < names.size()) side.name += fmt::format(" and {} more", names.size() - named);
   for (spatial::NamedTexture& texture : textures) {
     side.stroke_names.push_back(texture.name);
     side.strokes.push_back(std::move(texture.texture));
@@ -215,7 +219,7 @@ cli::Action declare_compare(CLI::App& app) {
   cli::declare_force(app, options->existing);
   declare_pairing(app, *options);
   cli::add_quantity(app, "--tolerance", options->compare.tolerance_db, Dimension::level,
-                    "Smallest level difference that counts; 2 dB are a quarter of the amplitude");
+                    "Smallest level difference that counts; 2 dB change the amplitude by 26 %");
   cli::add_quantity(
       app, "--spectrum-window", options->compare.window_m, Dimension::length,
       "Window of the compared spectra [an eighth of the shorter, at most 8 waves of the lowest frequency]");

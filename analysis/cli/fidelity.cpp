@@ -155,6 +155,12 @@ cli::Action declare_fidelity(CLI::App& app) {
   app.add_option("-o,--output,--page", options->outputs,
                  "Output: a page (.html) or results for 'report' (.results.json); may be repeated");
   cli::declare_force(app, options->existing);
+  app.footer(app.get_footer() +
+             "\nThe error is the RMS of displacement minus target, in dB of the target's RMS, after the "
+             "constant shift "
+             "along the texture that makes it smallest. In place: without that shift. Re-recorded: of the "
+             "displacement "
+             "as a sensor with noise measures it (emulated trays only).");
   return [options] { return run_fidelity(*options); };
 }
 

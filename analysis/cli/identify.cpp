@@ -203,6 +203,7 @@ Result<Report> identify_response(const IdentifyOptions& o, IdentifySource& asked
   const schema::Transducer found = identified(fit, asked.base, transducer_name_of(o));
   TACTO_TRY(schema::write_transducer(o.stem, found));
   Report report = response_report(fit, asked.base, found, transducer_file_of(o));
+  if (!o.base.empty()) add_paper(report, asked.base, found, fit);
   TACTO_TRY(draw_identified(o, BodeFigure(fit), report));
   return with_identify_results(
       o, [&] { return identify_results(fit, asked.base, found); }, std::move(report));

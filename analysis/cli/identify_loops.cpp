@@ -128,6 +128,7 @@ Result<Report> identify_jointly(const IdentifyOptions& o, IdentifySource& source
   const schema::Transducer found = identified(*fit, source.base, transducer_name_of(o));
   TACTO_TRY(schema::write_transducer(o.stem, found));
   Report report = joint_report(*fit, source.base, found, transducer_file_of(o));
+  if (!o.base.empty()) add_paper(report, source.base, found, fit->response);
   TACTO_TRY(draw_identified(o, BodeFigure(fit->response), report));
   return with_identify_results(
       o, [&] { return identify_results(*fit, source.base, found); }, std::move(report));

@@ -9,6 +9,7 @@
 #include "analysis/identify/measure/angles.hpp"
 #include "analysis/identify/report/interval_words.hpp"
 #include "analysis/identify/report/paper_words.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -24,8 +25,12 @@ void add_head(Report& report, const schema::Transducer& found, const std::string
   const schema::Identification& about = *found.identification;
   report.add("transducer", file).add("source", about.source);
   if (!about.simulated.empty()) report.add("simulated", about.simulated);
-  report.add("conditions", about.conditions).add("verdict", verdict_word(about)).add("words", about.words);
-  if (!about.usable()) report.ends_with(schema::ErrorKind::unsuitable);
+  report.add("conditions", about.conditions).add("verdict", verdict_word(about)).add("because", about.words);
+  if (about.usable())
+    report.add("next",
+               fmt::format("tactograph play TEXTURE -d DEVICE --transducer {}", cli::shell_word(file)));
+  else
+    report.ends_with(schema::ErrorKind::unsuitable);
 }
 
 // tests/analysis/identify_bench_test.py measures these figures.
@@ -67,7 +72,8 @@ void add_model(Report& report, const ResponseFit& fit) {
     row.add("model", model.name).add("parameters", model.parameters);
     row.add("left_out_error_percent", 100 * model.left_out);
     if (fit.data.noise_is_measured()) row.add("left_out_error_over_noise", model.left_out_over_noise);
-    row.add("converged", model.converged).add("misfit", model.misfit);
+    row.add("converged", model.converged);
+    if (model.converged) row.add("misfit", model.misfit);
     rows.push_back(std::move(row));
   }
   if (!rows.empty()) report.add("tried", std::move(rows));
@@ -109,7 +115,11 @@ void add_found(Report& report, const schema::Transducer& found) {
   report.add("actuator_scale", found.actuator_scale).add("sensor_scale", found.sensor_scale);
 }
 
-void add_paper(Report& report, const schema::Transducer& found, const ResponseFit& fit) {
+}  // namespace
+
+void add_paper(Report& report, const schema::Transducer& base, const schema::Transducer& found,
+               const ResponseFit& fit) {
+  if (!is_the_papers(base)) return;
   const auto figures = paper_figures(found, fit);
   if (!figures) return;
   std::vector<Report> rows;
@@ -123,8 +133,6 @@ void add_paper(Report& report, const schema::Transducer& found, const ResponseFi
   report.add("paper_against_itself", std::move(rows));
 }
 
-}  // namespace
-
 Report response_report(const ResponseFit& fit, const schema::Transducer& base,
                        const schema::Transducer& found, const std::string& file) {
   Report report;
@@ -136,7 +144,6 @@ Report response_report(const ResponseFit& fit, const schema::Transducer& base,
   report.add("not_identifiable", std::move(held));
   add_quality(report, fit);
   add_found(report, found);
-  if (is_the_papers(base)) add_paper(report, found, fit);
   return report;
 }
 

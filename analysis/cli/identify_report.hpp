@@ -10,6 +10,9 @@ namespace tacto::analysis {
 /// Each function gives the report of one kind of identification; `file` is the written file.
 cli::Report response_report(const ResponseFit& fit, const schema::Transducer& base,
                             const schema::Transducer& found, const std::string& file);
+/// If `base` is the paper's transducer: its contradictions together with the measured values.
+void add_paper(cli::Report& report, const schema::Transducer& base, const schema::Transducer& found,
+               const ResponseFit& fit);
 cli::Report loop_report(const LoopFit& fit, const schema::Transducer& found, const std::string& file);
 cli::Report joint_report(const JointFit& fit, const schema::Transducer& base, const schema::Transducer& found,
                          const std::string& file);

@@ -25,7 +25,7 @@ struct CompareOptions {
   /// Length of Welch's windows; by default an eighth of the shorter texture (15 segments), and at most 8
   /// wavelengths of the lowest common frequency.
   std::optional<double> window_m;
-  double tolerance_db = 2;  ///< larger differences matter; 2 dB are a quarter of the amplitude
+  double tolerance_db = 2;  ///< larger differences matter; 2 dB change the amplitude by 26 %
   bool formants = true;
   spatial::SpectrogramOptions spectrogram;  ///< for the search for formants
   spatial::FormantOptions formant;

@@ -37,7 +37,7 @@ double shown_scale(const std::string& unit) {
 // The mean density of the bins within each of the equal steps of a logarithmic axis.
 ResultCurve density_curve(const Comparison& c, const std::string& name, const std::vector<double>& density) {
   ResultCurve curve{name, {}, {}, false};
-  const double scale = std::pow(shown_scale(c.pair.unit), 2) / kPerMm;  // per 1/mm, from per 1/m
+  const double scale = (c.pair.unit == "m" ? 1e12 : 1) / kPerMm;  // per 1/mm, from per 1/m
   constexpr double kStepsADecade = 200;
   double sum = 0, frequencies = 0, count = 0;
   long step = 0;
@@ -74,9 +74,7 @@ ResultCurve band_curve(const Comparison& c, const std::string& name, bool dashed
 }
 
 ResultPicture spectra_picture(const Comparison& c, const ComparedNames& names) {
-  const std::string unit = c.pair.unit == "N"   ? "mN² mm"
-                           : c.pair.unit == "m" ? "µm² mm"
-                                                : c.pair.unit + "² mm";
+  const std::string unit = c.pair.unit == "m" ? "µm² mm" : c.pair.unit + "² mm";  // as in spectrograms
   return {"Spectra (Welch)",
           kFrequencyLabel,
           fmt::format("density (dB re 1 {})", unit),
@@ -92,6 +90,7 @@ ResultPicture difference_picture(const Comparison& c) {
                                       [](const auto& b) { return b.level_db + 2 * b.scatter_db; }));
   picture.curves.push_back(
       band_curve(c, "", true, [](const auto& b) { return b.level_db - 2 * b.scatter_db; }));
+  picture.curves.push_back({"0 dB", {kPerMm * c.low_per_m, kPerMm * c.high_per_m}, {0, 0}, true});
   if (band_differs(c.evidence, c.tolerance_db)) {
     const NarrowBand& band = *c.evidence.narrow;
     const double level_db = c.evidence.level_db + band.level_db;
@@ -146,12 +145,17 @@ std::string optional_db(const std::optional<double>& value) {
   return value ? fmt::format("{:.1f} dB", *value) : "";
 }
 
+// Never "-0.0 dB".
+std::string signed_db(double value) {
+  return fmt::format("{:+.1f} dB", std::round(10 * value) / 10 + 0.0);
+}
+
 std::string bands_table(const Comparison& c) {
   std::vector<std::vector<std::string>> rows = {
       {"band (1/mm)", "B over A", "± standard error", "error re A", "residual after the gain", "coherence"}};
   for (const BandComparison& band : c.bands)
     rows.push_back({fmt::format("{:.3g}{}", kPerMm * band.centre_per_m, band.partial ? " (part)" : ""),
-                    fmt::format("{:+.1f} dB", band.level_db), fmt::format("{:.1f} dB", band.scatter_db),
+                    signed_db(band.level_db), fmt::format("{:.1f} dB", band.scatter_db),
                     optional_db(band.error_db), optional_db(band.residual_db),
                     band.coherence ? fmt::format("{:.2f}", *band.coherence) : ""});
   return html_table(rows);
@@ -164,10 +168,9 @@ std::string formants_table(const Comparison& c) {
   };
   for (const auto& [i, j] : c.formants.matched)
     rows.push_back({"matched", place(c.a_formants[i]), place(c.b_formants[j]),
-                    fmt::format("{:+.1f} dB", c.b_formants[j].level_db - c.a_formants[i].level_db)});
-  for (const std::size_t i : c.formants.missed)
-    rows.push_back({"missed in B", place(c.a_formants[i]), "", ""});
-  for (const std::size_t j : c.formants.extra) rows.push_back({"extra in B", "", place(c.b_formants[j]), ""});
+                    signed_db(c.b_formants[j].level_db - c.a_formants[i].level_db)});
+  for (const std::size_t i : c.formants.missed) rows.push_back({"only in A", place(c.a_formants[i]), "", ""});
+  for (const std::size_t j : c.formants.extra) rows.push_back({"only in B", "", place(c.b_formants[j]), ""});
   return rows.size() == 1 ? "<p>Neither has formants.</p>\n" : html_table(rows);
 }
 
@@ -236,12 +239,13 @@ std::vector<schema::ResultFigure> comparison_figures(const Comparison& c, const 
     add("strongest line of one texture", line_figure(c));
     add("spectral distance",
         fmt::format("{:.2f} dB RMS over {} bands", c.spectral_distance_db, c.bands.size()));
-    add("formants", fmt::format("{} matched, {} missed, {} extra", c.formants.matched.size(),
+    add("formants", fmt::format("{} matched, {} only in A, {} only in B", c.formants.matched.size(),
                                 c.formants.missed.size(), c.formants.extra.size()));
   }
   if (!c.pair.paired) return figures;
-  add("coherence", fmt::format("{:.2f}; chance {:.2f}: {}", *c.coherence, c.chance_coherence,
-                               c.point_by_point ? "one place, point by point" : "not point by point"));
+  add("coherence",
+      fmt::format("{:.2f}; chance {:.2f}: {}", *c.coherence, c.chance_coherence,
+                  c.point_by_point ? "the two agree point by point" : "they do not agree point by point"));
   add("gain, least squares", fmt::format("{:.3g}", *c.gain));
   if (!names.with_target) add("error of B re A", optional_db(c.error_db));
   add("residual after the best gain, re B", optional_db(c.residual_db));

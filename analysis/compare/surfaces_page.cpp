@@ -32,7 +32,9 @@ std::string verdict_line(const SurfaceComparison& c) {
           : fmt::format("{} + {}", c.a.recordings, counted(c.b.recordings, "recording"));
   std::string figures;
   if (c.verdict == SurfaceVerdict::no_difference_found)
-    figures = fmt::format("none above {:.1f} dB; ", c.finest_third_octave_db);
+    figures = fmt::format("{}none above {:.1f} dB; ",
+                          c.test && c.test->p <= kTestLevel ? "below the tolerance; " : "",
+                          c.finest_third_octave_db);
   if (c.test) figures += fmt::format("p {:.3f}; ", c.test->p);
   return fmt::format("{} ({}{} + {}, {})", to_string(c.verdict), figures, c.a.strokes,
                      counted(c.b.strokes, "stroke"), recordings);
@@ -79,9 +81,8 @@ std::vector<schema::ResultFigure> surfaces_figures(const SurfaceComparison& c) {
   }
   add("speed", condition_words(c, &SideFacts::speed_mps, Dimension::speed));
   add("load", condition_words(c, &SideFacts::load_n, Dimension::force));
-  add("separable",
-      fmt::format("{:.0f} % of the difference between the sides is not explained by speed and load",
-                  100 * c.separable));
+  add("speed and load",
+      fmt::format("explain {:.0f} % of the difference between the sides", 100 * (1 - c.separable)));
   return figures;
 }
 

@@ -156,13 +156,14 @@ std::string shape_words(const Evidence& e, double tolerance_db) {
 }
 
 std::string level_words(const Evidence& e) {
-  return fmt::format("level of B over A {:+.1f} dB ({:+.1f} to {:+.1f})", e.level_db, e.level_low_db,
-                     e.level_high_db);
+  const auto rounded = [](double db) { return std::round(10 * db) / 10 + 0.0; };  // never "-0.0"
+  return fmt::format("level of B over A {:+.1f} dB ({:+.1f} to {:+.1f})", rounded(e.level_db),
+                     rounded(e.level_low_db), rounded(e.level_high_db));
 }
 
 Verdict by_level(const Evidence& e, double tolerance_db) {
-  const std::string shape =
-      fmt::format("same shape ({:.1f} dB, chance up to {:.1f} dB)", e.shape_db, e.shape_chance_db);
+  const std::string shape = fmt::format("no difference in shape found ({:.1f} dB, chance up to {:.1f} dB)",
+                                        e.shape_db, e.shape_chance_db);
   const std::string words = shape + ", " + level_words(e);
   const bool certain = e.level_low_db > 0 || e.level_high_db < 0;
   if (certain && std::abs(e.level_db) > tolerance_db)

@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 
 #include "analysis/page/html.hpp"
 #include "analysis/page/picture_svg.hpp"
@@ -141,6 +143,21 @@ const FittedGroup& worst_fit(const AnswersFit& all) {
   return *std::ranges::min_element(all.groups, {}, [](const FittedGroup& group) { return group.fit.p; });
 }
 
+// Whether the answers of all levels, of all groups together, are at least as often 'yes' as by guessing
+// between two alternatives, with a margin for chance.
+bool could_be_guessing_of_two(const AnswersFit& all) {
+  constexpr double kLeast = 0.4;
+  std::map<double, LevelCount> levels;
+  for (const FittedGroup& group : all.groups)
+    for (const LevelCount& each : group.fit.levels) {
+      levels[each.level].yes += each.yes;
+      levels[each.level].trials += each.trials;
+    }
+  return !all.options.guess && std::ranges::all_of(levels, [](const auto& each) {
+    return each.second.yes >= kLeast * each.second.trials;
+  });
+}
+
 bool misfit(const AnswersFit& all) {
   return worst_fit(all).fit.p * static_cast<double>(all.groups.size()) < kUsualP;
 }
@@ -152,8 +169,8 @@ std::string fits_in_words(const AnswersFit& all) {
 }
 
 // Marks of the proportions, then the function over the same levels.
-void add_group(ResultPicture& picture, const FittedGroup& group) {
-  ResultCurve marks{group_name(group.by), {}, {}, false, true}, curve{"", {}, {}};
+void add_group(ResultPicture& picture, const std::string& name, const FittedGroup& group) {
+  ResultCurve marks{name, {}, {}, false, true}, curve{"", {}, {}};
   for (const LevelCount& each : group.fit.levels) {
     marks.x.push_back(each.level);
     marks.y.push_back(each.yes / each.trials);
@@ -206,7 +223,12 @@ std::vector<ResultFigure> answers_figures(const AnswersFit& all) {
   if (all.groups.size() > 1) figures.push_back({"fit", fits_in_words(all)});
   figures.push_back({"answers", answers_in_words(all)});
   figures.push_back({"assumed", assumed(all)});
-  if (misfit(all) && !all.options.overdispersed)
+  if (could_be_guessing_of_two(all))
+    figures.push_back(
+        {"note",
+         "at no level is less than about half of the answers yes: if an answer is right or wrong, of two "
+         "alternatives, give --guess 50%"});
+  else if (misfit(all) && !all.options.overdispersed)
     figures.push_back({"note", "--overdispersed widens the intervals for answers that scatter so"});
   for (const std::string& note : all_notes(all)) figures.push_back({"note", note});
   return figures;
@@ -225,7 +247,9 @@ std::vector<ResultPicture> answers_pictures(const AnswersFit& all) {
                                       false,
                                       {}});
     }
-    add_group(*found, group);
+    // The person is in the title.
+    const std::vector<std::string> condition(group.by.begin() + (group.by.empty() ? 0 : 1), group.by.end());
+    add_group(*found, condition_in_words(all, condition), group);
   }
   return pictures;
 }
@@ -266,7 +290,7 @@ std::vector<ResultPicture> preferences_pictures(const std::vector<ScaledGroup>& 
     ResultPicture& picture = pictures.emplace_back(
         ResultPicture{each.by.empty() ? "Abilities with 95 % intervals" : group_name(each.by),
                       "ability (logarithm of odds)",
-                      "rank, the last is the reference",
+                      "rank; the last is the reference",
                       false,
                       {}});
     for (std::size_t i = 0; i < each.scale.items.size(); ++i) {
@@ -292,10 +316,11 @@ Findings findings_of(const std::vector<ScaledGroup>& scales) {
 schema::Result<std::string> findings_page(const std::string& file, const Findings& findings) {
   const auto drawn = pictures_html(findings.pictures, "");
   TACTO_TRY(drawn);
-  std::string body = fmt::format("<h1>{}</h1>\n", escaped(file)) + answer(findings.verdict()) +
+  const std::string name = std::filesystem::path(file).filename().string();
+  std::string body = fmt::format("<h1>Experiment: {}</h1>\n", escaped(name)) + answer(findings.verdict()) +
                      figures_html(findings.figures) + *drawn;
   if (!findings.groups.empty()) body += html_table(findings.groups);
-  return html_document(fmt::format("{}: {}", file, findings.verdict()), body);
+  return html_document(fmt::format("{}: {}", name, findings.verdict()), body);
 }
 
 }  // namespace tacto::analysis

@@ -20,7 +20,8 @@ p.answer { font-size: 1.2rem; font-weight: 600; margin: .8rem 0; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .8rem 0; }
 th, td { padding: .35rem .6rem; text-align: right; vertical-align: top; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; vertical-align: bottom; } td:first-child, th:first-child { text-align: left; }
-table.pairs th, table.pairs td { text-align: left; } table.c9 { font-size: .9rem; } td.long { overflow-wrap: anywhere; } td.text { text-align: left; }
+table.pairs th, table.pairs td { text-align: left; } table.c9 { font-size: .9rem; } td.long { overflow-wrap: anywhere; } td.word { white-space: nowrap; } td.text { text-align: left; }
+.picture { overflow-x: auto; } .picture img { min-width: 40rem; }
 img { width: 100%; height: auto; margin: .6rem 0; background: #fff; border-radius: .3rem; } p.note { color: var(--soft); font-size: .9rem; }
 details { margin: .8rem 0; border: 1px solid var(--line); border-radius: .3rem; padding: 0 .8rem; }
 summary { cursor: pointer; padding: .5rem 0; font-weight: 600; }
@@ -78,11 +79,24 @@ std::size_t longest_word(std::string_view text) {
   return longest;
 }
 
-// Sentences are aligned left; a long word without spaces, such as a path, may be broken anywhere.
-std::string cell_class(std::string_view cell) {
-  constexpr std::size_t kLongWord = 24, kSentence = 40;
-  if (longest_word(cell) > kLongWord) return " class=\"long text\"";
-  return cell.size() > kSentence ? " class=\"text\"" : "";
+constexpr std::size_t kLongWord = 24, kSentence = 28;
+
+bool is_text(std::string_view cell) {
+  return longest_word(cell) > kLongWord || cell.size() > kSentence;
+}
+
+// A long word without spaces, such as a path, may be broken anywhere; another single word, such as a date,
+// is not broken. All cells of a column with sentences are aligned left.
+std::string cell_class(std::string_view cell, bool in_text_column) {
+  const bool is_long = longest_word(cell) > kLongWord;
+  const bool is_word = !is_long && cell.find('-') != cell.npos && cell.find(' ') == cell.npos;
+  const char* classes = is_long && in_text_column   ? "long text"
+                        : is_long                   ? "long"
+                        : is_word && in_text_column ? "word text"
+                        : is_word                   ? "word"
+                        : in_text_column            ? "text"
+                                                    : "";
+  return *classes == 0 ? "" : fmt::format(" class=\"{}\"", classes);
 }
 
 std::string head_row(const std::vector<std::string>& headers) {
@@ -124,6 +138,15 @@ std::string_view unit_at(std::string_view text) {
   return std::ranges::find(kUnits, before) == std::end(kUnits) ? "" : before;
 }
 
+// The space in "p 0.03".
+bool is_after_p(std::string_view text, std::size_t i) {
+  const auto is_word = [&](std::size_t at) {
+    return std::isalnum(static_cast<unsigned char>(text[at])) != 0;
+  };
+  return i > 0 && i + 1 < text.size() && text[i] == ' ' && text[i - 1] == 'p' &&
+         (i == 1 || !is_word(i - 2)) && std::isdigit(static_cast<unsigned char>(text[i + 1])) != 0;
+}
+
 }  // namespace
 
 std::string escaped(std::string_view text) {
@@ -136,6 +159,11 @@ std::string escaped(std::string_view text) {
         i += 1 + unit.size();
         continue;
       }
+    if (is_after_p(text, i)) {
+      safe += "&nbsp;";
+      ++i;
+      continue;
+    }
     const std::size_t bytes = sign_bytes(text.substr(i));
     safe += bytes == 0 ? "\uFFFD" : bytes == 1 ? entity(text[i]) : std::string(text.substr(i, bytes));
     i += std::max<std::size_t>(1, bytes);
@@ -143,20 +171,38 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
+namespace {
+
+// A long word, like sim:surface=C,speed=50mm/s, breaks after its commas if it can.
+std::string with_breaks(std::string_view cell) {
+  std::string text = escaped(cell);
+  if (longest_word(cell) <= kLongWord) return text;
+  for (std::size_t at = 0; (at = text.find(',', at)) != text.npos; at += 6)
+    if (at + 1 < text.size() && text[at + 1] != ' ') text.insert(at + 1, "<wbr>");
+  return text;
+}
+
+}  // namespace
+
 std::string inline_svg(std::string_view svg, std::string_view alternative) {
-  return fmt::format("<img alt=\"{}\" src=\"data:image/svg+xml,{}\">\n", escaped(alternative),
-                     percent_encoded(svg));
+  return fmt::format("<div class=\"picture\"><img alt=\"{}\" src=\"data:image/svg+xml,{}\"></div>\n",
+                     escaped(alternative), percent_encoded(svg));
 }
 
 std::string html_table(const std::vector<std::string>& headers, std::size_t rows, const CellText& cell) {
-  std::string table = fmt::format("<table{}>\n{}<tbody>\n", table_class(headers.size()), head_row(headers));
-  for (std::size_t row = 0; row < rows; ++row) {
-    table += "<tr>";
+  std::vector<std::vector<std::string>> cells(rows);
+  std::vector<bool> text_columns(headers.size());
+  for (std::size_t row = 0; row < rows; ++row)
     for (std::size_t column = 0; column < headers.size(); ++column) {
-      const std::string text = cell(row, column);
-      table += fmt::format("<td{} data-label=\"{}\">{}</td>", cell_class(text), escaped(headers[column]),
-                           escaped(text));
+      cells[row].push_back(cell(row, column));
+      if (is_text(cells[row].back())) text_columns[column] = true;
     }
+  std::string table = fmt::format("<table{}>\n{}<tbody>\n", table_class(headers.size()), head_row(headers));
+  for (const auto& row : cells) {
+    table += "<tr>";
+    for (std::size_t column = 0; column < headers.size(); ++column)
+      table += fmt::format("<td{} data-label=\"{}\">{}</td>", cell_class(row[column], text_columns[column]),
+                           escaped(headers[column]), with_breaks(row[column]));
     table += "</tr>\n";
   }
   return table + "</tbody></table>\n";

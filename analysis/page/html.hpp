@@ -12,10 +12,12 @@
 namespace tacto::analysis {
 
 /// Writes <, >, & and quotes as entities, bytes that are not UTF-8 as U+FFFD, and between a number and its
-/// unit a space that does not break; um, us and uV after a number as people print them.
+/// unit, and between p and its number, a space that does not break; um, us and uV after a number as people
+/// print them.
 std::string escaped(std::string_view text);
 
-/// An <img> with its SVG as a data: URI; `alternative` is the text for readers without pictures.
+/// An <img> with its SVG as a data: URI, in a box that scrolls where the screen is too narrow to read it;
+/// `alternative` is the text for readers without pictures.
 std::string inline_svg(std::string_view svg, std::string_view alternative);
 
 /// A column of a table whose rows are `Row`s: the header and the text of a cell together, so that their

@@ -32,10 +32,13 @@ spatial::LineFigure figure_of(const schema::ResultPicture& picture, const std::s
   if (picture.logarithmic_x) figure.x_scale = spatial::AxisScale::logarithmic;
   std::size_t colour = 0;
   for (const schema::ResultCurve& curve : picture.curves) {
+    // A single mark has its name beside it, and no entry of the legend.
+    const bool labelled = curve.marks && curve.x.size() == 1;
     // A curve without a name continues the previous one and has its colour.
-    if (!curve.name.empty() && !figure.series.empty()) ++colour;
-    figure.series.push_back(
-        {curve.name, curve.x, curve.y, spatial::series_colour(colour), 1.2, curve.dashed, curve.marks});
+    if (!labelled && !curve.name.empty() && !figure.series.empty()) ++colour;
+    figure.series.push_back({labelled ? "" : curve.name, curve.x, curve.y, spatial::series_colour(colour),
+                             1.2, curve.dashed, curve.marks});
+    if (labelled) figure.series.back().labels = {curve.name};
   }
   return figure;
 }

@@ -24,15 +24,16 @@ std::string source_words(const ProjectFile& file) {
 }
 
 std::string main_figures(const ProjectFile& file) {
-  constexpr std::size_t kShown = 2, kLongest = 120;
+  constexpr std::size_t kShown = 2, kLongest = 240;
   std::string words;
   for (const auto& [name, value] : std::span(file.figures).first(std::min(kShown, file.figures.size())))
     words += fmt::format("{}{}: {}", words.empty() ? "" : "; ", name, value);
   if (words.size() <= kLongest) return words;
-  // Do not cut within a character of several bytes.
-  std::size_t end = kLongest;
+  // Cut between two parts of a sentence, or else not within a character of several bytes.
+  std::size_t end = words.find_last_of(";,:", kLongest);
+  if (end == words.npos || end < kLongest / 4) end = kLongest;
   while (end > 0 && (static_cast<unsigned char>(words[end]) & 0xC0) == 0x80) --end;
-  return words.substr(0, end) + "…";
+  return words.substr(0, end) + " …";
 }
 
 // With more files, the page shows the first ones and folds the rest.

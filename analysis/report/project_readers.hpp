@@ -29,7 +29,8 @@ schema::Result<void> add_device(const std::string& path, ProjectFile& file);
 schema::Result<void> add_hand(const std::string& path, ProjectFile& file);
 
 /// A signal as minimum and maximum of at most 1,000 pieces, so that a page can show any length. A rare spike
-/// that would compress the rest (spatial::shown_range) is a gap in the curve, and described in words.
+/// that would compress the rest (spatial::shown_range; at most a thousandth of the samples) is a gap in the
+/// curve, and described in words.
 class Envelope {
  public:
   explicit Envelope(std::size_t samples);

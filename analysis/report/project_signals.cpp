@@ -153,7 +153,9 @@ double Envelope::most() const {
 schema::ResultPicture Envelope::picture(const std::string& title, const std::string& x_label,
                                         const std::string& y_label, const std::string& unit) const {
   const double low = least(), high = most();
+  constexpr double kFew = 1e-3;  // more than that are no spikes, but a part of the signal
   spatial::ShownRange range = spatial::shown_range(kept_);
+  if (static_cast<double>(range.beyond) > kFew * static_cast<double>(range.values)) range.beyond = 0;
   if (range.beyond == 0) range.low = low, range.high = high;
   if (range.beyond > 0) range.furthest = std::abs(low) > std::abs(high) ? low : high;
   const std::string words = range.beyond == 0 ? "" : ": " + spatial::out_of_range_text(range, unit);

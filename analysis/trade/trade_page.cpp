@@ -92,6 +92,12 @@ std::vector<std::size_t> front_by_cost(const TradeHalf& half, std::vector<std::s
   return rows;
 }
 
+// "5 um" as "5 µm", as in the page's tables.
+std::string with_micro(std::string text) {
+  for (std::size_t at = 0; (at = text.find(" um", at)) != text.npos;) text.replace(at, 3, " \u00B5m");
+  return text;
+}
+
 // Only choices of the front have names, because the other names would overlap.
 spatial::Series marks_of(const TradeHalf& half, const std::vector<Worth>& worth,
                          const std::vector<std::size_t>& rows, spatial::Colour colour) {
@@ -99,9 +105,8 @@ spatial::Series marks_of(const TradeHalf& half, const std::vector<Worth>& worth,
   for (const std::size_t i : rows) {
     series.x.push_back(half.rows[i].cost_ns);
     series.y.push_back(error_db(half.rows[i]));
-    series.labels.push_back(worth[i].knee       ? half.rows[i].choice + "  (knee)"
-                            : worth[i].on_front ? half.rows[i].choice
-                                                : "");
+    const std::string choice = with_micro(half.rows[i].choice);
+    series.labels.push_back(worth[i].knee ? choice + "  (knee)" : worth[i].on_front ? choice : "");
   }
   return series;
 }

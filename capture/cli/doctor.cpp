@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capture/doctor/doctor.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include "capture/cli/verbs.hpp"
@@ -30,7 +31,10 @@ schema::Result<cli::Report> run_doctor(const DoctorOptions& options) {
   request.stale_after_s = options.stale_after_s.value_or(kStaleAfter_s);
   const Diagnosis diagnosis = examine(request);
   std::vector<cli::Report> rows;
-  for (const Check& check : diagnosis.checks) rows.push_back(row_of(check));
+  // A short terminal shows the first rows only.
+  std::vector<Check> checks = diagnosis.checks;
+  std::ranges::stable_partition(checks, [](const Check& check) { return check.health == Health::fails; });
+  for (const Check& check : checks) rows.push_back(row_of(check));
   const Check* const first_failure = diagnosis.first_failure();
   cli::Report report;
   report.add("checks", std::move(rows))

@@ -42,7 +42,8 @@ void declare_data(CLI::App& app, ImportRequest& request) {
                  "quantity. Mono audio needs none: it is a signal")
       ->allow_extra_args(false);
   app.add_option("--skip", request.skip_lines,
-                 "Number of lines before the header or first row of a table, if they are not detected");
+                 "Number of lines before the header or first row of a table, if they are not detected")
+      ->default_str("");
   cli::add_quantity(app, "--rate", request.rate_hz, Dimension::frequency,
                     "Samples per second of a table, or of audio with a wrong header");
   app.add_option("--time-column", request.time_column,
@@ -52,7 +53,9 @@ void declare_data(CLI::App& app, ImportRequest& request) {
       "Distance between heights: makes a texture (so do a height and a position without a rate)");
   cli::add_quantity(app, "--speed", request.speed_mps, Dimension::speed,
                     "Speed of a nominal position, if none was measured");
-  app.add_flag("!--no-position", request.integrate_speed, "Do not integrate a speed channel to a position");
+  app.add_flag_callback(
+      "--no-position", [&request] { request.integrate_speed = false; },
+      "Do not integrate a speed channel to a position");
   app.add_flag("--mask-outliers", request.mask_outliers,
                "Remove rows with implausible samples: they become gaps and are not filled in");
   app.add_flag("--force", request.replace, "Replace a recording of the same name");

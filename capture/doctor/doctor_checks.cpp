@@ -70,10 +70,11 @@ std::string advice_on(const RealtimeLimits& limits) {
 }
 
 std::string words_of(const RealtimeLimits& limits) {
-  return fmt::format("{}, limit {}; {} of memory can be locked; real-time threads can run {} of the time",
-                     limits.granted ? "granted" : "not granted", limits.priority,
-                     limits.locked_bytes ? fmt::format("{:.3g} MB", *limits.locked_bytes / 1e6) : "all",
-                     limits.runtime ? fmt::format("{:.0f} %", 100 * *limits.runtime) : "an unknown part");
+  return fmt::format(
+      "{}; {} of memory can be locked; real-time threads can run {} of the time",
+      limits.granted ? "priority granted" : fmt::format("no priority granted (limit {})", limits.priority),
+      limits.locked_bytes ? fmt::format("{:.3g} MB", *limits.locked_bytes / 1e6) : "all",
+      limits.runtime ? fmt::format("{:.0f} %", 100 * *limits.runtime) : "an unknown part");
 }
 
 std::string words_of(const DiskSpeed& disk, double bytes_per_s) {

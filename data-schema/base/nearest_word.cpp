@@ -45,7 +45,7 @@ std::string nearest_word(std::string_view typed, std::span<const std::string> wo
 
 std::string did_you_mean(std::string_view typed, std::span<const std::string> words) {
   const std::string nearest = nearest_word(typed, words);
-  return nearest.empty() ? "" : ", did you mean '" + nearest + "'?";
+  return nearest.empty() ? "" : " (did you mean '" + nearest + "'?)";
 }
 
 }  // namespace tacto::schema

@@ -13,7 +13,7 @@ namespace tacto::schema {
 /// Empty if no word is that near.
 std::string nearest_word(std::string_view typed, std::span<const std::string> words);
 
-/// ", did you mean 'word'?", or nothing.
+/// " (did you mean 'word'?)", or nothing.
 std::string did_you_mean(std::string_view typed, std::span<const std::string> words);
 
 }  // namespace tacto::schema

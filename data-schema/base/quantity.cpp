@@ -163,10 +163,14 @@ std::string_view si_symbol(Dimension dimension) {
 }
 
 std::string for_people(double value_si, Dimension dimension) {
+  constexpr double kHalfDigit = 5e-5;  // four digits are printed
   const Unit* best = nullptr;
   for (const Unit& unit : kUnits) {
     if (unit.dimension != dimension || for_reading_only(unit)) continue;
-    if (best == nullptr || std::abs(value_si) >= unit.si || (value_si == 0 && unit.si <= 1)) best = &unit;
+    // 1e-6 m may be slightly less: it is 1 um, not 1000 nm.
+    if (best == nullptr || std::abs(value_si) >= (1 - kHalfDigit) * unit.si ||
+        (value_si == 0 && unit.si <= 1))
+      best = &unit;
   }
   if (best->dimension == Dimension::none) return fmt::format("{:.4g}", value_si);
   const bool inverse = best->symbol.starts_with('/');

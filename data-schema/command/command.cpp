@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <string_view>
 
 #include "data-schema/base/nearest_word.hpp"
 #include "data-schema/command/failure.hpp"
@@ -20,6 +21,7 @@
 #include "data-schema/report/progress.hpp"
 #include "data-schema/report/report_entries.hpp"
 #include "data-schema/report/report_text.hpp"
+#include "data-schema/report/text_table.hpp"
 #include "data-schema/report/warnings.hpp"
 #include "data-schema/version.hpp"
 
@@ -28,8 +30,11 @@ namespace {
 
 constexpr std::string_view kFooter =
     "Exit codes: 0 done, 1 internal error, 2 command line, 3 file or device not found, 4 malformed file,\n"
-    "5 data that cannot be used for this, 6 file of a newer version, 7 cannot write, 8 device failed.\n"
+    "5 data that cannot be used for this, 6 file of a newer version, 7 cannot write, 8 device failed, 9 "
+    "unstable.\n"
     "Quantities have a unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
+
+constexpr std::size_t kHelpColumn = 34;  // in which descriptions of options begin
 
 using Verbs = std::span<const Verb* const>;
 using Topics = std::span<const HelpTopic* const>;
@@ -49,11 +54,23 @@ std::string is_row_count(const std::string& text) {
              : "'" + text + "' is neither a number of rows nor all";
 }
 
+// Shows no default that is none: of an empty list, of an option that is required, and 0 where a count begins
+// at 1.
+void hide_empty_defaults(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    const std::string type = option->get_type_name(), shown = option->get_default_str();
+    const bool from_one = type.find("POSITIVE") != type.npos || type.find("in [1 ") != type.npos;
+    if (shown == "[]" || option->get_required() || (from_one && shown == "0")) option->default_str("");
+  }
+  for (CLI::App* part : app.get_subcommands({})) hide_empty_defaults(*part);
+}
+
 Entry declare(CLI::App& parent, const Verb& verb) {
   Entry entry;
   entry.app = parent.add_subcommand(std::string(verb.name), std::string(verb.summary));
   entry.app->footer(fmt::format("Example:\n  {}", verb.example));
   entry.action = verb.declare(*entry.app);
+  hide_empty_defaults(*entry.app);
   return entry;
 }
 
@@ -123,30 +140,108 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-// An unknown option, with the one that was probably meant; else, for an option or argument that is required,
-// "'--device' is missing: " and its description; else CLI11's own words.
-std::string fault_of(const CLI::App& app, const CLI::App& verb, const CLI::ParseError& error) {
+using Words = std::span<const char* const>;
+
+std::vector<std::string> names_of(const std::vector<const CLI::App*>& apps) {
+  std::vector<std::string> names;
+  for (const CLI::App* app : apps) names.push_back(app->get_name());
+  return names;
+}
+
+// "-device", which is read as -d with the value "evice".
+std::string with_one_hyphen(const CLI::App& verb, Words words) {
+  const auto names = option_names(verb);
+  for (const std::string_view word : words)
+    if (word.size() > 2 && word[0] == '-' && std::ranges::find(names, "-" + std::string(word)) != names.end())
+      return fmt::format("there is no option '{}' (did you mean '-{}'?)", word, word);
+  return "";
+}
+
+// The part of a verb that was typed, as in 'experiment fitt'.
+std::string unknown_part(const CLI::App& app, const CLI::App& verb) {
+  const auto parts = names_of(verb.get_subcommands({}));
+  if (&verb == &app || parts.empty() || !verb.get_subcommands().empty()) return "";
+  const auto rest = app.remaining(true);
+  if (rest.empty())
+    return fmt::format("'{}' is followed by one of {}", verb.get_name(), fmt::join(parts, ", "));
+  return fmt::format("there is no '{} {}'{}; it is followed by one of {}", verb.get_name(), rest.front(),
+                     schema::did_you_mean(rest.front(), parts), fmt::join(parts, ", "));
+}
+
+// An option with a name, on the words of the error; nullptr if there is none.
+const CLI::Option* option_in(const CLI::App& verb, const std::string& what) {
+  for (const CLI::Option* option : verb.get_options())
+    if (const std::string name = option->get_name(option->get_positional());
+        !name.empty() && (what == name || what.starts_with(name + ":") || what.starts_with(name + " ")))
+      return option;
+  return nullptr;
+}
+
+// An unknown option, with the one that was probably meant; an unknown part of a verb; for an option or
+// argument that is required, "'--device' is missing: " and its description, the same for an option without
+// its value; else CLI11's own words.
+std::string fault_of(const CLI::App& app, const CLI::App& verb, const CLI::ParseError& error, Words words) {
+  if (const std::string hyphen = with_one_hyphen(verb, words); !hyphen.empty()) return hyphen;
   for (const std::string& argument : app.remaining(true))
     if (argument.starts_with("--")) {
       const std::string name = argument.substr(0, argument.find('='));
       return fmt::format("there is no option '{}'{}", name, schema::did_you_mean(name, option_names(verb)));
     }
+  if (const std::string part = unknown_part(app, verb); !part.empty()) return part;
   const std::string what = error.what();
+  const CLI::Option* option = option_in(verb, what);
+  if (option == nullptr) return what;
+  const std::string name = option->get_name(option->get_positional());
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && option->count() == 0)
+    return fmt::format("'{}' has no value: {}", name, option->get_description());
   if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) return what;
-  for (const CLI::Option* option : verb.get_options()) {
-    const std::string name = option->get_name(option->get_positional());
-    if (option->get_required() && option->count() == 0 && what.starts_with(name))
-      return fmt::format("'{}' is missing: {}", name, option->get_description());
-  }
-  return what;
+  std::vector<std::string> missing;
+  for (const CLI::Option* each : verb.get_options())
+    if (each->get_required() && each->count() == 0)
+      missing.push_back(fmt::format("'{}' is missing: {}", each->get_name(each->get_positional()),
+                                    each->get_description()));
+  return missing.empty() ? what : fmt::format("{}", fmt::join(missing, "; "));
 }
 
-int print_parse_error(const CLI::App& app, const CLI::ParseError& error, bool json) {
-  if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version arrive here too
-  const auto parsed = app.get_subcommands();
-  const CLI::App& verb = parsed.empty() ? app : *parsed.front();
-  const std::string name = parsed.empty() ? "" : verb.get_name() + " ";
-  return print_error({schema::ErrorKind::usage, fault_of(app, verb, error), "",
+// On a terminal, an option's description wraps beside its name; a command line of an example stays whole.
+std::string wrapped_help(const std::string& text) {
+  winsize size{};
+  if (isatty(STDOUT_FILENO) != 1 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return text;
+  const std::size_t columns = size.ws_col;
+  std::string wrapped;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string line = text.substr(at, end - at);
+    at = end + 1;
+    const bool beside = line.size() > kHelpColumn && line[kHelpColumn - 1] == ' ' && line.starts_with("  ");
+    const std::size_t indent = beside ? kHelpColumn : 0;
+    if (line.size() <= columns || columns < 2 * kHelpColumn || line.starts_with("  tactograph ")) {
+      wrapped += line + "\n";
+      continue;
+    }
+    std::string before = line.substr(0, indent);
+    for (const std::string& part : wrapped_text(line.substr(indent), columns - indent)) {
+      wrapped += before + part + "\n";
+      before = std::string(indent, ' ');
+    }
+  }
+  return wrapped;
+}
+
+int print_text(const std::string& text) {
+  return std::fputs(text.c_str(), stdout) < 0 ? schema::exit_code(schema::ErrorKind::cannot_write) : 0;
+}
+
+int print_parse_error(const CLI::App& app, const CLI::ParseError& error, Words words, bool json) {
+  if (dynamic_cast<const CLI::CallForHelp*>(&error) != nullptr) return print_text(wrapped_help(app.help()));
+  if (error.get_exit_code() == 0) return app.exit(error);  // --version arrives here too
+  const CLI::App* verb = &app;
+  std::string name;
+  for (auto parsed = app.get_subcommands(); !parsed.empty(); parsed = verb->get_subcommands()) {
+    verb = parsed.front();
+    name += verb->get_name() + " ";
+  }
+  return print_error({schema::ErrorKind::usage, fault_of(app, *verb, error, words), "",
                       fmt::format("see 'tactograph {}--help'", name)},
                      json);
 }
@@ -156,7 +251,7 @@ void describe(CLI::App& app, Topics topics) {
                          fmt::join(topic_names(topics), ", "), kFooter));
   app.set_version_flag("--version", std::string(kCreator));
   app.require_subcommand(1);
-  app.get_formatter()->column_width(34);
+  app.get_formatter()->column_width(kHelpColumn);
   app.option_defaults()->always_capture_default();
 }
 
@@ -173,23 +268,22 @@ bool is_unknown_verb(Verbs verbs, std::string_view word) {
   return !word.starts_with('-') && std::ranges::find(names, word) == names.end();
 }
 
-int refuse_verb(Verbs verbs, const std::string& word, bool json) {
-  const auto names = verb_names(verbs);
-  return print_error({schema::ErrorKind::usage,
-                      fmt::format("there is no verb '{}'{}", word, schema::did_you_mean(word, names)), "",
-                      fmt::format("the verbs are: {}", fmt::join(names, ", "))},
+int refuse_verb(Verbs verbs, const std::string& what, bool json) {
+  return print_error({schema::ErrorKind::usage, what, "",
+                      fmt::format("the verbs are: {}; 'tactograph help' describes them",
+                                  fmt::join(verb_names(verbs), ", "))},
                      json);
-}
-
-int print_text(const std::string& text) {
-  return std::fputs(text.c_str(), stdout) < 0 ? schema::exit_code(schema::ErrorKind::cannot_write) : 0;
 }
 
 // Help of a verb or a topic, or, without a word, of everything.
 int print_help(const CLI::App& app, const std::string& word, Topics topics, bool json) {
-  if (word.empty()) return print_text(app.help() + "\nTopics of 'tactograph help':\n" + topics_text(topics));
+  // app.help() would be that of the verb that was parsed, of `help`.
+  if (word.empty())
+    return print_text(
+        wrapped_help(app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal) +
+                     "\nTopics of 'tactograph help':\n" + topics_text(topics)));
   for (const CLI::App* verb : app.get_subcommands({}))
-    if (verb->get_name() == word) return print_text(verb->help(app.get_name()));
+    if (verb->get_name() == word) return print_text(wrapped_help(verb->help(app.get_name())));
   if (const std::string text = topic_text(word, topics); !text.empty()) return print_text(text);
   auto known = topic_names(topics);
   const std::string listed = fmt::format("the topics are: {}, and each verb", fmt::join(known, ", "));
@@ -221,7 +315,12 @@ int run_command(std::span<const VerbGroup> groups, int argc, const char* const* 
   std::vector<const Verb*> verbs;
   for (const VerbGroup& group : groups) verbs.insert(verbs.end(), group.verbs.begin(), group.verbs.end());
   const bool json = asks_for_json(argc, argv);
-  if (argc > 1 && is_unknown_verb(verbs, argv[1])) return refuse_verb(verbs, argv[1], json);
+  if (argc < 2) return refuse_verb(verbs, "a verb is missing", json);
+  if (is_unknown_verb(verbs, argv[1]))
+    return refuse_verb(
+        verbs,
+        fmt::format("there is no verb '{}'{}", argv[1], schema::did_you_mean(argv[1], verb_names(verbs))),
+        json);
   CLI::App app(
       "Records how a surface pulls on a finger, turns it into force against position, and plays it back.",
       "tactograph");
@@ -251,7 +350,7 @@ int run_command(std::span<const VerbGroup> groups, int argc, const char* const* 
     for (const auto& entry : entries)
       if (entry->app->parsed()) return act(*entry);
   } catch (const CLI::ParseError& error) {
-    return print_parse_error(app, error, json);
+    return print_parse_error(app, error, {argv, static_cast<std::size_t>(argc)}, json);
   } catch (const std::exception& error) {
     return print_error({schema::ErrorKind::internal, error.what(), "internal error", "please report it"},
                        json);

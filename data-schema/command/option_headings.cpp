@@ -22,6 +22,7 @@ const UsualOptions kUsualOptions[] = {
     {"spatial", {"output", "list", "stroke", "from", "to", "band", "grid", "average"}},
     {"spectrogram",
      {"output", "window", "resolution", "min-frequency", "max-frequency", "formants", "dynamic-range"}},
+    {"formants", {"output", "force", "prominence", "go-on", "shortest", "bridge", "window", "max-frequency"}},
     {"sheet",
      {"output", "title", "columns", "formants", "window", "min-frequency", "max-frequency", "dynamic-range"}},
     {"render", {"finger-path", "output", "transducer", "device", "gain", "rate", "at", "ends"}},
@@ -30,6 +31,9 @@ const UsualOptions kUsualOptions[] = {
     {"play", {"device", "output", "transducer", "time", "gain", "at", "ends", "finger-path"}},
     {"ctl", {"socket", "at", "gain", "ends", "fade", "save", "time"}},
     {"compare", {"a", "b", "output", "tolerance", "align", "max-shift", "stroke-a", "stroke-b"}},
+    {"design", {"device", "hand", "rate", "speed", "output", "table", "z-width", "force"}},
+    {"fidelity", {"device", "transducer", "speed", "time", "gain", "output", "force", "rate"}},
+    {"trade", {"output", "transducer", "stroke", "force", "calibrate"}},
     {"identify",
      {"device", "output", "start-from", "method", "picture", "results", "second-mode", "replace"}},
 };

@@ -1,7 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/command/output_options.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
 namespace tacto::cli {
+
+schema::Result<void> check_ending(const std::string& output, std::initializer_list<std::string_view> endings,
+                                  const std::string& remedy) {
+  constexpr std::string_view kEndings[] = {".csv", ".html",    ".json", ".nc",  ".pdf",
+                                           ".png", ".session", ".svg",  ".txt", ".wav"};
+  const std::string ending = std::filesystem::path(output).extension().string();
+  if (std::ranges::find(endings, ending) != endings.end() ||
+      std::ranges::find(kEndings, ending) == std::end(kEndings))
+    return {};
+  return schema::fail(schema::ErrorKind::usage, fmt::format("no file of this kind ends in '{}'", ending),
+                      output, remedy);
+}
 
 void declare_force(CLI::App& app, schema::Existing& existing) {
   existing = schema::Existing::keep;

@@ -19,9 +19,12 @@ std::string place(const std::string& where, const std::string& pointer) {
   return pointer.empty() ? where : where + "#" + pointer;
 }
 
-Result<std::string> kind_in(const Json& body, const std::string& where) {
+// `expected`: the kind that the file should have; may be empty.
+Result<std::string> kind_in(const Json& body, const std::string& where, std::string_view expected = "") {
   const bool named = body.is_object() && body.contains("kind") && body["kind"].is_string();
-  if (!named) return fail(ErrorKind::malformed, "JSON without a `kind`: not a file of tactograph", where);
+  if (!named)
+    return fail(ErrorKind::malformed, "JSON without a `kind`: not a file of tactograph", where,
+                expected.empty() ? "" : fmt::format(R"(add "kind": "{}", "version": "1.0")", expected));
   return body["kind"].get<std::string>();
 }
 
@@ -31,7 +34,7 @@ Result<std::string> newer_version_in(const Json& body, const std::string& where)
 }
 
 Result<Document> checked(Json body, const std::string& where, std::string_view kind) {
-  const auto found = kind_in(body, where);
+  const auto found = kind_in(body, where, kind);
   TACTO_TRY(found);
   if (*found != kind)
     return fail(ErrorKind::malformed, fmt::format("its kind is '{}', not '{}'", *found, kind),

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
 #include "data-schema/files/files.hpp"
 #include "data-schema/json/json_document.hpp"
@@ -116,6 +117,9 @@ Result<std::vector<StoredFile>> stored_files(const std::string& name) {
   if (is_file(name + ".events.jsonl"))
     return fail(ErrorKind::unsuitable, "is not closed, or is still being recorded", name,
                 fmt::format("'tactograph recover {}' makes a recording of the existing files", name));
+  std::error_code ignored;
+  if (std::filesystem::is_directory(name, ignored))
+    return fail(ErrorKind::not_found, "is a folder, not a file", name, "name a file in it");
   return fail(ErrorKind::not_found, "there is no such file", name,
               "give the full name of a file, or its stem");
 }

@@ -19,6 +19,8 @@ tl::unexpected<Error> absent_recording(const std::string& name, const std::strin
   if (is_file(stem + ".events.jsonl"))
     return fail(ErrorKind::unsuitable, "is not closed, or is still being recorded", name,
                 fmt::format("'tactograph recover {}' makes a recording of the existing files", stem));
+  if (is_file(stem + ".texture.json"))
+    return fail(ErrorKind::unsuitable, "is a texture already, not a recording", stem + ".texture.json");
   const std::string samples = is_file(name) ? name : stem + ".wav";
   if (!is_file(samples))
     return fail(ErrorKind::not_found, "there is no such recording", name,

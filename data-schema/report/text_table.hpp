@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table as lines of text within a given width. Internal to this folder.
+// A table as lines of text within a given width.
 #pragma once
 
 #include <cstddef>

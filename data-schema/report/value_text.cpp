@@ -72,8 +72,31 @@ std::string label_of(std::string_view key) {
   return label;
 }
 
-std::string_view unit_of(const Suffix& suffix) {
-  return suffix.dimension ? schema::si_symbol(*suffix.dimension) : suffix.unit;
+// What tells two labels apart. Not the SI unit: the value may be printed in another one (mm, ms).
+std::string_view difference_of(const Suffix& suffix) {
+  if (!suffix.dimension) return suffix.unit;
+  switch (*suffix.dimension) {
+    case Dimension::length:
+      return "length";
+    case Dimension::time:
+      return "time";
+    case Dimension::frequency:
+      return "frequency";
+    case Dimension::spatial_frequency:
+      return "spatial frequency";
+    case Dimension::speed:
+      return "speed";
+    case Dimension::acceleration:
+      return "acceleration";
+    case Dimension::force:
+      return "force";
+    case Dimension::voltage:
+      return "voltage";
+    case Dimension::compliance:
+      return "displacement per force";
+    default:
+      return schema::si_symbol(*suffix.dimension);
+  }
 }
 
 }  // namespace
@@ -84,7 +107,7 @@ std::vector<std::string> labels_of(const std::vector<std::string>& keys) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const Suffix* suffix = suffix_of(keys[i]);
     const bool alone = suffix == nullptr || std::ranges::count(plain, plain[i]) == 1;
-    labels.push_back(alone ? plain[i] : fmt::format("{} ({})", plain[i], unit_of(*suffix)));
+    labels.push_back(alone ? plain[i] : fmt::format("{} ({})", plain[i], difference_of(*suffix)));
   }
   return labels;
 }

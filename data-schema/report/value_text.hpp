@@ -11,7 +11,7 @@
 namespace tacto::cli {
 
 /// The keys without the endings of their units: "force_rms_n" is "force rms". Keys that would be equal get
-/// the unit, too: "from_s" and "from_m" are "from (s)" and "from (m)".
+/// the quantity, too: "from_s" and "from_m" are "from (time)" and "from (length)".
 std::vector<std::string> labels_of(const std::vector<std::string>& keys);
 
 /// The value with its unit and four digits. Empty for a list of reports.

@@ -108,6 +108,7 @@ void warn_grouped(std::span<const std::string> sentences) {
 }
 
 std::vector<schema::Error> by_cause(std::span<const schema::Error> errors) {
+  constexpr std::size_t kPlacesShown = 5;
   struct Cause {
     schema::Error first;
     std::vector<std::string> places;
@@ -122,8 +123,11 @@ std::vector<schema::Error> by_cause(std::span<const schema::Error> errors) {
   }
   std::vector<schema::Error> all;
   for (Cause& cause : causes) {
-    if (cause.places.size() > 1)
-      cause.first.where = fmt::format("{} files ({})", cause.places.size(), fmt::join(cause.places, ", "));
+    const std::size_t count = cause.places.size(), shown = std::min(count, kPlacesShown);
+    const std::string more = count > shown ? fmt::format(" and {} more", count - shown) : "";
+    if (count > 1)
+      cause.first.where =
+          fmt::format("{} files ({}{})", count, fmt::join(std::span(cause.places).first(shown), ", "), more);
     all.push_back(std::move(cause.first));
   }
   return all;

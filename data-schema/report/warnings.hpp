@@ -33,7 +33,8 @@ void warn_grouped(std::span<const Warning> warnings);
 /// printed.
 void warn_grouped(std::span<const std::string> sentences);
 
-/// Errors that differ only in place and numbers become one, the first, with all their places.
+/// Errors that differ only in place and numbers become one, the first, with the number of places and
+/// the first five of them.
 std::vector<schema::Error> by_cause(std::span<const schema::Error> errors);
 
 /// All warnings of this run, each of them, in order: what --json lists.

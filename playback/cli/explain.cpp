@@ -214,8 +214,9 @@ cli::Action declare_explain(CLI::App& app) {
       ->check(cli::from_one());
   declare_ends(app, o.program.ends);
   declare_choices(app, o.program.choices);
-  app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
-               "Do not invert the hysteresis of the transducer's file");
+  app.add_flag_callback(
+      "--keep-hysteresis", [&o] { o.prepare.undo_hysteresis = false; },
+      "Do not invert the hysteresis of the transducer's file");
   declare_tick_budget(app, o.budget);
   return [options, &app]() -> Result<Report> {
     const ExplainOptions& asked = *options;

@@ -67,11 +67,12 @@ void declare_loop(CLI::App& app, PlayVerbOptions& verb) {
       cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Tick rate of the drive");
   cli::add_choice<bool>(app, "--loop", o.loop_here, {{"device", false}, {"host", true}},
                         "What closes the loop: the device, or the real-time thread of this computer (host)");
-  app.add_flag(
-      "!--no-look-ahead", o.prepare.look_ahead,
+  app.add_flag_callback(
+      "--no-look-ahead", [&o] { o.prepare.look_ahead = false; },
       "Read the texture at the finger's present position, without compensation of the inverse's delay");
-  app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
-               "Do not invert the hysteresis of the transducer's file");
+  app.add_flag_callback(
+      "--keep-hysteresis", [&o] { o.prepare.undo_hysteresis = false; },
+      "Do not invert the hysteresis of the transducer's file");
   cli::add_quantity(app, "--onset", o.prepare.onset_s, Dimension::time, "Time in which the drive rises");
 }
 

@@ -134,8 +134,9 @@ void add_model(CLI::App& app, RenderVerbOptions& verb) {
   verb.named.hold =
       cli::add_choice<Hold>(app, "--hold", o.hold, {{"none", Hold::none}, {"zero-order", Hold::zero_order}},
                             "Whether the converter holds each sample until the next, inverted as well");
-  app.add_flag("!--keep-hysteresis", o.undo_hysteresis,
-               "Do not invert the hysteresis of the transducer's file (only --engine kernel inverts it)");
+  app.add_flag_callback(
+      "--keep-hysteresis", [&o] { o.undo_hysteresis = false; },
+      "Do not invert the hysteresis of the transducer's file (only --engine kernel inverts it)");
   verb.engine = cli::add_choice<Engine>(
       app, "--engine", o.engine, {{"reference", Engine::reference}, {"kernel", Engine::kernel}},
       "Engine that computes the drive: the exact reference, or the tick kernel as it runs in real time");
@@ -186,7 +187,7 @@ void add_way(Report& report, const Rendering& r) {
       .add("onset_s", r.onset_s)
       .add("max_speed_mps", r.max_speed_mps)
       .add("highest_passed_at_max_speed_per_m", r.highest_passed_per_m)
-      .add("texture_highest_per_m", r.texture_highest_per_m)
+      .add("highest_of_texture_grid_per_m", r.texture_highest_per_m)
       .add("reading_rate_hz", r.reading_rate_hz);
 }
 

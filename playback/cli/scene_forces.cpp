@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "data-schema/base/unknown_note.hpp"
+#include "data-schema/command/output_options.hpp"
 #include "data-schema/device/device.hpp"
 #include "data-schema/device/hand.hpp"
 #include "data-schema/files/files.hpp"
@@ -176,9 +177,11 @@ Report row_of_layer(const schema::Patch& patch, std::size_t index, const schema:
     if (gain > 0) row.add(key, device.peak_force_n / gain);
   };
   layer.visit(
-      [&](const schema::SpringLayer& spring) { at_limit("peak_force_at_m", spring.stiffness_n_per_m.value); },
+      [&](const schema::SpringLayer& spring) {
+        at_limit("force_limit_at_displacement_m", spring.stiffness_n_per_m.value);
+      },
       [&](const schema::DamperLayer& damper) {
-        at_limit("peak_force_at_mps", damper.damping_n_s_per_m.value);
+        at_limit("force_limit_at_speed_mps", damper.damping_n_s_per_m.value);
       },
       [](const auto& /*other*/) {});
   return row;
@@ -230,6 +233,7 @@ Result<void> check_force_options(const CLI::App& app, std::initializer_list<std:
 }
 
 Result<Report> render_forces(const ForceRendering& asked) {
+  TACTO_TRY(cli::check_ending(asked.output, {".csv"}, "the forces are a CSV table: NAME.csv"));
   TACTO_TRY(schema::check_table_free(asked.output, asked.existing, is_force_table));
   const auto on = scene_on_device(asked.scene, asked.device, asked.rate_hz);
   TACTO_TRY(on);

@@ -33,7 +33,9 @@ constexpr double kStepS = 2e-3;
 constexpr const char* kHelp =
     "tactographd --config FILE\n\nPlays textures on a device, controlled by `tactograph ctl` or any client "
     "of its socket.\nFILE is JSON: device, transducer, socket, sessions ... (defined by "
-    "data-schema/schemas/daemon.schema.json).\nSIGTERM, SIGHUP (the terminal was closed) and Ctrl-C ramp the "
+    "data-schema/schemas/daemon.schema.json).\nFor the emulated device: "
+    R"({"kind": "daemon", "version": "1.0", "device": "sim:", "socket": "control"})"
+    "\nSIGTERM, SIGHUP (the terminal was closed) and Ctrl-C ramp the "
     "drive to zero and end the daemon.\nMessages go to stderr; systemd stores them in its journal.\n";
 
 volatile std::sig_atomic_t stop_asked = 0;

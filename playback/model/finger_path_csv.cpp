@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -87,10 +88,19 @@ struct Table {
   }
 };
 
-// The column of a quantity and its unit: "position_mm", "position (mm)" or "position / mm".
+// "Normal force" as "normal_force".
+std::string plain_name(std::string name) {
+  std::ranges::transform(name, name.begin(),
+                         [](unsigned char c) { return c == ' ' ? '_' : static_cast<char>(std::tolower(c)); });
+  return name;
+}
+
+// The column of a quantity and its unit: "position_mm", "Position (mm)" or "position / mm".
 Result<void> find_column(Table& table, std::size_t which) {
   const auto& [quantity, dimension] = table.columns.all[which];
-  const auto is_it = [&](std::string_view name) { return schema::split_unit(name).name == quantity; };
+  const auto is_it = [&](std::string_view name) {
+    return plain_name(schema::split_unit(name).name) == quantity;
+  };
   const auto found = std::ranges::find_if(table.header, is_it);
   const std::string line = table.name + ", line 1";
   table.column.emplace_back();

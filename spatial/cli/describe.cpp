@@ -88,18 +88,19 @@ Report report_of(const schema::DescriptionFile& file, const std::string& path) {
 }
 
 Result<Report> run_describe(const DescribeOptions& options) {
-  const TablePath where = table_path(options.output, "descriptions");
-  if (!options.output.empty()) TACTO_TRY(check_table(where, options.existing));
+  const auto where = table_path(options.output, "descriptions");
+  TACTO_TRY(where);
+  if (!options.output.empty()) TACTO_TRY(check_table(*where, options.existing));
   const auto files = open_textures(options.names);
   TACTO_TRY(files);
   const auto all = described(*files, options.description);
   TACTO_TRY(all);
   if (options.output.empty()) return report_of(*all, {});
   const auto written = write_table(
-      where, options.existing, [&] { return schema::descriptions_json(*all); },
+      *where, options.existing, [&] { return schema::descriptions_json(*all); },
       [&] { return schema::descriptions_csv(*all); });
   TACTO_TRY(written);
-  return report_of(*all, where.path);
+  return report_of(*all, where->path);
 }
 
 cli::Action declare_describe(CLI::App& app) {

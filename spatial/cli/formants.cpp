@@ -80,18 +80,19 @@ Report report_of(const schema::FormantFile& file, const std::string& path) {
 }
 
 Result<Report> run_formants(const FormantsOptions& options) {
-  const TablePath where = table_path(options.output, "formants");
-  if (!options.output.empty()) TACTO_TRY(check_table(where, options.existing));
+  const auto where = table_path(options.output, "formants");
+  TACTO_TRY(where);
+  if (!options.output.empty()) TACTO_TRY(check_table(*where, options.existing));
   const auto files = open_textures(options.names);
   TACTO_TRY(files);
   const auto formants = found(*files, options);
   TACTO_TRY(formants);
   if (options.output.empty()) return report_of(*formants, {});
   const auto written = write_table(
-      where, options.existing, [&] { return schema::formants_json(*formants); },
+      *where, options.existing, [&] { return schema::formants_json(*formants); },
       [&] { return schema::formants_csv(*formants); });
   TACTO_TRY(written);
-  return report_of(*formants, where.path);
+  return report_of(*formants, where->path);
 }
 
 cli::Action declare_formants(CLI::App& app) {

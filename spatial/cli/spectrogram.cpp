@@ -143,7 +143,7 @@ Report explained(const ResolutionChoice& taken, const std::vector<ResolutionChoi
                        .add("taken", choice.resolution == taken.resolution));
   return Report()
       .add("by_table", found.origin)
-      .add("counts",
+      .add("error_includes",
            "|X - exact X| re the largest |X|; window, hop and padding define the result and are not chosen")
       .add("tried", std::move(rows));
 }

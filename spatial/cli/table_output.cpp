@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "data-schema/command/output_options.hpp"
 #include "data-schema/kinds/file_kind.hpp"
 
 namespace tacto::spatial {
@@ -32,10 +33,11 @@ schema::Result<void> check_kind(const std::string& path) {
 
 }  // namespace
 
-TablePath table_path(const std::string& output, const std::string& kind) {
-  if (output.ends_with(".csv")) return {output, true};
-  if (output.ends_with(".json")) return {output, false};
-  return {output + "." + kind + ".json", false};
+schema::Result<TablePath> table_path(const std::string& output, const std::string& kind) {
+  TACTO_TRY(cli::check_ending(output, {".csv", ".json"}, "use .csv, .json, or a name without an ending"));
+  if (output.ends_with(".csv")) return TablePath{output, true};
+  if (output.ends_with(".json")) return TablePath{output, false};
+  return TablePath{output + "." + kind + ".json", false};
 }
 
 schema::Result<void> check_table(const TablePath& where, schema::Existing existing) {

@@ -16,7 +16,8 @@ struct TablePath {
   bool csv = false;
 };
 
-TablePath table_path(const std::string& output, const std::string& kind);
+/// Errors: usage, if the path ends as that of another kind of file.
+schema::Result<TablePath> table_path(const std::string& output, const std::string& kind);
 
 /// Checks before any work is done whether the table may be written there. Errors: usage, if a file of that
 /// name must not be replaced, or is a recording, a texture or another file that is no such table.

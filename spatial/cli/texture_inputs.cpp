@@ -7,6 +7,7 @@
 #include <charconv>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/verb.hpp"
@@ -59,6 +60,17 @@ std::vector<StoredFile> numbered_textures(const std::string& name) {
   return files;
 }
 
+// By name.
+std::vector<StoredFile> textures_in(const std::string& folder) {
+  std::set<std::string> paths;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().string().ends_with(".texture.json")) paths.insert(entry.path().string());
+  std::vector<StoredFile> files;
+  for (const std::string& path : paths) files.push_back({FileKind::texture, path});
+  return files;
+}
+
 std::vector<StoredFile> of_kind(const std::vector<StoredFile>& files, FileKind kind) {
   std::vector<StoredFile> some;
   std::ranges::copy_if(files, std::back_inserter(some),
@@ -99,6 +111,14 @@ Result<void> TextureInputs::add(const std::string& name, bool alone) {
       for (const StoredFile& file : numbered) add(file);
       return {};
     }
+  if (!files && fs::is_directory(name, ignored)) {
+    const auto inside = textures_in(name);
+    for (const StoredFile& file : inside) add(file);
+    if (inside.empty())
+      return schema::fail(ErrorKind::unsuitable, "contains no texture", name,
+                          "'tactograph spatial' makes textures from recordings");
+    return {};
+  }
   TACTO_TRY(files);
   if (const auto recordings = of_kind(*files, FileKind::recording); !recordings.empty()) {
     add(recordings.front());

@@ -18,7 +18,8 @@ namespace tacto::spatial {
 
 /// What a name on the command line may refer to, for the help.
 inline constexpr const char* kTextureInputs =
-    "Textures, or recordings (each stroke becomes a texture), by stem or file. If there is no texture NAME, "
+    "Textures, recordings (each stroke becomes a texture) or folders of textures, by stem or file. If there "
+    "is no texture NAME, "
     "NAME means NAME-01, NAME-02 ...";
 
 /// `path` is for messages, `name` for titles and reports. `stored`: the path is that of the sidecar, not a

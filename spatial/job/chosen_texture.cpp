@@ -65,14 +65,14 @@ Result<BandShare> share_of(const TextureOptions& target, const TouchRecord& reco
 void explain(Report& report, const TextureChoices& choices, const TextureNeed& need, double lowest_hz,
              const BandShare& share, const schema::FoundTradeTable& found) {
   report.add("by_table", found.origin);
-  report.add("counts",
+  report.add("error_includes",
              fmt::format("error of method and grid up to {:g} Hz, interpolated between the points of the "
                          "grid, where the speed is {} or more",
                          need.highest_hz,
                          schema::for_people(kPromisedSpeed * need.slowest_mps, schema::Dimension::speed)));
-  report.add("band_pass_took_percent", 100 * share.whole)
-      .add("band_pass_took_inside_percent", 100 * share.inside);
-  report.add("counts_not", excluded_text(lowest_hz, share));
+  report.add("removed_by_filter_percent", 100 * share.whole)
+      .add("removed_by_filter_inside_percent", 100 * share.inside);
+  report.add("error_does_not_include", excluded_text(lowest_hz, share));
   std::vector<Report> rows;
   for (const TextureChoice& choice : choices.tried) rows.push_back(row_of(choice, choices.taken));
   report.add("tried", std::move(rows));

@@ -120,8 +120,18 @@ class Batch {
   cli::Progress progress_{"recordings"};
 };
 
+// Whether a recording has no texture because of its data (a finger at rest, say), and not because of a file.
+bool is_unsuitable(const SpatialOutcome& outcome) {
+  return !outcome.report && !outcome.too_short.nothing_left &&
+         outcome.report.error().kind == ErrorKind::unsuitable;
+}
+
+bool has_failed(const SpatialOutcome& outcome) {
+  return !outcome.report && !outcome.too_short.nothing_left && !is_unsuitable(outcome);
+}
+
 Report report_of(const std::vector<SpatialOutcome>& outcomes, const std::vector<std::string>& skipped) {
-  std::vector<Report> made;
+  std::vector<Report> made, unsuitable;
   std::vector<std::string> failed;
   std::vector<std::string> too_short;
   std::optional<ErrorKind> fault;
@@ -131,15 +141,19 @@ Report report_of(const std::vector<SpatialOutcome>& outcomes, const std::vector<
       made.push_back(*outcome.report);
       continue;
     }
-    if (outcome.too_short.nothing_left) continue;
-    failed.push_back(schema::message(outcome.report.error()));
-    fault = fault.value_or(outcome.report.error().kind);
+    const schema::Error& error = outcome.report.error();
+    if (is_unsuitable(outcome))
+      unsuitable.push_back(Report().add("recording", error.where).add("because", error.what));
+    if (!has_failed(outcome)) continue;
+    failed.push_back(schema::message(error));
+    fault = fault.value_or(error.kind);
   }
   Report report;
   report.add("done", made.size());
   report.add("recordings", std::move(made));
   if (!skipped.empty()) report.add("skipped", skipped);
   if (!too_short.empty()) report.add("too_short", std::move(too_short));
+  if (!unsuitable.empty()) report.add("unsuitable", std::move(unsuitable));
   if (fault) report.add("failed", std::move(failed)).ends_with(*fault);
   return report;
 }
@@ -170,15 +184,21 @@ Result<Report> spatial_batch(const SpatialOptions& options) {
     warnings.insert(warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
   cli::warn_grouped(warnings);
   std::vector<TooShort> too_short;
-  std::vector<schema::Error> failures;
+  std::vector<schema::Error> unsuitable, failures;
   for (const SpatialOutcome& outcome : outcomes) {
     too_short.push_back(outcome.too_short);
-    if (!outcome.report && !outcome.too_short.nothing_left) failures.push_back(outcome.report.error());
+    if (is_unsuitable(outcome)) unsuitable.push_back(outcome.report.error());
+    if (has_failed(outcome)) failures.push_back(outcome.report.error());
   }
+  auto reasons = cli::by_cause(unsuitable);
   const auto said = too_short_sentence(too_short);
   if (std::ranges::all_of(too_short, &TooShort::nothing_left))
     return schema::fail(ErrorKind::unsuitable, *said);
   if (said) cli::warn(*said);
+  const bool none = std::ranges::none_of(outcomes, [](const auto& each) { return each.report.has_value(); });
+  for (const schema::Error& error : std::span(reasons).subspan(none && failures.empty() ? 1 : 0))
+    cli::warn("skipped: " + schema::message(error));
+  if (none && failures.empty()) return tl::unexpected(reasons.front());
   for (const schema::Error& error : cli::by_cause(failures)) cli::warn("failed: " + schema::message(error));
   return report_of(outcomes, files.skipped);
 }

@@ -221,7 +221,7 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
     if (!texture && (groups.size() == 1 || texture.error().kind != ErrorKind::unsuitable))
       return schema::forward_error(texture);
     if (!texture) {
-      warn(fmt::format("{}: no average: {}", group.stem, schema::message(texture.error())));
+      warnings_.push_back({group.stem, "no average: " + schema::message(texture.error()), "no average"});
       continue;
     }
     TACTO_TRY(schema::add_texture(pending, group.stem, *texture));

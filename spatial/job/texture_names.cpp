@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 
+#include "data-schema/command/output_options.hpp"
 #include "data-schema/files/files.hpp"
 
 namespace tacto::spatial {
@@ -47,6 +48,10 @@ bool names_one_texture(const std::string& output) {
 
 schema::Result<std::vector<std::string>> texture_stems(const std::vector<std::string>& recordings,
                                                        const std::string& output) {
+  if (!is_folder(output))
+    TACTO_TRY(
+        cli::check_ending(schema::stem_of(output, ".texture"), {},
+                          "give the name without it: a texture is NAME.texture.wav and NAME.texture.json"));
   std::vector<std::string> stems;
   std::map<std::string, std::string> named, taken;
   for (const std::string& recording : recordings) {
@@ -60,7 +65,10 @@ schema::Result<std::vector<std::string>> texture_stems(const std::vector<std::st
       return schema::fail(
           schema::ErrorKind::usage,
           fmt::format("the textures of several recordings would be named {}", stems.back()), {},
-          "give -o a folder, or a name with {}, which is replaced by the name of the recording");
+          fmt::format(
+              "-o {}/ writes them into a folder of that name; in a name, {{}} stands for the name of the "
+              "recording",
+              output));
   }
   return stems;
 }

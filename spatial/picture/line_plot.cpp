@@ -101,7 +101,10 @@ Box plot_box(const LineFigure& figure, const PlotHead& head) {
 
 Axis x_axis_of(const LineFigure& figure, const Extent& extent, const Box& box) {
   Axis axis{figure.x_scale, extent.low, extent.high, 0, 0};
-  if (!(extent.high - extent.low > 1e-12 * std::abs(extent.high))) axis = roomy_axis(extent.low, extent.high);
+  const bool one_place = !(extent.high - extent.low > 1e-12 * std::abs(extent.high));
+  const bool has_marks = std::ranges::any_of(figure.series, &Series::marks);  // not on the frame
+  if (one_place || (has_marks && figure.x_scale == AxisScale::linear))
+    axis = roomy_axis(extent.low, extent.high);
   axis.at_low = box.x;
   axis.at_high = box.right();
   return axis;

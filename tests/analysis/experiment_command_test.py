@@ -3,6 +3,7 @@
 """`tactograph experiment fit` as a user runs it: published data, estimates against SciPy's, other people's tables, and
 bad input."""
 import csv
+import json
 import pathlib
 
 import numpy as np
@@ -76,6 +77,9 @@ def a_threshold_with_guessing():
     np.testing.assert_allclose([fit["threshold"], fit["width"]], [0.00464485, 0.00468384], rtol=1e-2)
     np.testing.assert_allclose([fit["threshold_low"], fit["threshold_high"]], [0.00428294, 0.00496425], rtol=1.5e-2)
     assert "jnd" not in fit and fit["overdispersion_high"] > 0
+    # Two alternatives: without --guess the model is wrong, and the option is named; of the other table it is not.
+    assert "--guess 50%" in tacto.run("experiment", "fit", PUBLISHED / "psignifit-example.csv")[0]
+    assert "--guess 50%" not in tacto.run("experiment", "fit", SPEED, *BY)[0]
     weibull = tacto.run_json("experiment", "fit", PUBLISHED / "psignifit-example.csv", "--guess", "50%", "--function", "weibull")["fits"][0]
     assert weibull["exponent_low"] < weibull["exponent"] < weibull["exponent_high"]
     np.testing.assert_allclose(weibull["threshold"], fit["threshold"], rtol=0.02)
@@ -96,9 +100,11 @@ def pages_pictures_results():
     printed, _ = tacto.run("experiment", "fit", SPEED, *BY, "-o", "speed.html", "-o", "speed.results.json")
     page = pathlib.Path("speed.html").read_text()
     assert page.count("data:image/svg+xml") == 9 and "S9" in page and "speed.html" in printed
+    curves = [curve["name"] for picture in json.loads(pathlib.Path("speed.results.json").read_text())["pictures"] for curve in picture["curves"]]
+    assert set(curves) == {"", "vibration_hz 0", "vibration_hz 32"}, curves
     assert tacto.run_json("info", "speed.results.json")["verb"] == "experiment fit"
     tacto.run("experiment", "fit", "--pairs", PUBLISHED / "baseball.csv", "-o", "teams.svg", "-o", "teams.html")
-    assert pathlib.Path("teams.svg").read_text().lstrip().startswith("<?xml")
+    assert pathlib.Path("teams.svg").read_text().lstrip().startswith("<?xml") and "Milwaukee" in pathlib.Path("teams.svg").read_text()
     tacto.run("experiment", "fit", "--pairs", PUBLISHED / "baseball.csv", "-o", "teams.svg", code=2)  # exists
     tacto.run("experiment", "fit", SPEED, *BY, "-o", "speed.svg", code=2)  # nine pictures
     assert not pathlib.Path("speed.svg").exists()

@@ -11,7 +11,7 @@ namespace {
 TEST(Html, ANumberAndItsUnitDoNotBreakApart) {
   EXPECT_EQ(escaped("2.8 um, 15 um/V at 2 1/mm"), "2.8&nbsp;\u00B5m, 15&nbsp;\u00B5m/V at 2&nbsp;1/mm");
   EXPECT_EQ(escaped("5 %; 3 strokes; take 2 mumble; 7 m"), "5&nbsp;%; 3 strokes; take 2 mumble; 7&nbsp;m");
-  EXPECT_EQ(escaped("um 4"), "um 4");
+  EXPECT_EQ(escaped("um 4; p 0.003; step 4"), "um 4; p&nbsp;0.003; step 4");
 }
 
 TEST(Html, TextCannotBecomeMarkup) {
@@ -28,7 +28,8 @@ TEST(Html, BytesThatAreNoTextAreReplaced) {
 
 TEST(Html, PicturesAreInside) {
   EXPECT_EQ(inline_svg("<svg/>", "a \"line\""),
-            "<img alt=\"a &quot;line&quot;\" src=\"data:image/svg+xml,%3Csvg/%3E\">\n");
+            "<div class=\"picture\"><img alt=\"a &quot;line&quot;\" "
+            "src=\"data:image/svg+xml,%3Csvg/%3E\"></div>\n");
   EXPECT_NE(inline_svg("<a b=\"#1\">50 %\u00b5</a>", "").find("%3Ca b=%22%231%22%3E50 %25%C2%B5%3C/a%3E"),
             std::string::npos);
 }
@@ -70,10 +71,18 @@ TEST(Html, LongTablesFoldAndLongWordsWrap) {
   const std::string table =
       html_table(std::vector<std::string>{std::string(60, 'x')}, {{"a", [](const auto& x) { return x; }}});
   EXPECT_NE(table.find("<td class=\"long text\""), std::string::npos);
-  // Long values wrap; a value outside of the screen would be hidden.
-  const std::string page = html_document("t", "");
-  EXPECT_EQ(page.find("nowrap"), std::string::npos);
-  EXPECT_EQ(page.find("overflow-x"), std::string::npos);
+  EXPECT_EQ(table.find("word"), std::string::npos);  // only short words do not wrap
+}
+
+// A sentence and a word in one column begin at one edge; a date is on one line.
+TEST(Html, AColumnIsAlignedAsAWhole) {
+  const std::vector<std::string> cells = {"2026-11-28", std::string(50, ' ') + "x"};
+  const std::string table = html_table(cells, {{"a", [](const auto& x) { return x; }}});
+  EXPECT_NE(table.find("<td class=\"word text\" data-label=\"a\">2026-11-28"), std::string::npos) << table;
+  EXPECT_EQ(count_of("text\"", table), 2U) << table;
+  const std::string uri = html_table(std::vector<std::string>{"sim:surface=C,speed=50mm/s,seed=1"},
+                                     {{"a", [](const auto& x) { return x; }}});
+  EXPECT_NE(uri.find("C,<wbr>speed=50mm/s,<wbr>seed"), std::string::npos) << uri;
 }
 
 // Each value is in the column of its header. The gain was once shown under "wanted".

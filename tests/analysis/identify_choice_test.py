@@ -40,7 +40,7 @@ def truth_of(mode_hz=None, cutoff_hz=None):
 
 def chosen(keys, model, truth, *options):
     said = tacto.run_json("identify", "-d", f"sim:tray_sensor=on{keys}", "-o", "bench", "--force", *options)
-    assert said["verdict"] == "fits" and said["model"] == model, (keys, said["verdict"], said["words"], said["tried"])
+    assert said["verdict"] == "fits" and said["model"] == model, (keys, said["verdict"], said["because"], said["tried"])
     rows = {row["parameter"]: row for row in said["parameters"]}
     assert rows.keys() == truth.keys(), rows
     for name, value in truth.items():

@@ -2,7 +2,11 @@
 // A project's page: if the pictures of one file cannot be drawn, only that file is reported as broken.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "analysis/report/project.hpp"
+#include "analysis/report/project_readers.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -26,6 +30,21 @@ TEST(ReportProject, LeavesOutWhatCannotBeDrawn) {
   const std::string page = project_page(project);
   EXPECT_NE(page.find("Drawn of study/b"), std::string::npos);
   EXPECT_NE(page.find("x and y differ in length"), std::string::npos);
+}
+
+// A twentieth of a recording at ten times the amplitude is an onset, not a spike: no gap, and no words in the
+// title.
+TEST(ReportProject, AnOnsetIsShownWhole) {
+  constexpr int kSamples = 20'000;
+  for (const int loud : {1, kSamples / 20}) {
+    Envelope envelope(kSamples);
+    for (int i = 0; i < kSamples; ++i) envelope.add(i, (i < loud ? 50 : 1) * std::cos(0.1 * i));
+    const schema::ResultPicture picture = envelope.picture("C-1.json", "time (s)", "force (mN)", "mN");
+    const bool whole =
+        std::ranges::all_of(picture.curves.front().y, [](double y) { return std::isfinite(y); });
+    EXPECT_EQ(whole, loud > 1);
+    EXPECT_EQ(picture.title == "C-1.json", loud > 1) << picture.title;
+  }
 }
 
 }  // namespace

@@ -93,6 +93,8 @@ TEST(Quantity, OneSymbolMayBeAMassAndAnAcceleration) {
 
 TEST(Quantity, WritesForPeopleWhatItReadsBack) {
   EXPECT_EQ(for_people(0.0123, Dimension::length), "12.3 mm");
+  EXPECT_EQ(for_people(0.99999e-6, Dimension::length), "1 um");
+  EXPECT_EQ(for_people(0.9998e-6, Dimension::length), "999.8 nm");
   EXPECT_EQ(for_people(15e3, Dimension::spatial_frequency), "15/mm");
   EXPECT_EQ(for_people(-0.25, Dimension::force), "-250 mN");
   for (const double si : {1e-9, 3.3e-5, 0.5, 12.0, 999.0}) {

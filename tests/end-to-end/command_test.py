@@ -25,9 +25,18 @@ def every_verb_helps_with_an_example():
 
 
 def words_that_are_no_verbs_are_refused():
-    for arguments in ([], ["carve"], ["info"], ["info", "--frob"]):
+    for arguments in ([], ["carve"], ["info"], ["info", "--frob"], ["experiment"], ["experiment", "fitt", "x.csv"]):
         _, err = tacto.run(*arguments, code=2)
         assert err.startswith("tactograph: "), err
+    for arguments in ([], ["carve"]):
+        said = tacto.run(*arguments, code=2)[1]
+        assert all(verb in said for verb in VERBS), said
+
+
+def no_default_is_shown_that_is_none():
+    for verb in re.findall(r"^  ([a-z-]+) ", tacto.run("--help")[0], re.M):
+        shown = tacto.run(verb, "--help")[0]
+        assert not re.search(r"=\[\]|\{false\}|\{true\}|POSITIVE=0|\[1 - \d+\]=0|=\S+( m)? REQUIRED", shown), (verb, shown)
 
 
 def what_is_missing_is_named():
@@ -35,6 +44,8 @@ def what_is_missing_is_named():
     assert "'--device'" in tacto.run("play", "oak", code=2)[1]
     assert "wiertlewski2011-as-printed" in tacto.run("render", "oak", "--finger-path", "p.csv", "-o", "d.wav", code=2)[1]
     said = tacto.run("play", "oak", "--devic", "sim:", code=2)[1]
+    for wrong in (["record", "-d"], ["record", "-device", "sim:"], ["play", "oak", "-device", "sim:"]):
+        assert "--device'" in tacto.run(*wrong, code=2)[1], wrong
     assert "'--devic'" in said and "'--device'" in said, said
     assert "--force" not in tacto.run("play", "--help")[0]  # it replaces nothing there, and is hidden
 
@@ -133,7 +144,7 @@ def completion_offers_values():
 def the_nearest_word_is_named():
     for arguments, word in ((["recrod"], "record"), (["spectogram"], "spectrogram"), (["record", "--tiem", "1s"], "--time"),
                             (["play", "x", "-d", "sim:", "--quality", "balnced"], "balanced"), (["ctl", "stpo"], "stop"),
-                            (["record", "-d", "sim:sureface=A", "-o", "a"], "surface"), (["help", "sin"], "sim")):
+                            (["record", "-d", "sim:sureface=A", "-o", "a"], "surface"), (["help", "sin"], "sim"), (["experiment", "fitt", "x.csv"], "fit")):
         _, err = tacto.run(*arguments, code=2)
         assert f"did you mean '{word}'?" in err and err.count("\n") == 1, (arguments, err)
     assert "did you mean" not in tacto.run("carve", code=2)[1]
@@ -161,11 +172,11 @@ def help_begins_with_the_usual_options():
             assert blocks[0].startswith("Usual options:") and len(blocks) > 1, (verb, text)
     assert "hysteresis" in tacto.run("help", "sim")[0] and "um" in tacto.run("help", "units")[0]
     assert tacto.run("help", "record")[0] == tacto.run("record", "--help")[0]
-    assert "sim" in tacto.run("help")[0]
+    assert "sim" in tacto.run("help")[0] and all(f"\n  {verb} " in tacto.run("help")[0] for verb in VERBS)
 
 
 if __name__ == "__main__":
-    for test in (every_verb_helps_with_an_example, words_that_are_no_verbs_are_refused, what_is_missing_is_named, the_next_command_can_be_run, json_goes_to_stdout_alone,
+    for test in (every_verb_helps_with_an_example, words_that_are_no_verbs_are_refused, no_default_is_shown_that_is_none, what_is_missing_is_named, the_next_command_can_be_run, json_goes_to_stdout_alone,
                  an_emulated_finger_strokes_for_the_time_asked,
                  a_full_output_is_an_error, closed_outputs_get_nothing, bash_completes,
                  completion_offers_values, the_nearest_word_is_named, errors_are_json_where_the_result_is,

@@ -28,7 +28,7 @@ def make_strokes():
     tacto.run("record", "-d", f"sim:surface=C,speed=50mm/s,seed=1,strokes={STROKES},length=20mm", "--time", "15s", "-o", "many")
 
 
-def on_a_terminal(rows, columns, *arguments):
+def on_a_terminal(rows, columns, *arguments, code=0):
     """The lines that the command prints on a terminal of that size; stderr goes elsewhere."""
     ours, its = pty.openpty()
     fcntl.ioctl(its, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
@@ -39,7 +39,7 @@ def on_a_terminal(rows, columns, *arguments):
         while piece := os.read(ours, 65536):
             shown += piece
     os.close(ours)
-    assert process.wait(timeout=600) == 0, shown
+    assert process.wait(timeout=600) == code, shown
     return shown.decode().replace("\r", "").splitlines()
 
 
@@ -74,6 +74,25 @@ def no_column_and_no_value_is_lost_where_a_table_is_too_wide():
     assert set(" ".join(table).split()) <= set(" ".join(blocks).split()), (table[:3], blocks[:20])
 
 
+def what_fails_is_not_hidden():
+    """The failure is the last check; a terminal of ten lines shows five rows at most."""
+    checked = ["doctor", "-d", "sim:finger=up", "-o", "no/such/folder"]
+    rows = tacto.run_json(*checked, code=7)["checks"]
+    failed = [row["state"] == "FAILS" for row in rows]
+    assert any(failed) and failed == sorted(failed, reverse=True), rows
+    shown = " ".join(on_a_terminal(10, 300, *checked, code=7))
+    assert "FAILS" in shown, shown
+
+
+def help_fits_a_terminal():
+    """Command lines of the examples stay whole, to be copied."""
+    for verb in ("import", "play", "spatial"):
+        lines = on_a_terminal(24, 90, verb, "--help")
+        assert max(len(line) for line in lines if not line.startswith("  tactograph ")) <= 90, lines
+        wide = tacto.run(verb, "--help")[0]
+        assert max(map(len, wide.splitlines())) > 90 and " ".join(wide.split()) == " ".join(" ".join(lines).split()), verb
+
+
 def like_warnings_are_one_line():
     make_strokes()
     asked = ["spatial", "many", "--grid", "200um", "-o", "coarse"]
@@ -86,5 +105,5 @@ def like_warnings_are_one_line():
 
 if __name__ == "__main__":
     for test in (a_pipe_has_all_and_a_terminal_what_fits, no_column_and_no_value_is_lost_where_a_table_is_too_wide,
-                 like_warnings_are_one_line):
+                 what_fails_is_not_hidden, help_fits_a_terminal, like_warnings_are_one_line):
         tacto.in_folder(test)

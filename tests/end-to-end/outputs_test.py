@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Existing outputs: every verb refuses them, --force replaces them, but never a recording's data."""
+import json
 import os
 import pathlib
 
@@ -49,6 +50,24 @@ def every_verb_keeps_what_is_there():
                         "--strokes", "k.csv")
     _, said = tacto.run("play", "oak", "-d", "sim:", "--force", code=USAGE)
     assert "--unfit-transducer" in said, said
+
+
+def no_file_is_named_as_another_kind():
+    """A table is no sound and no picture, whatever its name."""
+    make_inputs()
+    patch = {"name": "wall", "place": {"x_m": 0.0, "y_m": 0.0}, "size": {"width_m": 0.1, "height_m": 0.1},
+             "layers": [{"type": "spring", "stiffness_n_per_m": 100, "centre_x_m": 0, "centre_y_m": 0}]}
+    pathlib.Path("plane.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "patches": [patch]}))
+    pathlib.Path("hand.csv").write_text("time_s,x_mm,y_mm\n0,0,0\n1,10,0\n")
+    forces = ["render", "plane.scene.json", "--device", "sandpaper-1990", "--finger-path", "hand.csv", "-o"]
+    before = set(os.listdir())
+    for command in ([*forces, "f.wav"], ["formants", "oak", "-o", "f.png"], ["describe", "oak", "-o", "d.wav"],
+                    ["spatial", "rec", "-o", "foo.wav"], ["spatial", "rec", "-o", "foo.texture.png"]):
+        tacto.run(*command, code=USAGE)
+        assert set(os.listdir()) == before, command
+    tacto.run(*forces, "f.csv")
+    tacto.run("spatial", "rec", "--stroke", "1", "-o", "foo.texture.wav")
+    assert os.path.exists("foo.texture.json") and os.path.exists("f.csv")
 
 
 def recordings_are_never_replaced():
@@ -126,7 +145,7 @@ def one_file_by_two_spellings_is_named_twice():
 
 
 if __name__ == "__main__":
-    for test in (every_verb_keeps_what_is_there, recordings_are_never_replaced,
+    for test in (every_verb_keeps_what_is_there, no_file_is_named_as_another_kind, recordings_are_never_replaced,
                  missing_folders_are_made_and_none_is_left_empty, a_demo_replaces_only_demos,
                  one_file_by_two_spellings_is_named_twice):
         tacto.in_folder(test)

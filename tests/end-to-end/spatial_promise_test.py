@@ -102,13 +102,13 @@ def one_case(seed, asked_percent):
     said_is_true(chosen, stroke, t, force(x), exact[::FINER])
     # The error against the surface itself may exceed the request by the part that the band-pass removed; the report has
     # it.
-    assert surface_error <= chosen["band_pass_took_percent"] and f"{chosen['band_pass_took_percent']:.3g} %" in chosen["counts_not"], chosen
+    assert surface_error <= chosen["removed_by_filter_percent"] and f"{chosen['removed_by_filter_percent']:.3g} %" in chosen["error_does_not_include"], chosen
 
 
 def said_is_true(chosen, stroke, t, recorded, passed):
     first, last = np.searchsorted(t, [stroke["from_s"] - 1e-9, stroke["to_s"] + 1e-9])
     quarter = (last - first) // 4
-    for key, frames in (("band_pass_took_percent", slice(first, last)), ("band_pass_took_inside_percent", slice(first + quarter, last - quarter))):
+    for key, frames in (("removed_by_filter_percent", slice(first, last)), ("removed_by_filter_inside_percent", slice(first + quarter, last - quarter))):
         wanted = taken_percent(recorded[frames], passed[frames])
         # The record's filter uses only its samples, the reference also values between them: if the finger starts within
         # one sample, the difference is 1e-4 of the RMS.

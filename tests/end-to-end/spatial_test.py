@@ -13,7 +13,7 @@ import soundfile
 import tacto
 from measured import measured
 
-USAGE, UNSUITABLE = 2, 5
+USAGE, NOT_FOUND, MALFORMED, UNSUITABLE = 2, 3, 4, 5
 RATE_HZ = 10000
 
 
@@ -84,8 +84,9 @@ def many_recordings_go_on_past_one_that_fails():
     report = json.loads(done.stdout)
     assert report["done"] == 3 and [pathlib.Path(r["recording"]).name for r in report["recordings"]] == ["ash", "elm", "oak"]
     assert report["skipped"] == ["ash.texture.json (texture)"], report["skipped"]
-    assert len(report["failed"]) == 2 and "does not change" in report["failed"][0] and "torn.json" in report["failed"][1]
-    assert done.returncode == UNSUITABLE, done.returncode  # the exit code of the first failure
+    assert [row["recording"] for row in report["unsuitable"]] == ["still"], report
+    assert len(report["failed"]) == 1 and "torn.json" in report["failed"][0], report
+    assert done.returncode == MALFORMED, done.returncode  # a finger at rest is no failure
     assert "still" in done.stderr and "torn" in done.stderr and "skipped" in done.stderr
     made = sorted(path.name for path in pathlib.Path("made").glob("*.texture.wav"))
     assert made == [f"{name}-0{n}.texture.wav" for name in ("ash", "elm", "oak") for n in (1, 2)], made
@@ -95,7 +96,15 @@ def many_recordings_go_on_past_one_that_fails():
     tacto.run("spatial", "ash", "elm", "-o", "made/{}-fine", "--grid", "0.5um", "--stroke", "2")
     assert pathlib.Path("made/elm-fine.texture.json").exists()
     _, said = tacto.run("spatial", "ash", "elm", "-o", "one", code=USAGE)
-    assert "one" in said and "{}" in said, said
+    assert "one/" in said and "{}" in said, said
+    assert [row["texture"] for row in tacto.run_json("describe", "made/")["textures"]] == sorted(
+        path.name.removesuffix(".texture.json") for path in pathlib.Path("made").glob("*.texture.json"))
+    os.mkdir("empty")
+    tacto.run("describe", "empty", code=UNSUITABLE)
+    tacto.run("info", "empty", code=NOT_FOUND)
+    tacto.run("spatial", "ash", "elm", "-o", "made", "--force")  # a folder without its slash
+    said = tacto.run("spatial", "made/ash-01", code=UNSUITABLE)[1]
+    assert "texture" in said, said
     tacto.run("spatial", "ash.texture.json", "elm.csv", code=UNSUITABLE)
 
 

@@ -88,15 +88,20 @@ def a_batch_warns_once():
         assert done.returncode == code, done
         return (json.loads(done.stdout) if done.stdout else json.loads(done.stderr)), tacto.unwrapped(done.stderr).splitlines()
 
-    report, lines = batch("study", code=UNSUITABLE)
+    report, lines = batch("study", code=0)
     assert report["done"] == 2 and report["too_short"] == ["study/b-part: stroke 2", "study/c-fast: stroke 1", "study/d-little: 2 motions"], report
-    assert len(report["failed"]) == 2, report
+    assert len(report["unsuitable"]) == 2 and "failed" not in report, report
     short = [line for line in lines if "too short" in line]
     assert len(short) == 1 and "2 strokes" in short[0] and "2 motions" in short[0] and all(name in short[0] for name in ("b-part", "c-fast", "d-little")), lines
     failed = [line for line in lines if "does not change" in line]
     assert len(failed) == 1 and "e-still" in failed[0] and "f-still" in failed[0], lines
     assert len(lines) == 2, lines
     assert {path.name for path in pathlib.Path("made").glob("*.json")} == {"a-good.texture.json", "b-part-01.texture.json"}
+    # Without any texture it is an error, and its cause is stated once.
+    error, lines = batch("study/e-still", "study/f-still", code=UNSUITABLE)
+    assert "2 files" in error["where"] and len(lines) == 1, (error, lines)
+    each = subprocess.run([tacto.COMMAND, "spatial", "study/a-good", "study/b-part", "--average", "-o", "mean-{}"], capture_output=True, text=True)
+    assert each.returncode == UNSUITABLE and len(tacto.unwrapped(each.stderr).splitlines()) <= 3, each
     # Only what is too short: no failure, as long as a texture is made.
     for name in ("e-still", "f-still"):
         os.remove(f"study/{name}.json")
@@ -120,7 +125,7 @@ def columns_of_a_table_are_told_apart():
     tacto.run("play", "oak", "-d", "sim:", "--gain", "50%", "--finger-path", "path.csv", "-o", "first")
     out, _ = tacto.run("session", "first")
     header = next(line for line in out.splitlines() if line.strip().startswith("from"))
-    for column in ("from (s)", "to (s)", "from (m)", "to (m)"):
+    for column in ("from (time)", "to (time)", "from (length)", "to (length)"):
         assert header.count(column) == 1, header
 
 

@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(FingerPathCsv, TakesTheUnitsOfItsHeader) {
   for (const char* header :
        {"time_ms,position_mm,normal_force_mN", "time (ms),position [mm],normal_force / mN",
-        "time_ms,position_mm,normal_force_mn"}) {
+        "time_ms,position_mm,normal_force_mn", "Time (ms),Position (mm),Normal force (mN)"}) {
     const auto path = parse_finger_path(std::string(header) + "\n0,2,500\n500,-3.5,250\n", "p.csv");
     ASSERT_TRUE(path) << message(path.error());
     // Two roundings: of the number and of the product with the unit.

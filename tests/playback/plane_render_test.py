@@ -143,11 +143,11 @@ def explain_lists_what_is_built():
     write_scene("one", patch(layers=[spring(10)]))
     one = run_json("explain", "one.scene.json", "--device", "sandpaper-1990")
     assert one["fits"] is True and [row["type"] for row in one["layers"]] == ["spring"], one
-    assert one["block_bytes"] + one["kernel_bytes"] < 4096 and one["layers"][0]["peak_force_at_m"] == 2, one
+    assert one["block_bytes"] + one["kernel_bytes"] < 4096 and one["layers"][0]["force_limit_at_displacement_m"] == 2, one
     assert [row["part"] for row in one["left_out"]] == ["speed of the hand"], one
     write_scene("two", patch(layers=[spring(10), damper(4)]))
     two = run_json("explain", "two.scene.json", "--device", "sandpaper-1990", "--rate", "250Hz")
-    assert two["rate_hz"] == 250 and "left_out" not in two and two["layers"][1]["peak_force_at_mps"] == 5, two
+    assert two["rate_hz"] == 250 and "left_out" not in two and two["layers"][1]["force_limit_at_speed_mps"] == 5, two
     assert two["block_bytes"] == one["block_bytes"] + two["layers"][1]["bytes"], (one, two)
     assert run_json("explain", "two.scene.json", "--device", "sandpaper-1990", "--device-memory", "10")["fits"] is False
 
