@@ -42,6 +42,7 @@ constexpr std::uint16_t kWatchdogMs = 100;
 struct ForceDevice {
   PlayerDevice player;
   schema::Device about;
+  std::optional<schema::Hand> hand = std::nullopt;  ///< of an emulated device
 };
 
 // The shortest decimal number that gives this value in single precision: 1e-5, not 9.99999975e-6.
@@ -97,6 +98,7 @@ Result<ForceDevice> open_emulated(const ScenePlayOptions& options, double& durat
       options.device_uri, std::string_view(options.device_uri).substr(firmware_host::kPlanarScheme.size()));
   TACTO_TRY(planar);
   const schema::Device device = (*planar)->board().device();
+  const std::optional<schema::Hand> hand = (*planar)->board().hand();
   if (!options.path.empty()) {
     auto paths = read_axis_paths(options.path, plane_axes_of(device));
     TACTO_TRY(paths);
@@ -106,7 +108,7 @@ Result<ForceDevice> open_emulated(const ScenePlayOptions& options, double& durat
   }
   Client* const client = (*planar)->conversation();
   PlayerDevice player{std::move(*planar), client, options.device_uri, {}, {}};
-  return ForceDevice{std::move(player), device};
+  return ForceDevice{std::move(player), device, hand};
 }
 
 Result<ForceDevice> open_force_device(const ScenePlayOptions& options, double& duration_s) {
@@ -315,13 +317,13 @@ Result<ScenePlayOutcome> play_scene(const ScenePlayOptions& options, const std::
   const std::string file = schema::scene_path(options.scene);
   const auto scene = schema::read_scene(file);
   TACTO_TRY(scene);
-  const auto prepared = prepare_scene(*scene, file);
-  TACTO_TRY(prepared);
   double time_s = kUsualPlayS;
   const auto device = open_force_device(options, time_s);
   TACTO_TRY(device);
   const auto setup = force_setup_of(device->about, options.rate_hz);
   TACTO_TRY(setup);
+  const auto prepared = prepare_scene(*scene, file, device->about, double{setup->rate_hz}, device->hand);
+  TACTO_TRY(prepared);
   Client& client = *device->player.client;
   const double rate_hz = options.rate_hz.value_or(device->about.rates_hz.back());
   const auto limits = limits_for(*client.description().axes, rate_hz, options.onset_s, device->player.uri);
@@ -330,7 +332,7 @@ Result<ScenePlayOutcome> play_scene(const ScenePlayOptions& options, const std::
   outcome.device = device->player.uri;
   outcome.simulated = firmware_host::simulated_device(client.description());
   outcome.rate_hz = rate_hz;
-  outcome.notes = limits_of_device(*prepared, device->about);
+  outcome.notes = limits_of_device(*prepared, device->about, *setup);
   const FullQueue full = device->player.device->is_real_time() ? FullQueue::lose : FullQueue::wait;
   const auto recorder = FlightRecorder::begin(options.session, header_of(*device, file, rate_hz), full);
   TACTO_TRY(recorder);
