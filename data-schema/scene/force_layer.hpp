@@ -25,6 +25,11 @@ struct LayerNumber {
   bool operator==(const LayerNumber&) const = default;
 };
 
+/// The upper end of its slider, or its value.
+inline double largest_value(const LayerNumber& number) {
+  return number.slider ? number.slider->to : number.value;
+}
+
 // Lengths and directions are in the patch's axes, from its centre; a direction is an angle from the patch's x
 // axis towards its y axis. kappa_n is the force on a slope of 1: force = -kappa grad h. `extra_json` has the
 // members of a newer version.

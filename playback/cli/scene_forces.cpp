@@ -13,8 +13,10 @@
 #include "data-schema/device/device.hpp"
 #include "data-schema/device/hand.hpp"
 #include "data-schema/files/files.hpp"
+#include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/player/placed_textures.hpp"
+#include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/plane_render.hpp"
 
@@ -40,7 +42,8 @@ void warn_of_newer(const std::string& name, const auto& document) {
 }
 
 Result<SceneOnDevice> scene_on_device(const std::string& scene_name, const std::string& device_name,
-                                      std::optional<double> rate_hz) {
+                                      std::optional<double> rate_hz,
+                                      const std::optional<schema::Hand>& hand = std::nullopt) {
   if (!names_a_scene(scene_name))
     return fail(ErrorKind::unsuitable, "is a texture; a force device plays the force patches of a scene",
                 scene_name, "name a scene, or give --transducer instead of --device");
@@ -51,13 +54,13 @@ Result<SceneOnDevice> scene_on_device(const std::string& scene_name, const std::
   TACTO_TRY(device);
   const auto setup = force_setup_of(*device, rate_hz);
   TACTO_TRY(setup);
-  auto prepared = prepare_scene(*scene, file);
+  auto prepared = prepare_scene(*scene, file, *device, double{setup->rate_hz}, hand);
   TACTO_TRY(prepared);
   warn_of_newer(file, *scene);
   warn_of_newer(device_name, *device);
   if (!scene->layers.empty())
     cli::warn(fmt::format("{}: its {} layers of a tray are left out", file, scene->layers.size()));
-  for (const std::string& note : limits_of_device(*prepared, *device)) cli::warn(note);
+  for (const std::string& note : limits_of_device(*prepared, *device, *setup)) cli::warn(note);
   return SceneOnDevice{std::move(*device), std::move(*prepared), *setup};
 }
 
@@ -158,23 +161,29 @@ double tick_cost_s(const core::SceneView& scene, const core::ForceSetup& setup, 
 }
 
 // The scene of this layer alone.
-double layer_cost_s(const schema::Patch& patch, const schema::ForceLayer& layer,
-                    const core::ForceSetup& setup) {
-  schema::Scene scene;
-  scene.patches = {patch};
-  scene.patches.front().layers = {layer};
-  const auto prepared = prepare_scene(scene, "");
-  return prepared ? tick_cost_s(prepared->view(), setup, patch) : NAN;
+double layer_cost_s(const SceneOnDevice& on, schema::Patch patch, const schema::ForceLayer& layer) {
+  patch.layers = {layer};
+  const PreparedScene alone = on.scene.with({patch});
+  return tick_cost_s(alone.view(), on.setup, patch);
 }
 
-Report row_of_layer(const schema::Patch& patch, std::size_t index, const schema::Device& device,
-                    const core::ForceSetup& setup) {
+void add_grooves(Report& row, const schema::GroovesLayer& grooves, double rate_hz) {
+  const double period_m = grooves.period_m.value;
+  const auto amplitudes = groove_amplitudes(grooves.profile, grooves.filter_m->value / period_m);
+  row.add("filter_m", grooves.filter_m->value).add("harmonics", amplitudes.size());
+  row.add("whole_to_mps", core::kWholePerTick * rate_hz * period_m / static_cast<double>(amplitudes.size()));
+  row.add("zero_from_mps", core::kZeroPerTick * rate_hz * period_m);
+}
+
+Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::size_t index) {
   const schema::ForceLayer& layer = patch.layers[index];
   Report row;
   row.add("patch", patch.name).add("layer", index).add("type", type_of(layer));
-  row.add("bytes", layer_bytes(layer)).add("alone_tick_s", layer_cost_s(patch, layer, setup));
+  row.add("bytes", on.scene.layer_bytes(patch, layer)).add("alone_tick_s", layer_cost_s(on, patch, layer));
+  if (const double stiffness = local_stiffness_n_per_m(layer); stiffness > 0)
+    row.add("stiffness_n_per_m", stiffness);
   const auto at_limit = [&](const char* key, double gain) {
-    if (gain > 0) row.add(key, device.peak_force_n / gain);
+    if (gain > 0) row.add(key, on.device.peak_force_n / gain);
   };
   layer.visit(
       [&](const schema::SpringLayer& spring) {
@@ -183,6 +192,7 @@ Report row_of_layer(const schema::Patch& patch, std::size_t index, const schema:
       [&](const schema::DamperLayer& damper) {
         at_limit("force_limit_at_speed_mps", damper.damping_n_s_per_m.value);
       },
+      [&](const schema::GroovesLayer& grooves) { add_grooves(row, grooves, double{on.setup.rate_hz}); },
       [](const auto& /*other*/) {});
   return row;
 }
@@ -190,8 +200,7 @@ Report row_of_layer(const schema::Patch& patch, std::size_t index, const schema:
 std::vector<Report> rows_of_layers(const SceneOnDevice& on) {
   std::vector<Report> rows;
   for (const schema::Patch& patch : on.scene.patches)
-    for (std::size_t i = 0; i < patch.layers.size(); ++i)
-      rows.push_back(row_of_layer(patch, i, on.device, on.setup));
+    for (std::size_t i = 0; i < patch.layers.size(); ++i) rows.push_back(row_of_layer(on, patch, i));
   return rows;
 }
 
@@ -235,12 +244,12 @@ Result<void> check_force_options(const CLI::App& app, std::initializer_list<std:
 Result<Report> render_forces(const ForceRendering& asked) {
   TACTO_TRY(cli::check_ending(asked.output, {".csv"}, "the forces are a CSV table: NAME.csv"));
   TACTO_TRY(schema::check_table_free(asked.output, asked.existing, is_force_table));
-  const auto on = scene_on_device(asked.scene, asked.device, asked.rate_hz);
+  const auto hand = hand_of(asked.hand);
+  TACTO_TRY(hand);
+  const auto on = scene_on_device(asked.scene, asked.device, asked.rate_hz, *hand);
   TACTO_TRY(on);
   const auto paths = read_axis_paths(asked.path, plane_axes_of(on->device));
   TACTO_TRY(paths);
-  const auto hand = hand_of(asked.hand);
-  TACTO_TRY(hand);
   const auto rendering = render_plane(on->scene, on->device, asked.rate_hz, *paths, *hand);
   TACTO_TRY(rendering);
   schema::PendingFiles files;
@@ -264,7 +273,8 @@ Result<Report> explain_forces(const std::string& scene, const std::string& devic
   report.add("layers", rows_of_layers(*on));
   report.add("block_bytes", on->scene.bytes())
       .add("live_bytes", view.number_count * sizeof(float))
-      .add("kernel_bytes", sizeof(core::SceneKernel));
+      .add("kernel_bytes", sizeof(core::SceneKernel))
+      .add("stiffness_limit_n_per_m", on->scene.stiffness_limit_n_per_m);
   report.add("tick_s", tick_s).add("tick_of_period_percent", 100 * tick_s * rate);
   report.add("measured_on", "this computer");
   if (!view.needs_speed)

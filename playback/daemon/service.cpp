@@ -118,7 +118,7 @@ Result<PlayerDevice> Service::open_device() {
   if (uri.starts_with(firmware_host::kPlanarScheme)) {
     auto opened = open_force_device(uri, config_.finger_path, true);
     TACTO_TRY(opened);
-    force_device_ = std::move(opened->about);
+    force_device_ = std::move(opened->about), force_hand_ = std::move(opened->hand);
     return std::move(opened->player);
   }
   const auto script = read_finger_script(config_.finger_path);
@@ -227,11 +227,9 @@ Result<void> Service::begin_load_of_forces(const ControlRequest& request) {
                       static_cast<std::uint16_t>(config_.watchdog_ms),
                       {}};
   if (request.by_tcp) target.only_in = config_.files;
-  loader_.begin(
-      [target, device = *force_device_, own = *client().description().axes]() -> Result<AnyProgram> {
-        return make_force_program(target, device, own);
-      },
-      ProgramLoader::Beside::nothing);
+  loader_.begin([target, device = *force_device_, hand = force_hand_, own = *client().description().axes]()
+                    -> Result<AnyProgram> { return make_force_program(target, device, hand, own); },
+                ProgramLoader::Beside::nothing);
   return {};
 }
 

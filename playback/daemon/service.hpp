@@ -76,6 +76,7 @@ class Service {
   Publish publish_;
   PlayerDevice device_;
   std::optional<schema::Device> force_device_;  // if it has axes with forces
+  std::optional<schema::Hand> force_hand_;      // that holds it, if it is emulated
   HostLoopClient here_;
   std::uint64_t missed_before_ = 0;  // periods that the loop on this computer missed before the session
   std::unique_ptr<Player> player_;

@@ -96,22 +96,23 @@ schema::Device device_of(const firmware_host::Description& description) {
 }
 
 Result<ForceProgram> make_force_program(const ForceRequest& request, const schema::Device& device,
-                                        const wire::Axes& own) {
+                                        const std::optional<schema::Hand>& hand, const wire::Axes& own) {
   if (!names_a_scene(request.file))
     return fail(ErrorKind::unsuitable, "is a texture; a force device plays the force patches of a scene",
                 request.file, "name a scene, or play on a device with a tray");
   const auto served = request.only_in ? served_file(*request.only_in, request.file) : request.file;
   TACTO_TRY(served);
   const std::string file = schema::scene_path(*served);
-  const auto scene = schema::read_scene(file);
+  auto scene = schema::read_scene(file);
   TACTO_TRY(scene);
-  auto prepared = prepare_scene(*scene, file);
-  TACTO_TRY(prepared);
-  TACTO_TRY(force_setup_of(device, request.rate_hz));
+  const auto setup = force_setup_of(device, request.rate_hz);
+  TACTO_TRY(setup);
   const double rate_hz = request.rate_hz.value_or(device.rates_hz.back());
+  auto prepared = prepare_scene(std::move(*scene), file, device, rate_hz, hand);
+  TACTO_TRY(prepared);
   const auto limits = limits_for(request, device, own, rate_hz);
   TACTO_TRY(limits);
-  auto notes = limits_of_device(*prepared, device);
+  auto notes = limits_of_device(*prepared, device, *setup);
   return ForceProgram{std::move(*prepared), *limits, header_of(file, own, rate_hz), std::move(notes)};
 }
 

@@ -32,10 +32,11 @@ struct ForceProgram {
 /// The device as it describes itself: mass and friction are not known. Precondition: it has axes.
 schema::Device device_of(const firmware_host::Description& description);
 
-/// `device`: as its file or device_of() describes it; `own`: its axes on the wire. Errors: as read_scene,
-/// served_file, prepare_scene, force_setup_of; unsuitable: a texture; a force that falls to zero too slowly
-/// to be safe.
+/// `device`: as its file or device_of() describes it, held by `hand` if one is known; `own`: its axes on the
+/// wire. Errors: as read_scene, served_file, prepare_scene, force_setup_of; unsuitable: a texture; a force
+/// that falls to zero too slowly to be safe.
 schema::Result<ForceProgram> make_force_program(const ForceRequest& request, const schema::Device& device,
+                                                const std::optional<schema::Hand>& hand,
                                                 const wire::Axes& own);
 
 /// Sends limits and block. Errors: as Client::command.

@@ -238,7 +238,7 @@ Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std:
   const auto device = open_force_device(options.device_uri, options.path);
   TACTO_TRY(device);
   firmware_host::Client& client = *device->player.client;
-  auto program = make_force_program(options.program, device->about, *client.description().axes);
+  auto program = make_force_program(options.program, device->about, device->hand, *client.description().axes);
   TACTO_TRY(program);
   const auto player = Player::make(client, device->player.uri, options_for(device->player));
   TACTO_TRY(player);

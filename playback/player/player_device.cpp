@@ -175,20 +175,20 @@ Result<PlayerDevice> open_player_device(const std::string& uri, const std::optio
 
 Result<ForceDevice> open_force_device(const std::string& uri, const std::string& path, bool repeated) {
   const bool emulated = uri.starts_with(firmware_host::kPlanarScheme);
-  if (!path.empty() && !emulated)
-    return fail(ErrorKind::unsuitable, "only an emulated hand follows a path", uri,
-                "leave the path out, or play on sim:planar");
   auto player = open_player_device(uri, std::nullopt);
   TACTO_TRY(player);
   if (!player->client->description().axes)
     return fail(ErrorKind::unsuitable, "this device has no axes with forces", player->uri,
                 "play the scene on a force device, for example sim:planar");
   if (!emulated) {
+    if (!path.empty())
+      return fail(ErrorKind::unsuitable, "only an emulated hand follows a path", uri,
+                  "leave the path out, or play on sim:planar");
     schema::Device about = device_of(player->client->description());
-    return ForceDevice{std::move(*player), std::move(about), std::nullopt};
+    return ForceDevice{std::move(*player), std::move(about)};
   }
   firmware_host::PlanarBoard& board = static_cast<firmware_host::PlanarDevice&>(*player->device).board();
-  ForceDevice opened{std::move(*player), board.device(), std::nullopt};
+  ForceDevice opened{std::move(*player), board.device(), board.hand()};
   if (path.empty()) return opened;
   const auto paths = read_axis_paths(path, plane_axes_of(opened.about));
   TACTO_TRY(paths);

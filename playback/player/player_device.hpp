@@ -8,6 +8,7 @@
 #include <string>
 
 #include "data-schema/device/device.hpp"
+#include "data-schema/device/hand.hpp"
 #include "firmware-host/link/client.hpp"
 #include "firmware-host/link/device.hpp"
 #include "playback/model/finger_path.hpp"
@@ -60,7 +61,8 @@ schema::Result<PlayerDevice> open_player_device(const std::string& uri,
 struct ForceDevice {
   PlayerDevice player;
   schema::Device about;
-  std::optional<double> path_s;  ///< duration of the path
+  std::optional<schema::Hand> hand = std::nullopt;  ///< that holds an emulated device
+  std::optional<double> path_s = std::nullopt;      ///< duration of the path
 };
 
 /// `path`, of an emulated device: the place to which the person moves the hand, or the path of the device

@@ -45,19 +45,27 @@ def crc32c(data):
     return check ^ 0xFFFFFFFF
 
 
+def grooves_table(per_count, per_m, amplitudes):
+    """Periods per count along x and y, with 32 bits after the point; periods per metre."""
+    strides = [word for at in per_count for word in (at >> 32, at & 0xFFFFFFFF, 0)]
+    return struct.pack("<iIiIIiII2fI", -1, 2**31, *strides, *per_m, len(amplitudes)) + struct.pack(f"<{len(amplitudes)}f", *amplitudes)
+
+
 def scene_block(patches):
-    """With a check of zero; a patch is (x, y, cosine, sine, half sizes, adds, [(kind, numbers)])."""
+    """With a check of zero; a patch is (x, y, cosine, sine, half sizes, adds, [(kind, numbers, table)]), the table if there is one."""
     layers = [layer for patch in patches for layer in patch[-1]]
-    numbers = [number for _, of_layer in layers for number in of_layer]
-    block, first_layer, first_number = b"", 0, 0
+    numbers = [number for layer in layers for number in layer[1]]
+    tables = b"".join(layer[2] for layer in layers if len(layer) > 2)
+    block, first_layer, first_number, table = b"", 0, 0, 0
     for *place, adds, of_patch in patches:
         block += struct.pack("<6fHHI", *place, first_layer, len(of_patch), adds)
         first_layer += len(of_patch)
-    for kind, of_layer in layers:
-        block += struct.pack("<HH", kind, first_number)
+    for kind, of_layer, *of_table in layers:
+        block += struct.pack("<HHI", kind, first_number, table)
         first_number += len(of_layer)
-    block += struct.pack(f"<{len(numbers)}f", *numbers)
-    return struct.pack("<4sHHHHI", b"TSCN", 1, len(patches), len(layers), len(numbers), 0) + block
+        table += len(b"".join(of_table)) // 4
+    block += struct.pack(f"<{len(numbers)}f", *numbers) + tables
+    return struct.pack("<4sHHHHII", b"TSCN", 1, len(patches), len(layers), len(numbers), 0, len(tables) // 4) + block
 
 
 def checked(block):
@@ -106,12 +114,14 @@ DEVICES = {
 }
 
 
-SPRING, DAMPER = 0, 1
+SPRING, DAMPER, GROOVES = 0, 1, 2
 SCENES = {
     "spring": scene((3, -2, 5, 0), [(0, 0, 1, 0, 0.1, 0.1, 0, [(SPRING, (100, 0, 0))])]),
     "ice_on_soup": scene((90, 1, -70, 40), [(0, 0, 0.6, 0.8, 0.01, 0.01, 0, [(DAMPER, (0.1,))]),
                                            (0, 0, 1, 0, 1, 1, 0, [(DAMPER, (50,))]),
                                            (0.01, 0, 1, 0, 1, 1, 1, [(SPRING, (1e6, 0.01, -0.02)), (DAMPER, (1e4,))])]),
+    "grooves": scene((3, -2, 50, 7), [(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(GROOVES, (1e-4, 2), grooves_table((2**25, -2**24), (800, 600), (0.6, 0, -0.2))),
+                                                                      (GROOVES, (1, 1000), grooves_table((2**40, 7), (1e6, 0), (2,) * 64)), (DAMPER, (1,))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,))])]),
 }
 

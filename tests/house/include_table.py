@@ -82,8 +82,8 @@ MAY_INCLUDE = {
     "playback/choose": "data-schema/{results scene} playback/{model prepare}",
     "playback/cli":
         "data-schema/{base command control device files recording report scene session texture} "
-        "firmware-host/{core/scene link} playback/{choose control host-loop model player prepare/scene render session "
-        "strokes}",
+        "firmware-host/{core/scene link} playback/{choose control host-loop model player prepare/relief prepare/scene "
+        "render session strokes}",
     "playback/control": "data-schema/{base control files} playback/session",
     "playback/daemon":
         "data-schema/{base control files report scene} firmware-host/sim/planar playback/{control host-loop model "
@@ -100,13 +100,14 @@ MAY_INCLUDE = {
         "data-schema/{base texture transducer} firmware-host/{core/kernel core/wire link} playback/model "
         "spatial/{dsp/filter dsp/fourier}",
     "playback/prepare/relief": "data-schema/scene firmware-host/core/scene",
-    "playback/prepare/scene": "data-schema/{device scene} firmware-host/core/scene",
+    "playback/prepare/scene":
+        "data-schema/{device scene} firmware-host/core/scene playback/{prepare/relief stability}",
     "playback/render":
         "data-schema/{base device recording scene texture transducer} firmware-host/{core/kernel core/scene sim/planar} "
         "playback/{choose model prepare prepare/scene render/reference} spatial/{dsp/filter features}",
     "playback/render/reference":
-        "data-schema/{base device} firmware-host/core/scene playback/{model prepare prepare/scene} spatial/{dsp/filter "
-        "dsp/fourier}",
+        "data-schema/{base device} firmware-host/core/scene playback/{model prepare prepare/relief prepare/scene} "
+        "spatial/{dsp/filter dsp/fourier}",
     "playback/session":
         "data-schema/{base control files session wav} firmware-host/{core/firmware core/kernel core/wire link} "
         "playback/model",

@@ -4,13 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <cstring>
+#include <numbers>
 #include <random>
 
+#include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
+#include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/plane_render.hpp"
 #include "playback/render/reference/exact_scene.hpp"
+#include "playback/stability/free_limit.hpp"
+#include "playback/stability/sampled_spring.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -45,6 +51,11 @@ schema::ForceLayer damper(double damping_n_s_per_m) {
   return schema::DamperLayer{{damping_n_s_per_m}, ""};
 }
 
+schema::GroovesLayer grooves(schema::GrooveProfile profile, double period_m, double depth_m, double kappa_n,
+                             double direction_deg = 0, std::optional<schema::LayerNumber> filter_m = {}) {
+  return {profile, {period_m}, {depth_m}, {kappa_n}, {direction_deg}, filter_m, {1.5}, ""};
+}
+
 Patch patch(const std::string& name, std::vector<schema::ForceLayer> layers) {
   Patch made;
   made.name = name;
@@ -53,10 +64,10 @@ Patch patch(const std::string& name, std::vector<schema::ForceLayer> layers) {
   return made;
 }
 
-PreparedScene prepared(std::vector<Patch> patches) {
+PreparedScene prepared(std::vector<Patch> patches, const schema::Device& device = sandpaper()) {
   schema::Scene scene;
   scene.patches = std::move(patches);
-  auto made = prepare_scene(scene, "s.scene.json");
+  auto made = prepare_scene(scene, "s.scene.json", device, 1000);
   EXPECT_TRUE(made) << message(made.error());
   return made ? *made : PreparedScene{};
 }
@@ -68,7 +79,7 @@ struct OnDevice {
   std::vector<float> live = std::vector<float>(100);
 
   OnDevice(const schema::Device& on, std::vector<Patch> patches)
-      : device(on), scene(prepared(std::move(patches))) {
+      : device(on), scene(prepared(std::move(patches), on)) {
     kernel.set(scene.view(), *force_setup_of(device, 1000), live.data());
   }
   core::ForceOutput at(double x_m, double y_m) {
@@ -110,9 +121,144 @@ TEST(SceneKernel, TheTopmostPatchActsAndThoseThatAdd) {
   EXPECT_NEAR(other.at(0.04, 0).force_n[0], -0.4, 1e-6);
 }
 
-TEST(SceneKernel, OnlyADamperNeedsTheSpeed) {
+TEST(SceneKernel, DampersAndSurfacesNeedTheSpeed) {
   EXPECT_FALSE(prepared({patch("a", {spring(1)})}).view().needs_speed);
+  EXPECT_TRUE(
+      prepared({patch("a", {grooves(schema::GrooveProfile::sine, 1e-3, 1e-4, 1)})}).view().needs_speed);
   EXPECT_TRUE(prepared({patch("a", {spring(1), damper(1)})}).view().needs_speed);
+}
+
+// The sum of the absolute forces of the harmonics.
+double largest_slope_n(const schema::GroovesLayer& layer) {
+  const auto resolved = prepared({patch("a", {layer})})
+                            .patches[0]
+                            .layers[0]
+                            .visit([](const schema::GroovesLayer& of) { return of; },
+                                   [&](const auto& /*other*/) { return layer; });
+  const double period_m = layer.period_m.value;
+  double sum = 0;
+  const auto amplitudes = groove_amplitudes(layer.profile, resolved.filter_m->value / period_m);
+  for (std::size_t n = 1; n <= amplitudes.size(); ++n)
+    sum += static_cast<double>(n) * std::abs(amplitudes[n - 1]);
+  return layer.kappa_n.value * layer.depth_m.value * 2 * std::numbers::pi / period_m * sum;
+}
+
+TEST(SceneKernel, GroovesPushDownTheirSlopeAcrossThem) {
+  Patch turned = patch("turned", {grooves(schema::GrooveProfile::sine, 2e-3, 1e-4, 1.5, 20)});
+  turned.x_m = 0.0123;
+  turned.y_m = -0.004;
+  turned.angle_deg = 30;
+  const double angle = 50 * std::numbers::pi / 180, turn = 2 * std::numbers::pi / 2e-3;
+  OnDevice on(unlimited(1e-9), {turned});
+  std::mt19937_64 random(50);
+  std::uniform_real_distribution<double> place(-0.06, 0.06);
+  double worst = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const double x = std::round(place(random) * 1e9) * 1e-9, y = std::round(place(random) * 1e9) * 1e-9;
+    on.kernel.set(on.scene.view(), *force_setup_of(on.device, 1000), on.live.data());
+    const core::ForceOutput output = on.at(x, y);
+    const double across = (x - 0.0123) * std::cos(angle) + (y + 0.004) * std::sin(angle);
+    const double force_n = 1.5 * 0.5e-4 * turn * std::sin(turn * across);
+    worst = std::max({worst, std::abs(output.force_n[0] - force_n * std::cos(angle)),
+                      std::abs(output.force_n[1] - force_n * std::sin(angle))});
+  }
+  // Of 0.236 N: the rounding of single precision, also 40 periods from the centre and 8e7 counts from 0.
+  EXPECT_LT(worst, 0.236 * 3e-7);
+}
+
+TEST(SceneKernel, DepthAndKappaChangeInATickAndThePeriodIsNoNumber) {
+  const schema::ForceLayer layer = grooves(schema::GrooveProfile::sine, 2e-3, 1e-4, 1.5);
+  EXPECT_EQ(numbers_in_block(layer), (std::vector<std::string_view>{"depth_m", "kappa_n"}));
+  OnDevice on(unlimited(), {patch("a", {layer})});
+  const double at_m = 0.25 * 2e-3, full_n = 1.5 * 0.5e-4 * 2 * std::numbers::pi / 2e-3;
+  EXPECT_NEAR(on.at(at_m, 0).force_n[0], full_n, 1e-6);
+  on.kernel.change(0, core::kSurfaceKappa, 3, 1);
+  EXPECT_NEAR(on.at(at_m, 0).force_n[0], 2 * full_n, 1e-6);
+  on.kernel.change(0, core::kSurfaceDepth, 0.5e-4F, 1);
+  EXPECT_NEAR(on.at(at_m, 0).force_n[0], full_n, 1e-6);
+  EXPECT_TRUE(core::number_fits(on.scene.view(), 0, core::kSurfaceKappa, 1000));
+  EXPECT_FALSE(core::number_fits(on.scene.view(), 0, core::kSurfaceKappa, 1001));
+  EXPECT_FALSE(core::number_fits(on.scene.view(), 0, core::kSurfaceDepth, -1e-6F));
+  EXPECT_FALSE(core::number_fits(on.scene.view(), 0, 2, 0));
+}
+
+// The steepest place of a smoothed step has 0.242 depth / sigma^2, so margin^2 below the limit.
+TEST(PreparedScene, TheAutomaticFilterHoldsTheStiffnessLimit) {
+  schema::Device device = sandpaper();
+  device.axes[1].viscous_n_s_per_m = 0.5;  // the weaker axis counts
+  const double limit = free_stiffness_limit(0.1, 0.5, 1e-3, 0);
+  for (const auto profile : {schema::GrooveProfile::square, schema::GrooveProfile::triangle}) {
+    schema::GroovesLayer layer = grooves(profile, 5e-3, 0, 2);
+    layer.depth_m = {1e-4, schema::SliderRange{0, 3e-4}};  // the upper end counts
+    const PreparedScene scene = prepared({patch("a", {layer})}, device);
+    EXPECT_EQ(scene.stiffness_limit_n_per_m, limit);
+    const double margin = profile == schema::GrooveProfile::square ? 1.5 * 1.5 : 1.5;
+    // 3 %: the neighbouring step or kink, half a period away.
+    EXPECT_NEAR(local_stiffness_n_per_m(scene.patches[0].layers[0]), limit / margin, 0.03 * limit);
+  }
+  const schema::Hand hand{"mine", 0.8, 3, 400, "test", "", "", ""};
+  EXPECT_EQ(stiffness_limit_of(device, 1000, hand), stiffness_limit({0.9, 3.5, 400}, {1e-3, 0}, 0));
+  device.axes[0].viscous_n_s_per_m = 0;
+  schema::Scene scene;
+  scene.patches = {patch("a", {grooves(schema::GrooveProfile::square, 5e-3, 1e-4, 2)})};
+  EXPECT_EQ(prepare_scene(scene, "s", device, 1000).error().where, "s#/patches/0/layers/0/filter_m");
+}
+
+// Power of forces over a second of 1 kHz: at the multiples of `base_hz`, a whole number, and elsewhere.
+struct Powers {
+  double harmonics = 0, rest = 0, at_400_hz = 0;
+};
+
+Powers powers_of(const std::vector<double>& force_n, double base_hz) {
+  Powers powers;
+  const std::size_t n = force_n.size();
+  for (std::size_t bin = 1; bin < n / 2; ++bin) {
+    std::complex<double> sum;
+    for (std::size_t i = 0; i < n; ++i)
+      sum += force_n[i] * std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(bin * i % n) /
+                                              static_cast<double>(n));
+    const double hz = 1000 * static_cast<double>(bin) / static_cast<double>(n), of = hz / base_hz;
+    const double power = std::norm(sum);
+    (std::abs(of - std::round(of)) * base_hz < 1e-6 ? powers.harmonics : powers.rest) += power;
+    if (std::abs(hz - 400) < 1e-6) powers.at_400_hz = power;
+  }
+  return powers;
+}
+
+TEST(SceneKernel, NoFrequencyAboveHalfTheRateIsPlayed) {
+  const schema::ForceLayer layer =
+      grooves(schema::GrooveProfile::square, 5e-4, 1e-5, 1, 0, schema::LayerNumber{2e-5});
+  double worst_db = -300;
+  for (const double speed_mps : {0.0105, 0.03, 0.051, 0.0855, 0.1315, 0.1815, 0.2105, 0.237, 0.3, 0.5}) {
+    Patch wide = patch("a", {layer});
+    wide.width_m = 2;
+    OnDevice on(unlimited(1e-9), {wide});
+    std::vector<double> force_n;
+    for (int tick = -100; tick < 1000; ++tick) {
+      const float force = on.at(speed_mps * 1e-3 * tick + 1.234e-6, 0).force_n[0];
+      if (tick >= 0) force_n.push_back(double{force});
+    }
+    const Powers powers = powers_of(force_n, speed_mps / 5e-4);
+    if (speed_mps > 0.25) {
+      EXPECT_EQ(powers.harmonics + powers.rest, 0) << speed_mps;
+      continue;
+    }
+    worst_db = std::max(worst_db, 10 * std::log10(powers.rest / powers.harmonics));
+  }
+  std::printf("  square grooves at steady speeds: what is no harmonic is at most %.1f dB\n", worst_db);
+  EXPECT_LT(worst_db, -65);
+  // Without the fade, 600 Hz alias to 400 Hz.
+  std::vector<float> amplitudes;
+  for (const double amplitude : groove_amplitudes(schema::GrooveProfile::square, 0.04))
+    amplitudes.push_back(static_cast<float>(amplitude));
+  const core::Grooves series{amplitudes.data(), static_cast<std::uint32_t>(amplitudes.size())};
+  std::vector<double> aliased;
+  for (int tick = 0; tick < 1000; ++tick)
+    aliased.push_back(
+        double{core::groove_at(series, static_cast<std::uint32_t>(std::fmod(0.6 * tick, 1.0) * 0x1p32), 0)
+                   .by_phase});
+  const Powers powers = powers_of(aliased, 600);
+  EXPECT_GT(powers.at_400_hz, 0.3 * (powers.harmonics + powers.rest));
 }
 
 // Layers, patches and numbers at random, a hand that wanders, rests and jumps: the differences are those of
@@ -130,6 +276,11 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
       const double k = draw(0, 3000), b = draw(0, 10);
       patches.push_back(
           patch("p" + std::to_string(i), {spring(k, draw(-0.05, 0.05), draw(-0.05, 0.05)), damper(b)}));
+      const auto profile = static_cast<schema::GrooveProfile>(i % 3);
+      const schema::GroovesLayer wave =
+          grooves(profile, draw(5e-4, 5e-3), draw(0, 1e-3), draw(0, 3), draw(-360, 360));
+      patches.back().layers.push_back(wave);
+      scale += largest_slope_n(wave);
       patches.back().x_m = draw(-0.05, 0.05);
       patches.back().angle_deg = draw(-360, 360);
       patches.back().order = draw(-1, 1);
@@ -289,13 +440,19 @@ TEST(EdgeSpeed, AnAccelerationShortensTheWindow) {
   }
 }
 
+PreparedScene block_of_all() {
+  return prepared(
+      {patch("a", {spring(5, 0.01), grooves(schema::GrooveProfile::square, 1e-3, 1e-4, 1), damper(2)}),
+       patch("b", {damper(1)})});
+}
+
 TEST(SceneBlock, ACutOrChangedBlockIsRefused) {
-  const PreparedScene scene = prepared({patch("a", {spring(5, 0.01), damper(2)}), patch("b", {damper(1)})});
+  const PreparedScene scene = block_of_all();
   core::SceneView view;
   const auto bytes = static_cast<std::uint32_t>(scene.bytes());
   EXPECT_EQ(core::read_scene_block(scene.words.data(), bytes, view), core::SceneFault::none);
   EXPECT_EQ(view.patch_count, 2U);
-  EXPECT_EQ(view.layer_count, 3U);
+  EXPECT_EQ(view.layer_count, 4U);
   for (std::uint32_t size = 0; size < bytes; ++size)
     EXPECT_NE(core::read_scene_block(scene.words.data(), size, view), core::SceneFault::none) << size;
   for (std::uint32_t bit = 0; bit < 8 * bytes; ++bit) {
@@ -308,12 +465,12 @@ TEST(SceneBlock, ACutOrChangedBlockIsRefused) {
 // With a right check: each 32-bit word replaced by values that harm. What is accepted gives finite forces
 // within the limits.
 TEST(SceneBlock, AHarmfulBlockIsRefusedOrLimited) {
-  const PreparedScene scene = prepared({patch("a", {spring(5, 0.01), damper(2)}), patch("b", {damper(1)})});
+  const PreparedScene scene = block_of_all();
   const auto bytes = static_cast<std::uint32_t>(scene.bytes());
   const core::ForceSetup setup = *force_setup_of(sandpaper(), 1000);
   std::size_t refused = 0, accepted = 0;
   for (std::size_t word = 0; word < scene.words.size(); ++word)
-    for (const std::uint32_t value : {0x7FC00000U, 0x7F800000U, 0xFF7FFFFFU, 0x7F7FFFFFU, 0xFFFFFFFFU,
+    for (const std::uint32_t value : {0x7FC00000U, 0x40U, 0x7F800000U, 0xFF7FFFFFU, 0x7F7FFFFFU, 0xFFFFFFFFU,
                                       0x00010001U, 0U, 1U, 0x00020000U, 0x3F800000U, 0x49742400U}) {
       auto words = scene.words;
       words[word] = value;
@@ -340,9 +497,9 @@ TEST(SceneBlock, AHarmfulBlockIsRefusedOrLimited) {
 
 TEST(PreparedScene, AnUnknownTypeAndASceneOfATrayAreRefused) {
   schema::Scene scene;
-  EXPECT_EQ(prepare_scene(scene, "s").error().kind, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(prepare_scene(scene, "s", sandpaper(), 1000).error().kind, schema::ErrorKind::unsuitable);
   scene.patches = {patch("a", {spring(1), schema::MassLayer{{1}, ""}})};
-  const auto refused = prepare_scene(scene, "s.scene.json");
+  const auto refused = prepare_scene(scene, "s.scene.json", sandpaper(), 1000);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, schema::ErrorKind::unsuitable);
   EXPECT_EQ(refused.error().where, "s.scene.json#/patches/0/layers/1/type");
@@ -350,7 +507,9 @@ TEST(PreparedScene, AnUnknownTypeAndASceneOfATrayAreRefused) {
 
 TEST(SceneOnDevice, WhatTheDeviceCannotGiveIsSaid) {
   schema::Device device = sandpaper();
-  const auto notes = [&](const Patch& of) { return limits_of_device(prepared({of}), device); };
+  const auto notes = [&](const Patch& of) {
+    return limits_of_device(prepared({of}), device, *force_setup_of(device, 1000));
+  };
   EXPECT_TRUE(notes(patch("a", {spring(100)})).empty());
   Patch half = patch("a", {damper(1)});
   half.x_m = 0.1;  // from 0 to 0.2 m; the travel ends at 0.1 m

@@ -89,6 +89,18 @@ TEST(SceneTurn, SineAndCosineWithinTheirError) {
   EXPECT_LT(worst, 1e-7 + 0x1p-24);
 }
 
+struct Series {
+  std::vector<float> amplitudes;
+
+  Series(GrooveProfile profile, double filter_periods) {
+    for (const double amplitude : groove_amplitudes(profile, filter_periods))
+      amplitudes.push_back(static_cast<float>(2 * amplitude));  // from -1 to 1
+  }
+  operator core::Grooves() const {  // NOLINT(google-explicit-constructor): what the kernel reads
+    return {amplitudes.data(), static_cast<std::uint32_t>(amplitudes.size())};
+  }
+};
+
 // The sums in double precision.
 core::GrooveSample in_double(const core::Grooves& g, double phase, double periods_per_tick) {
   double value = 0, slope = 0;
@@ -103,10 +115,10 @@ core::GrooveSample in_double(const core::Grooves& g, double phase, double period
 TEST(SceneGrooves, ClenshawIsTheSum) {
   std::mt19937 random(5);
   for (const auto profile : {GrooveProfile::sine, GrooveProfile::triangle, GrooveProfile::square}) {
-    const core::Grooves g = groove_series({profile, 2, 1, 0.01});
+    const Series g(profile, 0.01);
     double scale = 0;
-    for (std::uint32_t n = 1; n <= g.harmonics; ++n)
-      scale += n * std::abs(static_cast<double>(g.amplitude[n - 1]));
+    for (std::size_t n = 1; n <= g.amplitudes.size(); ++n)
+      scale += static_cast<double>(n) * std::abs(static_cast<double>(g.amplitudes[n - 1]));
     for (int i = 0; i < 2000; ++i) {
       const auto phase = static_cast<std::uint32_t>(random());
       const auto speed = static_cast<float>(i % 20) * 0.02F;
@@ -119,10 +131,10 @@ TEST(SceneGrooves, ClenshawIsTheSum) {
 }
 
 TEST(SceneGrooves, ATriangleHasItsSlopeAndASquareItsSmoothedStep) {
-  const core::Grooves triangle = groove_series({GrooveProfile::triangle, 2, 1, 0.005});
+  const Series triangle(GrooveProfile::triangle, 0.005);
   EXPECT_NEAR(core::groove_at(triangle, 1U << 30, 0).by_phase, -4, 0.01);  // 2 in half a period; 32 harmonics
   const double sigma = 0.02;
-  const core::Grooves square = groove_series({GrooveProfile::square, 2, 1, sigma});
+  const Series square(GrooveProfile::square, sigma);
   // A step of 2 smoothed by a Gaussian is erf; its steepest slope is 2 / (sigma sqrt(2 pi)).
   for (const double from_step : {-0.03, 0.0, 0.01}) {
     const core::GrooveSample found =
@@ -135,10 +147,10 @@ TEST(SceneGrooves, ATriangleHasItsSlopeAndASquareItsSmoothedStep) {
 }
 
 TEST(SceneGrooves, NothingAboveHalfTheRateIsLeft) {
-  const core::Grooves g = groove_series({GrooveProfile::square, 2, 1, 0});
+  const Series g(GrooveProfile::square, 0);
   for (std::uint32_t i = 0; i < 16; ++i) EXPECT_EQ(core::groove_at(g, i << 28, 0.5F).value, 0);
   // At 0.12 periods a tick harmonics 1 and 3 pass, 5 and above are over half the rate.
-  const float a1 = g.amplitude[0], a3 = g.amplitude[2];
+  const float a1 = g.amplitudes[0], a3 = g.amplitudes[2];
   EXPECT_NEAR(core::groove_at(g, 0, 0.12F).value, a1 + a3, 1e-6);
 }
 

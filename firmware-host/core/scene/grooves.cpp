@@ -10,7 +10,7 @@ constexpr float kTurn = 6.2831853F;
 
 uint32_t held_harmonics(const Grooves& grooves, float periods_per_tick) noexcept {
   uint32_t held = grooves.harmonics;
-  while (held > 0 && static_cast<float>(held) * periods_per_tick >= 0.5F) --held;
+  while (held > 0 && static_cast<float>(held) * periods_per_tick >= kZeroPerTick) --held;
   return held;
 }
 

@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "firmware-host/core/kernel/finite.hpp"
+#include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/wire/crc32c.hpp"
 
 namespace tacto::core {
@@ -15,6 +16,9 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the block is read in p
 constexpr float kFarthest_m = 10, kStiffest_n_per_m = 1e6F, kMostDamping_n_s_per_m = 1e4F;
 constexpr float kFarthestPatch_m = 1e3F;
 constexpr float kUnitRounding = 1e-5F;  // rounding of cosine^2 + sine^2
+constexpr float kDeepest_m = 1, kMostKappa_n = 1000;
+constexpr float kMostPeriods_per_m = 1.001e6F;
+constexpr float kLargestAmplitude = 2;  // of a harmonic; 4 / pi of a square wave
 
 bool sound(const ScenePatch& patch) noexcept {
   const float square = patch.cosine * patch.cosine + patch.sine * patch.sine;
@@ -26,13 +30,53 @@ bool sound(const ScenePatch& patch) noexcept {
 }
 
 bool sound(SceneLayerKind kind, const float* number) noexcept {
-  if (kind == SceneLayerKind::damper) return within(number[kDamperDamping], 0, kMostDamping_n_s_per_m);
-  return within(number[kSpringStiffness], 0, kStiffest_n_per_m) &&
-         within(number[kSpringCentreX], -kFarthest_m, kFarthest_m) &&
-         within(number[kSpringCentreY], -kFarthest_m, kFarthest_m);
+  switch (kind) {
+    case SceneLayerKind::spring:
+      return within(number[kSpringStiffness], 0, kStiffest_n_per_m) &&
+             within(number[kSpringCentreX], -kFarthest_m, kFarthest_m) &&
+             within(number[kSpringCentreY], -kFarthest_m, kFarthest_m);
+    case SceneLayerKind::damper:
+      return within(number[kDamperDamping], 0, kMostDamping_n_s_per_m);
+    case SceneLayerKind::grooves:
+      break;
+  }
+  return within(number[kSurfaceDepth], 0, kDeepest_m) && within(number[kSurfaceKappa], 0, kMostKappa_n);
 }
 
-// Patches and layers use all layers and numbers, one after the other: none is shared or left over.
+template <class Table>
+constexpr uint32_t kWordsOf = sizeof(Table) / sizeof(uint32_t);
+
+// Each of these reads the table at the place of `layer`, of which `room` words are in the block, and sets the
+// number of words that it has.
+SceneFault check_grooves(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                         uint32_t& words) noexcept {
+  if (room < kWordsOf<GroovesTable>) return SceneFault::structure;
+  const auto& table = table_of<GroovesTable>(view, layer);
+  if (table.harmonics > kMostHarmonics || table.harmonics > room - kWordsOf<GroovesTable>)
+    return SceneFault::structure;
+  words = kWordsOf<GroovesTable> + table.harmonics;
+  const float* const amplitudes = amplitudes_of(table);
+  for (uint32_t i = 0; i < table.harmonics; ++i)
+    if (!within(amplitudes[i], -kLargestAmplitude, kLargestAmplitude)) return SceneFault::value;
+  return within(table.periods_per_m_x, -kMostPeriods_per_m, kMostPeriods_per_m) &&
+                 within(table.periods_per_m_y, -kMostPeriods_per_m, kMostPeriods_per_m)
+             ? SceneFault::none
+             : SceneFault::value;
+}
+
+SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                       uint32_t& words) noexcept {
+  switch (static_cast<SceneLayerKind>(layer.kind)) {
+    case SceneLayerKind::grooves:
+      return check_grooves(view, layer, room, words);
+    case SceneLayerKind::spring:
+    case SceneLayerKind::damper:
+      break;
+  }
+  return SceneFault::none;
+}
+
+// Patches and layers use all layers, numbers and tables, one after the other: none is shared or left over.
 SceneFault check_patches(const SceneView& view) noexcept {
   uint32_t layers = 0;
   for (uint32_t i = 0; i < view.patch_count; ++i) {
@@ -45,17 +89,24 @@ SceneFault check_patches(const SceneView& view) noexcept {
 }
 
 SceneFault check_layers(SceneView& view) noexcept {
-  uint32_t numbers = 0;
+  uint32_t numbers = 0, tables = 0;
   for (uint32_t i = 0; i < view.layer_count; ++i) {
     const SceneLayer& layer = view.layers[i];
-    if (layer.first_number != numbers || layer.kind >= kSceneLayerKinds) return SceneFault::structure;
+    if (layer.first_number != numbers || layer.table != tables || layer.kind >= kSceneLayerKinds)
+      return SceneFault::structure;
     const auto kind = static_cast<SceneLayerKind>(layer.kind);
     numbers += numbers_of(kind);
     if (numbers > view.number_count) return SceneFault::structure;
     if (!sound(kind, view.numbers + layer.first_number)) return SceneFault::value;
-    view.needs_speed = view.needs_speed || kind == SceneLayerKind::damper;
+    view.needs_speed = view.needs_speed || kind != SceneLayerKind::spring;
+    uint32_t words = 0;
+    if (const SceneFault fault = check_table(view, layer, view.table_words - tables, words);
+        fault != SceneFault::none)
+      return fault;
+    tables += words;
   }
-  return numbers == view.number_count ? SceneFault::none : SceneFault::structure;
+  return numbers == view.number_count && tables == view.table_words ? SceneFault::none
+                                                                    : SceneFault::structure;
 }
 
 }  // namespace
@@ -73,8 +124,9 @@ bool number_fits(const SceneView& view, uint32_t layer, uint32_t number, float v
 
 uint32_t scene_check(const void* block, uint32_t bytes) noexcept {
   const auto* const at = static_cast<const uint8_t*>(block);
+  constexpr uint32_t kAfter = offsetof(SceneHeader, check) + sizeof(SceneHeader::check);
   const uint32_t before = wire::crc32c(at, offsetof(SceneHeader, check));
-  return wire::crc32c(at + sizeof(SceneHeader), bytes - sizeof(SceneHeader), before);
+  return wire::crc32c(at + kAfter, bytes - kAfter, before);
 }
 
 SceneFault read_scene_block(const void* block, uint32_t bytes, SceneView& view) noexcept {
@@ -86,16 +138,21 @@ SceneFault read_scene_block(const void* block, uint32_t bytes, SceneView& view) 
   const uint32_t patches = header.patches * uint32_t{sizeof(ScenePatch)},
                  layers = header.layers * uint32_t{sizeof(SceneLayer)},
                  numbers = header.numbers * uint32_t{sizeof(float)};
-  if (bytes != sizeof header + patches + layers + numbers) return SceneFault::size;
+  const uint32_t before_tables = sizeof header + patches + layers + numbers;
+  if (bytes < before_tables || (bytes - before_tables) % sizeof(uint32_t) != 0 ||
+      header.table_words != (bytes - before_tables) / sizeof(uint32_t))
+    return SceneFault::size;
   if (header.check != scene_check(block, bytes)) return SceneFault::check;
   if (header.layers > kMostSceneLayers || header.patches > header.layers) return SceneFault::structure;
   const auto* const at = static_cast<const uint8_t*>(block) + sizeof header;
   SceneView read{reinterpret_cast<const ScenePatch*>(at),
                  reinterpret_cast<const SceneLayer*>(at + patches),
                  reinterpret_cast<const float*>(at + patches + layers),
+                 reinterpret_cast<const uint32_t*>(at + patches + layers + numbers),
                  header.patches,
                  header.layers,
                  header.numbers,
+                 header.table_words,
                  false};
   if (const SceneFault fault = check_patches(read); fault != SceneFault::none) return fault;
   if (const SceneFault fault = check_layers(read); fault != SceneFault::none) return fault;

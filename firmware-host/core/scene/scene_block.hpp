@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+#include "firmware-host/core/scene/lattice_place.hpp"
+
 namespace tacto::core {
 
 inline constexpr uint32_t kSceneMark = 0x4E435354;  ///< "TSCN"
@@ -12,26 +14,37 @@ inline constexpr uint32_t kMostSceneLayers = 256;
 inline constexpr uint32_t kMostLayerNumbers = 4;
 
 /// The kinds of layers that the kernel has. A number is never reused.
-enum class SceneLayerKind : uint16_t { spring = 0, damper = 1 };
-inline constexpr uint16_t kSceneLayerKinds = 2;
+enum class SceneLayerKind : uint16_t { spring = 0, damper = 1, grooves = 2 };
+inline constexpr uint16_t kSceneLayerKinds = 3;
 
 /// The places of a layer's numbers, from its first one.
 enum SpringNumber : uint32_t { kSpringStiffness = 0, kSpringCentreX = 1, kSpringCentreY = 2 };
 enum DamperNumber : uint32_t { kDamperDamping = 0 };
+enum SurfaceNumber : uint32_t { kSurfaceDepth = 0, kSurfaceKappa = 1 };
 
 /// How many numbers a layer of a kind has.
 constexpr uint32_t numbers_of(SceneLayerKind kind) noexcept {
-  return kind == SceneLayerKind::spring ? 3 : 1;
+  switch (kind) {
+    case SceneLayerKind::spring:
+      return 3;
+    case SceneLayerKind::damper:
+      return 1;
+    case SceneLayerKind::grooves:
+      break;
+  }
+  return 2;
 }
 
-/// The block is, in this order and little-endian: this header, the patches, the layers, the numbers.
+/// The block is, in this order and little-endian: this header, the patches, the layers, the numbers, the
+/// tables of the layers that have one: what cannot change while the scene plays.
 struct SceneHeader {
   uint32_t mark = kSceneMark;
   uint16_t version = kSceneVersion;
   uint16_t patches = 0, layers = 0, numbers = 0;
   uint32_t check = 0;  ///< CRC-32C of the fields above and of all that follows this one
+  uint32_t table_words = 0;
 };
-static_assert(sizeof(SceneHeader) == 16);
+static_assert(sizeof(SceneHeader) == 20);
 
 /// A rectangle in the plane, turned by the angle of `cosine` and `sine`. The topmost patch is the first one.
 struct ScenePatch {
@@ -46,16 +59,40 @@ static_assert(sizeof(ScenePatch) == 32);
 struct SceneLayer {
   uint16_t kind = 0;  ///< SceneLayerKind
   uint16_t first_number = 0;
+  uint32_t table = 0;  ///< place of its table, in words of 4 bytes
 };
-static_assert(sizeof(SceneLayer) == 4);
+static_assert(sizeof(SceneLayer) == 8);
+
+/// Periods per count of the encoder: whole + part 2^-32 + rest 2^-64.
+struct SceneStride {
+  int32_t whole = 0;
+  uint32_t part = 0, rest = 0;
+};
+
+/// A place on a surface in periods, from the counts of the axes: at count 0 whole + part 2^-32.
+struct SceneRow {
+  int32_t whole = 0;
+  uint32_t part = 0;
+  SceneStride per_count[2];  ///< of the axes along x and y
+};
+static_assert(sizeof(SceneRow) == 32);
+
+/// Before the amplitudes of the harmonics, from the first on, f32, for a depth of 1.
+struct GroovesTable {
+  SceneRow across;
+  float periods_per_m_x = 0, periods_per_m_y = 0;  ///< in the axes of the patch
+  uint32_t harmonics = 0;
+};
+static_assert(sizeof(GroovesTable) == 44);
 
 /// A block that was read; it points into its memory.
 struct SceneView {
   const ScenePatch* patches = nullptr;
   const SceneLayer* layers = nullptr;
   const float* numbers = nullptr;
-  uint32_t patch_count = 0, layer_count = 0, number_count = 0;
-  bool needs_speed = false;  ///< it has a damper
+  const uint32_t* tables = nullptr;
+  uint32_t patch_count = 0, layer_count = 0, number_count = 0, table_words = 0;
+  bool needs_speed = false;  ///< it has a layer whose force depends on the speed
 };
 
 enum class SceneFault : uint8_t {
@@ -74,6 +111,30 @@ SceneFault read_scene_block(const void* block, uint32_t bytes, SceneView& view) 
 
 /// The check of a block of at least a header's size.
 uint32_t scene_check(const void* block, uint32_t bytes) noexcept;
+
+/// The table of a layer, whose kind has one. Safe in the tick.
+template <class Table>
+const Table& table_of(const SceneView& view, const SceneLayer& layer) noexcept {
+  static_assert(alignof(Table) == alignof(uint32_t));
+  return *reinterpret_cast<const Table*>(view.tables + layer.table);
+}
+
+inline uint64_t joined(int32_t whole, uint32_t part) noexcept {
+  return uint64_t{static_cast<uint32_t>(whole)} << 32 | part;
+}
+
+/// The place of a hand on a surface: exact but for 2^-33 periods per axis, and wraps at 2^31 periods. Safe in
+/// the tick.
+inline Q32 place_on(const SceneRow& row, const int32_t (&counts)[2]) noexcept {
+  uint64_t place = joined(row.whole, row.part);
+  for (int i = 0; i < 2; ++i) {
+    const SceneStride& stride = row.per_count[i];
+    const int64_t count = counts[i];
+    place += static_cast<uint64_t>(count) * joined(stride.whole, stride.part);
+    place += static_cast<uint64_t>((count * static_cast<int64_t>(stride.rest)) >> 32);
+  }
+  return static_cast<Q32>(place);
+}
 
 /// Whether a layer has this number, and may have this value.
 bool number_fits(const SceneView& view, uint32_t layer, uint32_t number, float value) noexcept;

@@ -2,6 +2,7 @@
 #include "firmware-host/core/scene/scene_kernel.hpp"
 
 #include "firmware-host/core/kernel/finite.hpp"
+#include "firmware-host/core/scene/grooves.hpp"
 
 namespace tacto::core {
 
@@ -39,38 +40,56 @@ void SceneKernel::advance_ramps() noexcept {
   }
 }
 
-// In the axes of the patch.
-PlaneVector SceneKernel::force_in(const ScenePatch& patch, PlaneVector place,
-                                  PlaneVector speed) const noexcept {
+// Here and below in the axes of the patch.
+PlaneVector SceneKernel::groove_force(const SceneLayer& layer, const Hand& hand,
+                                      PlaneVector speed) const noexcept {
+  const auto& table = table_of<GroovesTable>(scene_, layer);
+  const float* const number = live_ + layer.first_number;
+  const float across = speed.x * table.periods_per_m_x + speed.y * table.periods_per_m_y;
+  const auto phase = static_cast<uint32_t>(place_on(table.across, hand.counts));
+  const GrooveSample at = groove_at({amplitudes_of(table), table.harmonics}, phase,
+                                    (across < 0 ? -across : across) / setup_.rate_hz);
+  const float force = -(number[kSurfaceKappa] * number[kSurfaceDepth]) * at.by_phase;
+  return {force * table.periods_per_m_x, force * table.periods_per_m_y};
+}
+
+PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand,
+                                  PlaneVector place) const noexcept {
+  const PlaneVector speed = into_patch(patch, hand.speed_mps);
   PlaneVector sum;
   for (uint32_t i = 0; i < patch.layers; ++i) {
     const SceneLayer& layer = scene_.layers[patch.first_layer + i];
     const float* const number = live_ + layer.first_number;
+    PlaneVector force;
     switch (static_cast<SceneLayerKind>(layer.kind)) {
       case SceneLayerKind::spring:
-        sum.x -= number[kSpringStiffness] * (place.x - number[kSpringCentreX]);
-        sum.y -= number[kSpringStiffness] * (place.y - number[kSpringCentreY]);
+        force = {-number[kSpringStiffness] * (place.x - number[kSpringCentreX]),
+                 -number[kSpringStiffness] * (place.y - number[kSpringCentreY])};
         break;
       case SceneLayerKind::damper:
-        sum.x -= number[kDamperDamping] * speed.x;
-        sum.y -= number[kDamperDamping] * speed.y;
+        force = {-number[kDamperDamping] * speed.x, -number[kDamperDamping] * speed.y};
+        break;
+      case SceneLayerKind::grooves:
+        force = groove_force(layer, hand, speed);
         break;
     }
+    sum.x += force.x;
+    sum.y += force.y;
   }
   return sum;
 }
 
-PlaneVector SceneKernel::force(PlaneVector place, PlaneVector speed) const noexcept {
+PlaneVector SceneKernel::force(const Hand& hand) const noexcept {
   PlaneVector sum;
   bool covered = false;
   for (uint32_t i = 0; i < scene_.patch_count; ++i) {
     const ScenePatch& patch = scene_.patches[i];
     const bool adds = patch.adds != 0;
     if (covered && !adds) continue;
-    const PlaneVector here = place_in_patch(patch, place);
+    const PlaneVector here = place_in_patch(patch, hand.place_m);
     if (!within_patch(patch, here)) continue;
     covered = covered || !adds;
-    const PlaneVector local = force_in(patch, here, into_patch(patch, speed));
+    const PlaneVector local = force_in(patch, hand, here);
     sum.x += patch.cosine * local.x - patch.sine * local.y;
     sum.y += patch.sine * local.x + patch.cosine * local.y;
   }
@@ -79,15 +98,20 @@ PlaneVector SceneKernel::force(PlaneVector place, PlaneVector speed) const noexc
 
 ForceOutput SceneKernel::tick(const int32_t* counts, bool raise) noexcept {
   advance_ramps();
+  Hand hand;
   float place_m[2] = {}, speed_mps[2] = {};
   for (uint32_t i = 0; i < setup_.axis_count; ++i) {
     const auto along = static_cast<uint32_t>(setup_.axes[i].along);
     if (along > 1) continue;
     const float step_m = setup_.axes[i].metres_per_count;
+    hand.counts[along] = counts[i];
     place_m[along] = static_cast<float>(counts[i]) * step_m;
-    if (scene_.needs_speed) speed_mps[along] = speeds_[along].track(counts[i]) * (step_m * setup_.rate_hz);
+    if (!scene_.needs_speed) continue;
+    speed_mps[along] = speeds_[along].track(counts[i]) * (step_m * setup_.rate_hz);
   }
-  const PlaneVector sum = force({place_m[0], place_m[1]}, {speed_mps[0], speed_mps[1]});
+  hand.place_m = {place_m[0], place_m[1]};
+  hand.speed_mps = {speed_mps[0], speed_mps[1]};
+  const PlaneVector sum = force(hand);
   ForceOutput output;
   output.sound = is_finite(sum.x) && is_finite(sum.y);
   const float weight = envelope_.step(raise && output.sound);

@@ -29,6 +29,7 @@ class PlanarBoard final : public EmulatedBoard {
   /// Where the hand is moved to, or the axes, from the next time the rate is set; default: all at 0.
   void set_script(PlaneScript script) { script_ = std::move(script); }
   const schema::Device& device() const { return device_; }
+  const std::optional<schema::Hand>& hand() const { return hand_; }
 
   bool ticking() const override { return rate_millihertz_ > 0; }
   double host_period_s() const override { return 1e3 / rate_millihertz_; }

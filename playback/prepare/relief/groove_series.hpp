@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cosine series of a profile of grooves.
+// The cosine series of a profile of grooves, and the filter that keeps its walls stable.
 #pragma once
 
+#include <vector>
+
 #include "data-schema/scene/force_layer.hpp"
-#include "firmware-host/core/scene/grooves.hpp"
 
 namespace tacto::playback {
 
-struct GrooveShape {
-  schema::GrooveProfile profile = schema::GrooveProfile::sine;
-  double depth_m = 0;   ///< from the lowest to the highest place
-  double period_m = 1;  ///< above 0
-  double filter_m = 0;  ///< standard deviation of a Gaussian that smooths the profile; 0 for none
-};
+/// Amplitudes of the harmonics, from the first on, of a profile of depth 1 (from its lowest to its highest
+/// place), after a Gaussian filter of `filter_periods` (its standard deviation in periods; 0 for none). Up to
+/// core::kMostHarmonics, or up to the last one above 1e-6 of the first. The highest place is at phase 0.
+std::vector<double> groove_amplitudes(schema::GrooveProfile profile, double filter_periods);
 
-/// Odd harmonics up to core::kMostHarmonics, or up to the one that the filter attenuates below 1e-6 of the
-/// first. The highest place is at phase 0.
-core::Grooves groove_series(const GrooveShape& shape);
+/// The largest curvature of such a profile, per squared period.
+double largest_curvature(const std::vector<double>& amplitudes);
+
+/// The filter_m of grooves for `auto`: filter_margin times the sigma at which kappa times the largest
+/// curvature is the stiffness limit (kappa and depth: the upper ends of their sliders). A step smoothed by
+/// sigma has the curvature 0.242 depth / sigma^2, the kinks of a triangle 4 depth / period / (sqrt(2 pi)
+/// sigma). A sine is not filtered. Of a square at least period / 76: then the harmonics above
+/// core::kMostHarmonics are below 1e-6 of the first. Precondition: the limit is above 0.
+double automatic_filter_m(const schema::GroovesLayer& grooves, double stiffness_limit_n_per_m);
 
 }  // namespace tacto::playback

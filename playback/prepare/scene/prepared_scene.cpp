@@ -4,11 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <numbers>
-#include <optional>
+#include <utility>
+
+#include "playback/prepare/relief/groove_series.hpp"
+#include "playback/stability/free_limit.hpp"
+#include "playback/stability/sampled_spring.hpp"
 
 namespace tacto::playback {
 
@@ -20,47 +24,132 @@ using schema::Result;
 
 namespace {
 
-struct LayerData {
+using Words = std::vector<std::uint32_t>;
+
+struct KindInBlock {
   SceneLayerKind kind;
-  std::vector<float> numbers;
+  std::vector<std::string_view> members;  // the numbers of the block, in its order
 };
 
 // Named one by one: a new kind of layer does not compile until it is here or has data.
 template <class L>
-concept NotPlayedYet = std::same_as<L, schema::HeightMapLayer> || std::same_as<L, schema::GroovesLayer> ||
-                       std::same_as<L, schema::NoiseLayer> || std::same_as<L, schema::TextureForceLayer> ||
-                       std::same_as<L, schema::MassLayer> || std::same_as<L, schema::BodyLayer> ||
-                       std::same_as<L, schema::LassoLayer> || std::same_as<L, schema::MoverLayer> ||
-                       std::same_as<L, schema::ForceMapLayer> || std::same_as<L, schema::FieldLayer>;
+concept NotPlayedYet = std::same_as<L, schema::HeightMapLayer> || std::same_as<L, schema::NoiseLayer> ||
+                       std::same_as<L, schema::TextureForceLayer> || std::same_as<L, schema::MassLayer> ||
+                       std::same_as<L, schema::BodyLayer> || std::same_as<L, schema::LassoLayer> ||
+                       std::same_as<L, schema::MoverLayer> || std::same_as<L, schema::ForceMapLayer> ||
+                       std::same_as<L, schema::FieldLayer>;
 
-float single(const schema::LayerNumber& number) {
-  return static_cast<float>(number.value);
+template <class T>
+void append(Words& words, const T* parts, std::size_t count) {
+  static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
+  const std::size_t before = words.size();
+  words.resize(before + count * sizeof(T) / sizeof(std::uint32_t));
+  if (count > 0) std::memcpy(words.data() + before, parts, count * sizeof(T));
 }
 
-using MaybeData = std::optional<LayerData>;
+template <class T>
+void append(Words& words, const std::vector<T>& parts) {
+  append(words, parts.data(), parts.size());
+}
 
-MaybeData data_of(const ForceLayer& layer) {
+struct Fixed {
+  std::int32_t whole;
+  std::uint32_t part, rest;  // of 2^-32, of 2^-64
+};
+
+Fixed fixed(double value) {
+  const double parts = value * 0x1p32, below = std::floor(parts);
+  const auto both = static_cast<std::int64_t>(below);
+  return {static_cast<std::int32_t>(both >> 32), static_cast<std::uint32_t>(both),
+          static_cast<std::uint32_t>(std::min((parts - below) * 0x1p32, 0x1p32 - 1))};
+}
+
+core::SceneStride stride_of(double periods_per_count) {
+  const auto [whole, part, rest] = fixed(periods_per_count);
+  return {whole, part, rest};
+}
+
+// A place on a surface in periods: 0 at the centre of the patch; it grows along `angle_deg` from the axis x
+// of the plane.
+core::SceneRow row_of(const schema::Patch& patch, double angle_deg, double period_m,
+                      const PlaneSteps& steps) {
+  const double angle_rad = angle_deg * std::numbers::pi / 180;
+  const double x_per_m = std::cos(angle_rad) / period_m, y_per_m = std::sin(angle_rad) / period_m;
+  const Fixed at_zero = fixed(-(patch.x_m * x_per_m + patch.y_m * y_per_m));
+  return {at_zero.whole, at_zero.part, {stride_of(steps.x_m * x_per_m), stride_of(steps.y_m * y_per_m)}};
+}
+
+Words table_of(const schema::GroovesLayer& grooves, const schema::Patch& patch, const PlaneSteps& steps) {
+  const double period_m = grooves.period_m.value, angle_deg = grooves.direction_deg.value;
+  const double angle_rad = angle_deg * std::numbers::pi / 180;
+  const auto amplitudes = groove_amplitudes(grooves.profile, grooves.filter_m->value / period_m);
+  const core::GroovesTable table{row_of(patch, patch.angle_deg + angle_deg, period_m, steps),
+                                 static_cast<float>(std::cos(angle_rad) / period_m),
+                                 static_cast<float>(std::sin(angle_rad) / period_m),
+                                 static_cast<std::uint32_t>(amplitudes.size())};
+  Words words;
+  append(words, &table, 1);
+  append(words, std::vector<float>(amplitudes.begin(), amplitudes.end()));
+  return words;
+}
+
+Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneSteps& steps) {
+  return layer.visit([&](const schema::GroovesLayer& grooves) { return table_of(grooves, patch, steps); },
+                     [](const auto& /*without a table*/) { return Words(); });
+}
+
+std::optional<KindInBlock> kind_of(const ForceLayer& layer) {
+  using Kind = std::optional<KindInBlock>;
   return layer.visit(
-      [](const schema::SpringLayer& spring) -> MaybeData {
-        return LayerData{
-            SceneLayerKind::spring,
-            {single(spring.stiffness_n_per_m), single(spring.centre_x_m), single(spring.centre_y_m)}};
+      [](const schema::SpringLayer& /*spring*/) -> Kind {
+        return {{SceneLayerKind::spring, {"stiffness_n_per_m", "centre_x_m", "centre_y_m"}}};
       },
-      [](const schema::DamperLayer& damper) -> MaybeData {
-        return LayerData{SceneLayerKind::damper, {single(damper.damping_n_s_per_m)}};
+      [](const schema::DamperLayer& /*damper*/) -> Kind {
+        return {{SceneLayerKind::damper, {"damping_n_s_per_m"}}};
       },
-      [](const NotPlayedYet auto& /*layer*/) -> MaybeData { return std::nullopt; });
+      [](const schema::GroovesLayer& /*grooves*/) -> Kind {
+        return {{SceneLayerKind::grooves, {"depth_m", "kappa_n"}}};
+      },
+      [](const NotPlayedYet auto& /*layer*/) -> Kind { return std::nullopt; });
 }
 
 Result<void> check_types(const schema::Scene& scene, const std::string& where) {
   for (std::size_t i = 0; i < scene.patches.size(); ++i)
     for (std::size_t j = 0; j < scene.patches[i].layers.size(); ++j)
-      if (const ForceLayer& layer = scene.patches[i].layers[j]; !data_of(layer))
+      if (const ForceLayer& layer = scene.patches[i].layers[j]; !kind_of(layer))
         return fail(ErrorKind::unsuitable,
                     fmt::format("layers of the type {} cannot be played yet", type_of(layer)),
                     fmt::format("{}#/patches/{}/layers/{}/type", where, i, j),
-                    "the types that can be played are spring and damper");
+                    "the types that can be played are spring, damper and grooves");
   return {};
+}
+
+// Sets the filters that the file leaves to the program.
+Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::string& where) {
+  for (std::size_t i = 0; i < scene.patches.size(); ++i)
+    for (std::size_t j = 0; j < scene.patches[i].layers.size(); ++j)
+      TACTO_TRY(scene.patches[i].layers[j].visit(
+          [&](schema::GroovesLayer& grooves) -> Result<void> {
+            if (grooves.filter_m) return {};
+            if (grooves.profile != schema::GrooveProfile::sine && !(limit_n_per_m > 0))
+              return fail(ErrorKind::unsuitable,
+                          "a device without viscous friction has no stiffness limit to filter grooves for",
+                          fmt::format("{}#/patches/{}/layers/{}/filter_m", where, i, j),
+                          "give the filter, or the friction of the device");
+            grooves.filter_m = schema::LayerNumber{automatic_filter_m(grooves, limit_n_per_m)};
+            return {};
+          },
+          [](auto& /*other*/) { return Result<void>(); }));
+  return {};
+}
+
+std::vector<float> numbers_in(const ForceLayer& layer, const std::vector<std::string_view>& members) {
+  const auto all = schema::numbers_of(layer);
+  std::vector<float> numbers;
+  for (const std::string_view member : members)
+    numbers.push_back(
+        static_cast<float>(std::ranges::find(all, member, &schema::NamedLayerNumber::name)->number.value));
+  return numbers;
 }
 
 core::ScenePatch patch_data(const schema::Patch& patch) {
@@ -76,37 +165,35 @@ core::ScenePatch patch_data(const schema::Patch& patch) {
   return data;
 }
 
-template <class T>
-void append(std::vector<std::uint32_t>& words, const std::vector<T>& parts) {
-  static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
-  const std::size_t before = words.size();
-  words.resize(before + parts.size() * sizeof(T) / sizeof(std::uint32_t));
-  if (!parts.empty()) std::memcpy(words.data() + before, parts.data(), parts.size() * sizeof(T));
-}
-
-std::vector<std::uint32_t> block_of(const std::vector<schema::Patch>& from) {
+Words block_of(const std::vector<schema::Patch>& from, const PlaneSteps& steps) {
   std::vector<core::ScenePatch> patches;
   std::vector<core::SceneLayer> layers;
   std::vector<float> numbers;
+  Words tables;
   for (const schema::Patch& patch : from) {
     patches.push_back(patch_data(patch));
     patches.back().first_layer = static_cast<std::uint16_t>(layers.size());
     patches.back().layers = static_cast<std::uint16_t>(patch.layers.size());
     for (const ForceLayer& layer : patch.layers) {
-      const LayerData data = *data_of(layer);
-      layers.push_back({static_cast<std::uint16_t>(data.kind), static_cast<std::uint16_t>(numbers.size())});
-      numbers.insert(numbers.end(), data.numbers.begin(), data.numbers.end());
+      const KindInBlock kind = *kind_of(layer);
+      layers.push_back({static_cast<std::uint16_t>(kind.kind), static_cast<std::uint16_t>(numbers.size()),
+                        static_cast<std::uint32_t>(tables.size())});
+      const auto of_layer = numbers_in(layer, kind.members);
+      numbers.insert(numbers.end(), of_layer.begin(), of_layer.end());
+      append(tables, table_of(layer, patch, steps));
     }
   }
   core::SceneHeader header;
   header.patches = static_cast<std::uint16_t>(patches.size());
   header.layers = static_cast<std::uint16_t>(layers.size());
   header.numbers = static_cast<std::uint16_t>(numbers.size());
-  std::vector<std::uint32_t> words;
-  append(words, std::vector{header});
+  header.table_words = static_cast<std::uint32_t>(tables.size());
+  Words words;
+  append(words, &header, 1);
   append(words, patches);
   append(words, layers);
   append(words, numbers);
+  append(words, tables);
   header.check =
       core::scene_check(words.data(), static_cast<std::uint32_t>(words.size() * sizeof(std::uint32_t)));
   std::memcpy(words.data(), &header, sizeof header);
@@ -121,27 +208,55 @@ core::SceneView PreparedScene::view() const {
   return view;
 }
 
+PreparedScene PreparedScene::with(std::vector<schema::Patch> others) const {
+  PreparedScene scene{std::move(others), {}, steps, stiffness_limit_n_per_m};
+  scene.words = block_of(scene.patches, steps);
+  return scene;
+}
+
 std::vector<std::string_view> numbers_in_block(const ForceLayer& layer) {
-  std::vector<std::string_view> names;
-  if (!data_of(layer)) return names;
-  for (const auto& [name, number] : numbers_of(layer)) names.push_back(name);
-  return names;
+  const auto kind = kind_of(layer);
+  return kind ? kind->members : std::vector<std::string_view>();
 }
 
-std::size_t layer_bytes(const ForceLayer& layer) {
-  const MaybeData data = data_of(layer);
-  return data ? sizeof(core::SceneLayer) + data->numbers.size() * sizeof(float) : 0;
+std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLayer& layer) const {
+  return sizeof(core::SceneLayer) + numbers_in_block(layer).size() * sizeof(float) +
+         table_of(layer, patch, steps).size() * sizeof(std::uint32_t);
 }
 
-Result<PreparedScene> prepare_scene(const schema::Scene& scene, const std::string& where) {
+double stiffness_limit_of(const schema::Device& device, double rate_hz,
+                          const std::optional<schema::Hand>& hand) {
+  double limit = INFINITY;
+  for (const schema::DeviceAxis& axis : device.axes) {
+    if (axis.name == "z") continue;
+    const TickTiming timing{1 / rate_hz, device.delay_s * rate_hz};
+    limit = std::min(limit, hand ? stiffness_limit({axis.mass_kg + hand->mass_kg,
+                                                    axis.viscous_n_s_per_m + hand->damping_n_s_per_m,
+                                                    hand->stiffness_n_per_m},
+                                                   timing, 0)
+                                 : free_stiffness_limit(axis.mass_kg, axis.viscous_n_s_per_m, timing.period_s,
+                                                        timing.delay_ticks));
+  }
+  return limit;
+}
+
+Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& where,
+                                    const schema::Device& device, double rate_hz,
+                                    const std::optional<schema::Hand>& hand) {
   if (scene.patches.empty())
     return fail(ErrorKind::unsuitable, "this scene has no force patches", where,
                 "a scene of a tray is played with --transducer");
   TACTO_TRY(check_types(scene, where));
-  PreparedScene prepared{{scene.patches.rbegin(), scene.patches.rend()}, {}};
-  std::ranges::stable_sort(prepared.patches, std::ranges::greater(), &schema::Patch::order);
-  prepared.words = block_of(prepared.patches);
-  return prepared;
+  PreparedScene base;
+  base.stiffness_limit_n_per_m = stiffness_limit_of(device, rate_hz, hand);
+  for (const schema::DeviceAxis& axis : device.axes) {
+    if (axis.name == "x") base.steps.x_m = axis.encoder_step_m;
+    if (axis.name == "y") base.steps.y_m = axis.encoder_step_m;
+  }
+  TACTO_TRY(set_filters(scene, base.stiffness_limit_n_per_m, where));
+  std::ranges::reverse(scene.patches);
+  std::ranges::stable_sort(scene.patches, std::ranges::greater(), &schema::Patch::order);
+  return base.with(std::move(scene.patches));
 }
 
 }  // namespace tacto::playback

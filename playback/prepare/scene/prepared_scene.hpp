@@ -1,38 +1,57 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the force patches of a scene to the block that the kernel reads.
+// From the force patches of a scene to the block that the kernel of a device reads.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "data-schema/device/device.hpp"
+#include "data-schema/device/hand.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
 
 namespace tacto::playback {
 
-/// The block, and the patches from which it was made, both from the topmost patch on.
+/// Displacement of one encoder count, of the axes x and y; of an axis that the device has not, anything.
+struct PlaneSteps {
+  double x_m = 1, y_m = 1;
+};
+
+/// The block for one device, and the patches from which it was made, both from the topmost patch on.
 struct PreparedScene {
-  std::vector<schema::Patch> patches;
-  std::vector<std::uint32_t> words;  ///< the block (core::SceneHeader), little-endian
+  std::vector<schema::Patch> patches;  ///< filter_m of grooves is always a number
+  std::vector<std::uint32_t> words;    ///< the block (core::SceneHeader), little-endian
+  PlaneSteps steps;
+  double stiffness_limit_n_per_m = 0;  ///< stiffness_limit_of()
 
   std::size_t bytes() const { return words.size() * sizeof(std::uint32_t); }
   /// Points into this object.
   core::SceneView view() const;
+  /// Other patches for the same device, each of them once part of such a scene.
+  PreparedScene with(std::vector<schema::Patch> others) const;
+  /// The bytes of a layer in the block.
+  std::size_t layer_bytes(const schema::Patch& patch, const schema::ForceLayer& layer) const;
 };
-
-/// The bytes of a layer in the block.
-std::size_t layer_bytes(const schema::ForceLayer& layer);
 
 /// The members of a layer that are numbers in the block, in its order: they can change while the scene plays
 /// (core::SceneKernel::change). Empty for a type that cannot be played yet.
 std::vector<std::string_view> numbers_in_block(const schema::ForceLayer& layer);
 
+/// The largest stiffness that is stable at this rate along both axes: of the free device, or of the device
+/// with the mass, damping and stiffness of a hand. Coulomb friction is left out.
+double stiffness_limit_of(const schema::Device& device, double rate_hz,
+                          const std::optional<schema::Hand>& hand);
+
 /// Builds what the scene names and nothing else. Equal orders: the later patch is above. `where` is the
-/// scene's file. Precondition: a scene as read_scene() gives it. Errors: unsuitable, if it has no patches; by
-/// JSON pointer, for a type of layer that cannot be played yet (with those that can).
-schema::Result<PreparedScene> prepare_scene(const schema::Scene& scene, const std::string& where);
+/// scene's file. Preconditions: a scene as read_scene() gives it; the device has this rate, and an axis x or
+/// y. Errors: unsuitable, if it has no patches; by JSON pointer, for a type of layer that cannot be played
+/// yet (with those that can), and for the filter of grooves on a device without viscous friction.
+schema::Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& where,
+                                            const schema::Device& device, double rate_hz,
+                                            const std::optional<schema::Hand>& hand = std::nullopt);
 
 }  // namespace tacto::playback

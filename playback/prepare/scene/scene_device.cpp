@@ -8,6 +8,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware-host/core/scene/scene_kernel.hpp"
+#include "playback/prepare/relief/groove_series.hpp"
+
 namespace tacto::playback {
 
 using schema::Device;
@@ -73,19 +76,6 @@ class TurnedPatch {
     const Vector local = in_patch(place);
     return std::abs(local.x) <= patch_.width_m / 2 && std::abs(local.y) <= patch_.height_m / 2;
   }
-  // The force of its springs, in the plane.
-  Vector spring_force_n(Vector place) const {
-    const Vector local = in_patch(place);
-    double u = 0, v = 0;
-    for (const schema::ForceLayer& layer : patch_.layers)
-      layer.visit(
-          [&](const schema::SpringLayer& spring) {
-            u -= spring.stiffness_n_per_m.value * (local.x - spring.centre_x_m.value);
-            v -= spring.stiffness_n_per_m.value * (local.y - spring.centre_y_m.value);
-          },
-          [](const auto& /*other*/) {});
-    return {cosine_ * u - sine_ * v, sine_ * u + cosine_ * v};
-  }
 
  private:
   const schema::Patch& patch_;
@@ -114,22 +104,34 @@ std::vector<Vector> places_of(const schema::Patch& patch, const TurnedPatch& tur
   return places;
 }
 
-bool exceeds(Vector force_n, const PlaneTravel& travel, double peak_n) {
-  const double along[2] = {force_n.x, force_n.y};
-  double square = 0;
-  for (int i = 0; i < 2; ++i) {
-    if (travel.axes[i] == nullptr) continue;
-    if (std::abs(along[i]) > travel.axes[i]->peak_force_n) return true;
-    square += along[i] * along[i];
+// Whether the force of a hand that rests at this place is beyond a limit.
+bool exceeds(const core::SceneView& patch, const core::ForceSetup& setup, float* live, Vector place) {
+  core::SceneKernel kernel;
+  kernel.set(patch, setup, live);
+  std::int32_t counts[core::kMostAxes] = {};
+  for (std::uint32_t i = 0; i < setup.axis_count; ++i) {
+    const core::ForceAxis& axis = setup.axes[i];
+    if (axis.along == core::AxisAlong::z) continue;
+    const double at_m = axis.along == core::AxisAlong::x ? place.x : place.y;
+    counts[i] = static_cast<std::int32_t>(std::lround(at_m / double{axis.metres_per_count}));
   }
-  return square > peak_n * peak_n;
+  const core::ForceOutput output = kernel.tick(counts, true);
+  double square = 0;
+  for (std::uint32_t i = 0; i < setup.axis_count; ++i) {
+    const double force_n = double{output.unlimited_n[i]};
+    if (std::abs(force_n) > double{setup.axes[i].peak_n}) return true;
+    square += force_n * force_n;
+  }
+  return square > double{setup.peak_n} * double{setup.peak_n};
 }
 
 double percent_of(std::size_t part, std::size_t of) {
   return 100.0 * static_cast<double>(part) / static_cast<double>(of);
 }
 
-void note_patch(const schema::Patch& patch, const Device& device, std::vector<std::string>& notes) {
+void note_patch(const PreparedScene& alone, const Device& device, const core::ForceSetup& setup,
+                std::vector<std::string>& notes) {
+  const schema::Patch& patch = alone.patches.front();
   const PlaneTravel travel(device);
   const TurnedPatch turned(patch);
   std::vector<Vector> places = places_of(patch, turned, travel);
@@ -142,14 +144,27 @@ void note_patch(const schema::Patch& patch, const Device& device, std::vector<st
   if (places.size() < all)
     notes.push_back(fmt::format("patch '{}': {:.3g} % of its area is outside the travel of the device",
                                 patch.name, percent_of(all - places.size(), all)));
-  const auto high = std::ranges::count_if(places, [&](Vector place) {
-    return exceeds(turned.spring_force_n(place), travel, device.peak_force_n);
-  });
+  const core::SceneView view = alone.view();
+  std::vector<float> live(view.number_count);
+  const auto high =
+      std::ranges::count_if(places, [&](Vector place) { return exceeds(view, setup, live.data(), place); });
   if (high > 0)
-    notes.push_back(fmt::format(
-        "patch '{}': its springs exceed the peak force of the device at {:.3g} % of the places that the hand "
-        "reaches; there the force is limited",
-        patch.name, percent_of(static_cast<std::size_t>(high), places.size())));
+    notes.push_back(
+        fmt::format("patch '{}': its force on a hand at rest exceeds the peak force of the device at {:.3g} "
+                    "% of the places "
+                    "that the hand reaches; there the force is limited",
+                    patch.name, percent_of(static_cast<std::size_t>(high), places.size())));
+}
+
+void note_stiffness(const schema::Patch& patch, double limit_n_per_m, std::vector<std::string>& notes) {
+  for (const schema::ForceLayer& layer : patch.layers) {
+    const double stiffness_n_per_m = local_stiffness_n_per_m(layer);
+    if (limit_n_per_m > 0 && stiffness_n_per_m > limit_n_per_m)
+      notes.push_back(fmt::format(
+          "patch '{}': a layer of the type {} has a stiffness of {:.4g} N/m; the device is stable up "
+          "to {:.4g} N/m",
+          patch.name, type_of(layer), stiffness_n_per_m, limit_n_per_m));
+  }
 }
 
 }  // namespace
@@ -173,7 +188,20 @@ Result<core::ForceSetup> force_setup_of(const Device& device, std::optional<doub
   return setup;
 }
 
-std::vector<std::string> limits_of_device(const PreparedScene& scene, const Device& device) {
+double local_stiffness_n_per_m(const schema::ForceLayer& layer) {
+  return layer.visit(
+      [](const schema::SpringLayer& spring) { return largest_value(spring.stiffness_n_per_m); },
+      [](const schema::GroovesLayer& grooves) {
+        const double period_m = grooves.period_m.value;
+        const auto amplitudes = groove_amplitudes(grooves.profile, grooves.filter_m->value / period_m);
+        return largest_value(grooves.kappa_n) * largest_value(grooves.depth_m) *
+               largest_curvature(amplitudes) / (period_m * period_m);
+      },
+      [](const auto& /*other*/) { return 0.0; });
+}
+
+std::vector<std::string> limits_of_device(const PreparedScene& scene, const Device& device,
+                                          const core::ForceSetup& setup) {
   std::vector<std::string> notes;
   for (const char* name : {"x", "y"})
     if (axis_named(device, name) == nullptr)
@@ -181,7 +209,10 @@ std::vector<std::string> limits_of_device(const PreparedScene& scene, const Devi
           fmt::format("the device has no axis {0}: the hand stays at {0} = 0, and forces along {0} "
                       "are left out",
                       name));
-  for (const schema::Patch& patch : scene.patches) note_patch(patch, device, notes);
+  for (const schema::Patch& patch : scene.patches) {
+    note_patch(scene.with({patch}), device, setup, notes);
+    note_stiffness(patch, scene.stiffness_limit_n_per_m, notes);
+  }
   return notes;
 }
 

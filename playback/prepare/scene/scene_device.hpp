@@ -16,10 +16,16 @@ namespace tacto::playback {
 /// device's rates, or if the device has neither an axis x nor y: a scene is in the plane of x and y.
 schema::Result<core::ForceSetup> force_setup_of(const schema::Device& device, std::optional<double> rate_hz);
 
+/// The largest stiffness of a layer for a small motion, with the upper ends of its sliders: of a spring, and
+/// kappa times the largest curvature of grooves. 0 for other types.
+double local_stiffness_n_per_m(const schema::ForceLayer& layer);
+
 /// Warnings, one line each: an axis x or y that the device does not have; patches beyond its travel, with the
-/// share of their area; springs that exceed a peak force, with the share of the patch's places in which they
-/// do. Shares are those of a grid of 101 x 101 places.
-/// Precondition: the device has an axis x or y.
-std::vector<std::string> limits_of_device(const PreparedScene& scene, const schema::Device& device);
+/// share of their area; patches whose force on a hand at rest exceeds a peak force, with the share of the
+/// places in which it does; layers stiffer than the scene's stiffness limit. Shares are those of a grid of
+/// 101 x 101 places.
+/// Precondition: the scene was prepared for this device; `setup` by force_setup_of().
+std::vector<std::string> limits_of_device(const PreparedScene& scene, const schema::Device& device,
+                                          const core::ForceSetup& setup);
 
 }  // namespace tacto::playback

@@ -7,6 +7,7 @@
 
 #include "firmware-host/core/scene/edge_speed.hpp"
 #include "firmware-host/core/scene/force_limiter.hpp"
+#include "playback/prepare/relief/groove_series.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -17,7 +18,31 @@ double norm(const std::vector<double>& values) {
   return std::sqrt(sum);
 }
 
+// 1 up to 3/8 of the rate, 0 from half of it on.
+double held_by_rate(double cycles_per_tick) {
+  const double s = std::clamp(8 * (cycles_per_tick - 0.375), 0.0, 1.0);
+  return 1 - s * s * (3 - 2 * s);
+}
+
 }  // namespace
+
+// -kappa times the derivative of the series, along the direction of the grooves.
+ExactScene::Vector ExactScene::groove_force(const schema::GroovesLayer& grooves, double angle_rad,
+                                            Vector from_centre, Vector speed) const {
+  const double across = angle_rad + grooves.direction_deg.value * std::numbers::pi / 180;
+  const double x = std::cos(across), y = std::sin(across), period_m = grooves.period_m.value;
+  const double per_tick = std::abs(x * speed.x + y * speed.y) / period_m / rate_hz_;
+  const double turn = 2 * std::numbers::pi / period_m;
+  const auto amplitudes = groove_amplitudes(grooves.profile, grooves.filter_m->value / period_m);
+  double slope = 0;
+  for (std::size_t n = 1; n <= amplitudes.size(); ++n) {
+    const auto order = static_cast<double>(n);
+    const double angle = turn * order * (x * from_centre.x + y * from_centre.y);
+    slope -= held_by_rate(order * per_tick) * amplitudes[n - 1] * turn * order * std::sin(angle);
+  }
+  const double force_n = -grooves.kappa_n.value * grooves.depth_m.value * slope;
+  return {force_n * x, force_n * y};
+}
 
 ExactScene::ExactScene(const PreparedScene& scene, const schema::Device& device, double rate_hz)
     : scene_(scene),
@@ -97,6 +122,11 @@ ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vec
           [&](const schema::DamperLayer& damper) {
             sum.x -= damper.damping_n_s_per_m.value * speed.x;
             sum.y -= damper.damping_n_s_per_m.value * speed.y;
+          },
+          [&](const schema::GroovesLayer& grooves) {
+            const Vector along =
+                groove_force(grooves, angle, {place.x - patch.x_m, place.y - patch.y_m}, speed);
+            sum.x += along.x, sum.y += along.y;
           },
           [](const auto& /*not prepared*/) {});
   }
