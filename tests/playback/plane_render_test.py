@@ -36,6 +36,10 @@ def grooves(profile, period, depth, kappa, **members):
     return {"type": "grooves", "profile": profile, "period_m": period, "depth_m": depth, "kappa_n": kappa, **members}
 
 
+def noise(period, depth, kappa, **members):
+    return {"type": "noise", "period_m": period, "depth_m": depth, "kappa_n": kappa, **members}
+
+
 def write_scene(name, *patches, **members):
     pathlib.Path(f"{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.1", "patches": list(patches), **members}))
 
@@ -196,6 +200,10 @@ def explain_lists_what_is_built():
     # 3/8 and 1/2 of the rate: of the last harmonic, and of the first.
     assert abs(row["whole_to_mps"] - 0.375 * 4000 * 0.001 / row["harmonics"]) < 1e-9 and row["zero_from_mps"] == 2, row
     assert row["bytes"] == 8 + 8 + 44 + 4 * row["harmonics"], row
+    write_scene("four", patch(layers=[noise(0.002, 1e-4, 1, octaves=3)]))
+    row = run_json("explain", "four.scene.json", "--device", "sandpaper-1990")["layers"][0]
+    # An octave has up to 2 cycles a period.
+    assert abs(row["whole_to_mps"] - 0.375 * 4000 * 0.001 / 4) < 1e-9 and abs(row["zero_from_mps"] - 2) < 1e-9 and row["bytes"] == 8 + 8 + 328 + 12, row
     write_scene("two", patch(layers=[spring(10), damper(4)]))
     two = run_json("explain", "two.scene.json", "--device", "sandpaper-1990", "--rate", "250Hz")
     assert two["rate_hz"] == 250 and "left_out" not in two and two["layers"][1]["peak_force_at_mps"] == 5, two
