@@ -194,6 +194,8 @@ def explain_lists_what_is_built():
     one = run_json("explain", "one.scene.json", "--device", "sandpaper-1990")
     assert one["fits"] is True and [row["type"] for row in one["layers"]] == ["spring"], one
     assert one["block_bytes"] + one["kernel_bytes"] < 4096 and one["layers"][0]["peak_force_at_m"] == 2, one
+    # A spring has no table: 8 bytes and three numbers, behind a header of 20 bytes and a patch of 32.
+    assert one["layers"][0]["bytes"] == 8 + 12 and one["block_bytes"] == 20 + 32 + 20, one
     assert [row["part"] for row in one["left_out"]] == ["speed of the hand"], one
     write_scene("three", patch(layers=[spring(10), grooves("square", 0.001, 1e-4, 1)]))
     row = run_json("explain", "three.scene.json", "--device", "sandpaper-1990")["layers"][1]

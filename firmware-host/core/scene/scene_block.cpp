@@ -150,7 +150,7 @@ SceneFault read_scene_block(const void* block, uint32_t bytes, SceneView& view) 
   const uint32_t patches = header.patches * uint32_t{sizeof(ScenePatch)},
                  layers = header.layers * uint32_t{sizeof(SceneLayer)},
                  numbers = header.numbers * uint32_t{sizeof(float)};
-  const uint32_t before_tables = sizeof header + patches + layers + numbers;
+  const uint32_t before_tables = uint32_t{sizeof header} + patches + layers + numbers;
   if (bytes < before_tables || (bytes - before_tables) % sizeof(uint32_t) != 0 ||
       header.table_words != (bytes - before_tables) / sizeof(uint32_t))
     return SceneFault::size;
