@@ -175,6 +175,13 @@ void add_grooves(Report& row, const schema::GroovesLayer& grooves, double rate_h
   row.add("zero_from_mps", core::kZeroPerTick * rate_hz * period_m);
 }
 
+void add_noise(Report& row, const schema::NoiseLayer& noise, double rate_hz) {
+  const double cell_m = noise.period_m.value / core::kNoiseCycles;  // of the highest frequency of an octave
+  row.add("octaves", noise.octaves.value);
+  row.add("whole_to_mps", core::kWholePerTick * rate_hz * cell_m / std::exp2(noise.octaves.value - 1));
+  row.add("zero_from_mps", core::kZeroPerTick * rate_hz * cell_m);
+}
+
 Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::size_t index) {
   const schema::ForceLayer& layer = patch.layers[index];
   Report row;
@@ -193,6 +200,7 @@ Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::si
         at_limit("force_limit_at_speed_mps", damper.damping_n_s_per_m.value);
       },
       [&](const schema::GroovesLayer& grooves) { add_grooves(row, grooves, double{on.setup.rate_hz}); },
+      [&](const schema::NoiseLayer& noise) { add_noise(row, noise, double{on.setup.rate_hz}); },
       [](const auto& /*other*/) {});
   return row;
 }

@@ -117,27 +117,34 @@ class TextureWorkload {
   float samples_[kTextureSamples], taps_[kTextureTaps];
 };
 
-inline constexpr uint32_t kSceneFingerprint = 1035090258;
+inline constexpr uint32_t kSceneFingerprint = 1542196115;
 
-/// A scene of three overlapping patches with springs, dampers and grooves, and a hand in the plane whose
-/// speed varies between rest and 60 counts per tick; all limits are reached.
+/// A scene of three overlapping patches with springs, dampers, grooves and noise, and a hand in the plane
+/// whose speed varies between rest and 60 counts per tick; all limits are reached.
 class SceneWorkload {
  public:
   SceneWorkload() noexcept {
-    block_.header.patches = 3, block_.header.layers = 5, block_.header.numbers = 10;
-    block_.header.table_words = sizeof block_.grooves / sizeof(uint32_t);
+    block_.header.patches = 3, block_.header.layers = 6, block_.header.numbers = 12;
+    block_.header.table_words = (sizeof block_.grooves + sizeof block_.noise) / sizeof(uint32_t);
     block_.patches[0] = {0.01F, 0, 0.8F, 0.6F, 0.02F, 0.01F, 0, 1, 0};
     block_.patches[1] = {0, 0, 1, 0, 0.1F, 0.1F, 1, 2, 0};
-    block_.patches[2] = {0, 0.01F, 0.6F, -0.8F, 0.1F, 0.03F, 3, 2, 1};
-    const uint16_t kinds[5] = {1, 0, 1, 0, 2}, firsts[5] = {0, 1, 4, 5, 8};
-    for (int i = 0; i < 5; ++i) block_.layers[i] = {kinds[i], firsts[i], 0};
-    const float numbers[10] = {3.3F, 400, 0.003F, -0.002F, 7.7F, 60, 0.01F, 0, 1e-4F, 2};
-    for (int i = 0; i < 10; ++i) block_.numbers[i] = numbers[i];
+    block_.patches[2] = {0, 0.01F, 0.6F, -0.8F, 0.1F, 0.03F, 3, 3, 1};
+    const uint16_t kinds[6] = {1, 0, 1, 0, 2, 3}, firsts[6] = {0, 1, 4, 5, 8, 10};
+    for (int i = 0; i < 6; ++i) block_.layers[i] = {kinds[i], firsts[i], 0};
+    block_.layers[5].table = sizeof block_.grooves / sizeof(uint32_t);
+    const float numbers[12] = {3.3F, 400, 0.003F, -0.002F, 7.7F, 60, 0.01F, 0, 1e-4F, 2, 2e-4F, 1};
+    for (int i = 0; i < 12; ++i) block_.numbers[i] = numbers[i];
     // 1 mm across the axis x of its patch: 0.006 and -0.008 periods per count.
     block_.grooves.table = {
         {-3, 1U << 31, {{0, 25769804, 3435973837U}, {-1, 4260607557U, 858993459}}}, 1000, 0, 9};
     const float amplitudes[9] = {0.63F, 0, -0.2F, 0, 0.11F, 0, -0.06F, 0, 0.03F};
     for (int i = 0; i < 9; ++i) block_.grooves.amplitudes[i] = amplitudes[i];
+    // 2 mm along both axes of the patch, four octaves.
+    block_.noise.table.along[0] = {7, 1U << 20, {{0, 12884902, 0}, {-1, 4277787426U, 0}}};
+    block_.noise.table.along[1] = {-9, 1U << 30, {{0, 17179869, 0}, {0, 12884902, 0}}};
+    block_.noise.table.periods_per_m = 500, block_.noise.table.octaves = 4;
+    block_.noise.table.gradients = core::shuffled_noise(5);
+    for (int i = 0; i < 4; ++i) block_.noise.amplitudes[i] = 0.25F / static_cast<float>(1 << i);
     block_.header.check = core::scene_check(&block_, sizeof block_);
     core::SceneView view;
     core::read_scene_block(&block_, sizeof block_, view);
@@ -171,17 +178,21 @@ class SceneWorkload {
   struct Block {
     core::SceneHeader header;
     core::ScenePatch patches[3];
-    core::SceneLayer layers[5];
-    float numbers[10];
+    core::SceneLayer layers[6];
+    float numbers[12];
     struct {
       core::GroovesTable table;
       float amplitudes[9];
     } grooves;
+    struct {
+      core::NoiseSurfaceTable table;
+      float amplitudes[4];
+    } noise;
   } block_;
   WorkloadRandom next_{1990};
   uint32_t flags_ = 0, ticks_ = 0;
   int32_t counts_[2] = {}, speed_[2] = {};
-  float live_[10];
+  float live_[12];
   core::SceneKernel kernel_;
 };
 

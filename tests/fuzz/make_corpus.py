@@ -51,6 +51,12 @@ def grooves_table(per_count, per_m, amplitudes):
     return struct.pack("<iIiIIiII2fI", -1, 2**31, *strides, *per_m, len(amplitudes)) + struct.pack(f"<{len(amplitudes)}f", *amplitudes)
 
 
+def noise_table(per_count, per_m, amplitudes):
+    """The axes of the patch are those of the plane."""
+    rows = struct.pack("<iIiIIiII", 0, 0, per_count >> 32, per_count & 0xFFFFFFFF, 0, 0, 0, 0) + struct.pack("<iIiIIiII", 5, 77, 0, 0, 0, per_count >> 32, per_count & 0xFFFFFFFF, 0)
+    return rows + struct.pack("<fI", per_m, len(amplitudes)) + bytes(range(256)) + struct.pack(f"<{len(amplitudes)}f", *amplitudes)
+
+
 def scene_block(patches):
     """With a check of zero; a patch is (x, y, cosine, sine, half sizes, adds, [(kind, numbers, table)]), the table if there is one."""
     layers = [layer for patch in patches for layer in patch[-1]]
@@ -114,7 +120,7 @@ DEVICES = {
 }
 
 
-SPRING, DAMPER, GROOVES = 0, 1, 2
+SPRING, DAMPER, GROOVES, NOISE = 0, 1, 2, 3
 SCENES = {
     "spring": scene((3, -2, 5, 0), [(0, 0, 1, 0, 0.1, 0.1, 0, [(SPRING, (100, 0, 0))])]),
     "ice_on_soup": scene((90, 1, -70, 40), [(0, 0, 0.6, 0.8, 0.01, 0.01, 0, [(DAMPER, (0.1,))]),
@@ -122,6 +128,8 @@ SCENES = {
                                            (0.01, 0, 1, 0, 1, 1, 1, [(SPRING, (1e6, 0.01, -0.02)), (DAMPER, (1e4,))])]),
     "grooves": scene((3, -2, 50, 7), [(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(GROOVES, (1e-4, 2), grooves_table((2**25, -2**24), (800, 600), (0.6, 0, -0.2))),
                                                                       (GROOVES, (1, 1000), grooves_table((2**40, 7), (1e6, 0), (2,) * 64)), (DAMPER, (1,))])]),
+    "noise": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [(NOISE, (1e-4, 2), noise_table(2**26, 900, (0.5, 0.25, 0.125))),
+                                                                 (NOISE, (1, 1000), noise_table(2**50, 1e6, (2,) * 16))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,))])]),
 }
 

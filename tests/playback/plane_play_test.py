@@ -8,7 +8,7 @@ import struct
 import numpy as np
 
 import tacto
-from plane_render_test import KNOTS, MALFORMED, UNSUITABLE, USAGE, damper, grooves, patch, sampled_loop, spring, write_hand, write_line, write_path, write_scene
+from plane_render_test import KNOTS, MALFORMED, UNSUITABLE, USAGE, damper, grooves, noise, patch, sampled_loop, spring, write_hand, write_line, write_path, write_scene
 from tacto import run, run_json
 
 DEVICE_FAILED = 8
@@ -47,7 +47,7 @@ def a_played_scene_has_the_forces_of_render():
 
 
 def surfaces_replay_to_the_bit():
-    write_scene("surfaces", patch(angle_deg=10, layers=[grooves("square", 0.002, 1e-4, 1, direction_deg=-30), spring(5)]),
+    write_scene("surfaces", patch(angle_deg=10, layers=[grooves("square", 0.002, 1e-4, 1, direction_deg=-30), spring(5), noise(0.003, 1e-4, 0.5, octaves=6, seed=9)]),
                 patch(name="more", combine="add", layers=[grooves("triangle", 0.001, 5e-5, 0.5, direction_deg=90)]))
     write_path("path.csv", KNOTS)
     for uri, hand in (("sim:planar", ()), ("sim:planar,device=sandpaper-1990,hand=minsky-radial", ("--hand", "minsky-radial"))):

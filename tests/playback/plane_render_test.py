@@ -36,6 +36,10 @@ def grooves(profile, period, depth, kappa, **members):
     return {"type": "grooves", "profile": profile, "period_m": period, "depth_m": depth, "kappa_n": kappa, **members}
 
 
+def noise(period, depth, kappa, **members):
+    return {"type": "noise", "period_m": period, "depth_m": depth, "kappa_n": kappa, **members}
+
+
 def write_scene(name, *patches, **members):
     pathlib.Path(f"{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "patches": list(patches), **members}))
 
@@ -190,12 +194,18 @@ def explain_lists_what_is_built():
     one = run_json("explain", "one.scene.json", "--device", "sandpaper-1990")
     assert one["fits"] is True and [row["type"] for row in one["layers"]] == ["spring"], one
     assert one["block_bytes"] + one["kernel_bytes"] < 4096 and one["layers"][0]["force_limit_at_displacement_m"] == 2, one
+    # A spring has no table: 8 bytes and three numbers, behind a header of 20 bytes and a patch of 32.
+    assert one["layers"][0]["bytes"] == 8 + 12 and one["block_bytes"] == 20 + 32 + 20, one
     assert [row["part"] for row in one["left_out"]] == ["speed of the hand"], one
     write_scene("three", patch(layers=[spring(10), grooves("square", 0.001, 1e-4, 1)]))
     row = run_json("explain", "three.scene.json", "--device", "sandpaper-1990")["layers"][1]
     # 3/8 and 1/2 of the rate: of the last harmonic, and of the first.
     assert abs(row["whole_to_mps"] - 0.375 * 4000 * 0.001 / row["harmonics"]) < 1e-9 and row["zero_from_mps"] == 2, row
     assert row["bytes"] == 8 + 8 + 44 + 4 * row["harmonics"], row
+    write_scene("four", patch(layers=[noise(0.002, 1e-4, 1, octaves=3)]))
+    row = run_json("explain", "four.scene.json", "--device", "sandpaper-1990")["layers"][0]
+    # An octave has up to 2 cycles a period.
+    assert abs(row["whole_to_mps"] - 0.375 * 4000 * 0.001 / 4) < 1e-9 and abs(row["zero_from_mps"] - 2) < 1e-9 and row["bytes"] == 8 + 8 + 328 + 12, row
     write_scene("two", patch(layers=[spring(10), damper(4)]))
     two = run_json("explain", "two.scene.json", "--device", "sandpaper-1990", "--rate", "250Hz")
     assert two["rate_hz"] == 250 and "left_out" not in two and two["layers"][1]["force_limit_at_speed_mps"] == 5, two

@@ -14,6 +14,7 @@
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/plane_render.hpp"
+#include "playback/render/reference/exact_noise.hpp"
 #include "playback/render/reference/exact_scene.hpp"
 #include "playback/stability/free_limit.hpp"
 #include "playback/stability/sampled_spring.hpp"
@@ -54,6 +55,12 @@ schema::ForceLayer damper(double damping_n_s_per_m) {
 schema::GroovesLayer grooves(schema::GrooveProfile profile, double period_m, double depth_m, double kappa_n,
                              double direction_deg = 0, std::optional<schema::LayerNumber> filter_m = {}) {
   return {profile, {period_m}, {depth_m}, {kappa_n}, {direction_deg}, filter_m, {1.5}, ""};
+}
+
+schema::ForceLayer noise(double period_m, int octaves, double roughness, double seed, double depth_m,
+                         double kappa_n) {
+  return schema::NoiseLayer{
+      {period_m}, {static_cast<double>(octaves)}, {roughness}, {seed}, {depth_m}, {kappa_n}, ""};
 }
 
 Patch patch(const std::string& name, std::vector<schema::ForceLayer> layers) {
@@ -261,6 +268,61 @@ TEST(SceneKernel, NoFrequencyAboveHalfTheRateIsPlayed) {
   EXPECT_GT(powers.at_400_hz, 0.3 * (powers.harmonics + powers.rest));
 }
 
+// Against the heights in double precision, by central differences; of single precision 2e-6 per octave.
+TEST(SceneKernel, NoisePushesDownItsSlope) {
+  Patch turned = patch("turned", {noise(3e-3, 4, 0.6, 7, 2e-4, 1.5)});
+  turned.x_m = 0.0123;
+  turned.angle_deg = -35;
+  OnDevice on(unlimited(1e-9), {turned});
+  const core::NoiseTable table = core::shuffled_noise(7);
+  const double c = std::cos(-35 * std::numbers::pi / 180), s = std::sin(-35 * std::numbers::pi / 180);
+  const auto height_m = [&](double x_m, double y_m) {
+    const double u = (c * (x_m - 0.0123) + s * y_m) / 3e-3, v = (c * y_m - s * (x_m - 0.0123)) / 3e-3;
+    double sum = 0, weights = 0;
+    for (int i = 0; i < 4; ++i) {
+      sum += std::pow(0.6, i) * exact_noise(table, std::exp2(i) * u, std::exp2(i) * v, 0);
+      weights += std::pow(0.6, i);
+    }
+    return 2e-4 * 0.5 * sum / weights;
+  };
+  std::mt19937_64 random(51);
+  std::uniform_real_distribution<double> place(-0.06, 0.06);
+  double worst = 0, largest = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double x = std::round(place(random) * 1e9) * 1e-9, y = std::round(place(random) * 1e9) * 1e-9;
+    on.kernel.set(on.scene.view(), *force_setup_of(on.device, 1000), on.live.data());
+    const core::ForceOutput output = on.at(x, y);
+    const double h = 1e-8, by_x = (height_m(x + h, y) - height_m(x - h, y)) / (2 * h),
+                 by_y = (height_m(x, y + h) - height_m(x, y - h)) / (2 * h);
+    worst =
+        std::max({worst, std::abs(output.force_n[0] + 1.5 * by_x), std::abs(output.force_n[1] + 1.5 * by_y)});
+    largest = std::max(largest, 1.5 * std::hypot(by_x, by_y));
+  }
+  std::printf("  noise of four octaves: within %.2g N, of %.2g N\n", worst, largest);
+  EXPECT_GT(largest, 0.05);
+  EXPECT_LT(worst, 2e-6 * 1.5 * 2e-4 * 0.5 / 3e-3 * (1 + 1.2 + 1.44 + 1.728) / (1 + 0.6 + 0.36 + 0.216) * 2);
+}
+
+// The octave whose frequencies pass half the rate is not played; at rest all are.
+TEST(SceneKernel, OctavesEndWithTheSpeed) {
+  const auto power = [&](int octaves, double speed_mps) {
+    Patch wide = patch("a", {noise(4e-3, octaves, 1, 0, 1e-4, 1)});
+    wide.width_m = 10;
+    OnDevice on(unlimited(1e-7), {wide});
+    double sum = 0;
+    for (int tick = -50; tick < 4000; ++tick) {
+      const core::ForceOutput output = on.at(speed_mps * 1e-3 * tick - 1, 1e-3);
+      // The amplitudes are 1 / (2 octaves).
+      if (tick >= 0) sum += std::pow(double{output.force_n[1]} * octaves, 2) / 4000;
+    }
+    return sum;
+  };
+  // 0.3 m/s: 0.15 cycles per tick of the lowest octave, 0.3, 0.6 of the third.
+  EXPECT_NEAR(power(3, 0.3), power(2, 0.3), 1e-5 * power(2, 0.3));
+  EXPECT_GT(power(3, 0.1), 2 * power(2, 0.1));
+  EXPECT_EQ(power(1, 1.01), 0);
+}
+
 // Layers, patches and numbers at random, a hand that wanders, rests and jumps: the differences are those of
 // single precision. The bound is relative to the sum of the absolute forces of one layer of each patch.
 TEST(SceneKernel, SinglePrecisionIsTheReference) {
@@ -281,6 +343,9 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
           grooves(profile, draw(5e-4, 5e-3), draw(0, 1e-3), draw(0, 3), draw(-360, 360));
       patches.back().layers.push_back(wave);
       scale += largest_slope_n(wave);
+      const double cell_m = draw(1e-3, 1e-2), depth_m = draw(0, 1e-3), kappa_n = draw(0, 1);
+      patches.back().layers.push_back(noise(cell_m, 1 + i, 0.5, i, depth_m, kappa_n));
+      scale += kappa_n * depth_m / cell_m * 2;  // the slope of an octave is within 4 per cell
       patches.back().x_m = draw(-0.05, 0.05);
       patches.back().angle_deg = draw(-360, 360);
       patches.back().order = draw(-1, 1);
@@ -441,9 +506,9 @@ TEST(EdgeSpeed, AnAccelerationShortensTheWindow) {
 }
 
 PreparedScene block_of_all() {
-  return prepared(
-      {patch("a", {spring(5, 0.01), grooves(schema::GrooveProfile::square, 1e-3, 1e-4, 1), damper(2)}),
-       patch("b", {damper(1)})});
+  return prepared({patch("a", {spring(5, 0.01), grooves(schema::GrooveProfile::square, 1e-3, 1e-4, 1),
+                               damper(2), noise(1e-3, 3, 0.5, 1, 1e-4, 1)}),
+                   patch("b", {damper(1)})});
 }
 
 TEST(SceneBlock, ACutOrChangedBlockIsRefused) {
@@ -452,7 +517,7 @@ TEST(SceneBlock, ACutOrChangedBlockIsRefused) {
   const auto bytes = static_cast<std::uint32_t>(scene.bytes());
   EXPECT_EQ(core::read_scene_block(scene.words.data(), bytes, view), core::SceneFault::none);
   EXPECT_EQ(view.patch_count, 2U);
-  EXPECT_EQ(view.layer_count, 4U);
+  EXPECT_EQ(view.layer_count, 5U);
   for (std::uint32_t size = 0; size < bytes; ++size)
     EXPECT_NE(core::read_scene_block(scene.words.data(), size, view), core::SceneFault::none) << size;
   for (std::uint32_t bit = 0; bit < 8 * bytes; ++bit) {

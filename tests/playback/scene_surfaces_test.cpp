@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <cstring>
 #include <functional>
 #include <numbers>
@@ -15,6 +16,7 @@
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/relief_coefficients.hpp"
 #include "playback/render/reference/exact_noise.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -76,6 +78,45 @@ TEST(SceneNoise, AFractalIsTheSumOfItsOctaves) {
   }
   EXPECT_NEAR(sum.value, value, 1e-7);
   EXPECT_NEAR(sum.by_x, by_x, 1e-6);
+}
+
+// The mean spectrum of sections of a fractal, averaged over octaves of frequency: power 2^(-(2 H + 1) octave)
+// where the amplitude of octave i of the noise is 2^(-H i) (Voss 1988).
+TEST(SceneNoise, ASectionOfAFractalFallsByItsRoughness) {
+  constexpr std::size_t kPlaces = 8192, kPerCell = 512;
+  spatial::RealFft fft(kPlaces);
+  std::vector<double> section(kPlaces);
+  std::vector<std::complex<double>> spectrum(fft.bins());
+  for (const double h : {0.3, 0.5, 0.8}) {
+    float weights[8];
+    for (int i = 0; i < 8; ++i) weights[i] = static_cast<float>(std::exp2(-h * i));
+    std::mt19937_64 random(17);
+    std::uniform_real_distribution<double> anywhere(0, 200);
+    std::vector<double> power(fft.bins());
+    for (int run = 0; run < 60; ++run) {
+      const double x = anywhere(random), y = anywhere(random), angle = anywhere(random);
+      for (std::size_t i = 0; i < kPlaces; ++i) {
+        const double along = static_cast<double>(i) / kPerCell, part = static_cast<double>(i) / kPlaces;
+        section[i] = 0.5 * (1 - std::cos(kTurnRad * part)) *
+                     double{core::fractal_noise(core::kPerlinNoise, q32(x + along * std::cos(angle)),
+                                                q32(y + along * std::sin(angle)), 0, weights, 8)
+                                .value};
+      }
+      fft.forward(section, spectrum);
+      for (std::size_t bin = 0; bin < power.size(); ++bin) power[bin] += std::norm(spectrum[bin]);
+    }
+    // Octaves from 1 to 64 cycles per cell, 16 bins to a cycle; the line of least squares through their
+    // means.
+    double xy = 0, xx = 0;
+    for (int octave = 0; octave < 6; ++octave) {
+      const std::size_t from = std::size_t{16} << octave;
+      double sum = 0;
+      for (std::size_t bin = from; bin < 2 * from; ++bin) sum += power[bin];
+      xy += (octave - 2.5) * std::log2(sum / static_cast<double>(from));
+      xx += (octave - 2.5) * (octave - 2.5);
+    }
+    EXPECT_NEAR(xy / xx, -(2 * h + 1), 0.1) << h;
+  }
 }
 
 TEST(SceneTurn, SineAndCosineWithinTheirError) {

@@ -16,10 +16,6 @@ struct Grooves {
   uint32_t harmonics = 0;
 };
 
-inline const float* amplitudes_of(const GroovesTable& table) noexcept {
-  return reinterpret_cast<const float*>(&table + 1);
-}
-
 struct GrooveSample {
   float value = 0;
   float by_phase = 0;  ///< derivative, per period

@@ -110,9 +110,9 @@ NoiseSample noise(const NoiseTable& table, Q32 x_place, Q32 y_place, Q32 z_place
              cell_z = static_cast<uint32_t>(z.cell);
   const uint32_t a = hash(cell_x) + cell_y, b = hash(cell_x + 1) + cell_y;
   const uint8_t columns[4] = {hash(a), hash(b), hash(a + 1), hash(b + 1)};
-  const Mix along_z(z.part);
-  return mixed(along_z, slice(hash, columns, cell_z, x, y, z.part),
-               slice(hash, columns, cell_z + 1, x, y, z.part - 1));
+  const NoiseSample low = slice(hash, columns, cell_z, x, y, z.part);
+  if (z.part == 0) return low;
+  return mixed(Mix(z.part), low, slice(hash, columns, cell_z + 1, x, y, z.part - 1));
 }
 
 NoiseSample fractal_noise(const NoiseTable& table, Q32 x, Q32 y, Q32 z, const float* weights,

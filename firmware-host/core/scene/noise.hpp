@@ -29,6 +29,10 @@ NoiseSample noise(const NoiseTable& table, Q32 x, Q32 y, Q32 z) noexcept;
 
 inline constexpr uint32_t kMostOctaves = 16;
 
+/// Up to this frequency of its sections, in cycles per cell, an octave is played whole: above it lies 0.15 %
+/// of the power of its slope, by a spectrum of 2e6 places.
+inline constexpr float kNoiseCycles = 2;
+
 /// Octave i is 2^i times as fine and weighted with weights[i]: for a fractal of roughness H, 2^(-H i), times
 /// what the finger's speed leaves of it. Octaves of weight 0 are not computed. Precondition: octaves <=
 /// kMostOctaves. Safe in the tick.

@@ -38,37 +38,49 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
     case SceneLayerKind::damper:
       return within(number[kDamperDamping], 0, kMostDamping_n_s_per_m);
     case SceneLayerKind::grooves:
+    case SceneLayerKind::noise:
       break;
   }
   return within(number[kSurfaceDepth], 0, kDeepest_m) && within(number[kSurfaceKappa], 0, kMostKappa_n);
 }
 
-template <class Table>
-constexpr uint32_t kWordsOf = sizeof(Table) / sizeof(uint32_t);
+bool amplitudes_sound(const float* amplitude, uint32_t count) noexcept {
+  for (uint32_t i = 0; i < count; ++i)
+    if (!within(amplitude[i], -kLargestAmplitude, kLargestAmplitude)) return false;
+  return true;
+}
 
-// Each of these reads the table at the place of `layer`, of which `room` words are in the block, and sets the
-// number of words that it has.
-SceneFault check_grooves(const SceneView& view, const SceneLayer& layer, uint32_t room,
-                         uint32_t& words) noexcept {
-  if (room < kWordsOf<GroovesTable>) return SceneFault::structure;
-  const auto& table = table_of<GroovesTable>(view, layer);
-  if (table.harmonics > kMostHarmonics || table.harmonics > room - kWordsOf<GroovesTable>)
-    return SceneFault::structure;
-  words = kWordsOf<GroovesTable> + table.harmonics;
-  const float* const amplitudes = amplitudes_of(table);
-  for (uint32_t i = 0; i < table.harmonics; ++i)
-    if (!within(amplitudes[i], -kLargestAmplitude, kLargestAmplitude)) return SceneFault::value;
+bool sound(const GroovesTable& table) noexcept {
   return within(table.periods_per_m_x, -kMostPeriods_per_m, kMostPeriods_per_m) &&
-                 within(table.periods_per_m_y, -kMostPeriods_per_m, kMostPeriods_per_m)
-             ? SceneFault::none
-             : SceneFault::value;
+         within(table.periods_per_m_y, -kMostPeriods_per_m, kMostPeriods_per_m) &&
+         amplitudes_sound(amplitudes_of(table), table.harmonics);
+}
+
+bool sound(const NoiseSurfaceTable& table) noexcept {
+  return within(table.periods_per_m, 0, kMostPeriods_per_m) &&
+         amplitudes_sound(amplitudes_of(table), table.octaves);
+}
+
+// A table that ends with amplitudes, at the place of `layer`; `room` words are left in the block. Sets its
+// length in words.
+template <class Table>
+SceneFault check_surface(const SceneView& view, const SceneLayer& layer, uint32_t Table::*amplitudes,
+                         uint32_t most, uint32_t room, uint32_t& words) noexcept {
+  constexpr uint32_t kHead = sizeof(Table) / sizeof(uint32_t);
+  if (room < kHead) return SceneFault::structure;
+  const auto& table = table_of<Table>(view, layer);
+  if (table.*amplitudes > most || table.*amplitudes > room - kHead) return SceneFault::structure;
+  words = kHead + table.*amplitudes;
+  return sound(table) ? SceneFault::none : SceneFault::value;
 }
 
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,
                        uint32_t& words) noexcept {
   switch (static_cast<SceneLayerKind>(layer.kind)) {
     case SceneLayerKind::grooves:
-      return check_grooves(view, layer, room, words);
+      return check_surface(view, layer, &GroovesTable::harmonics, kMostHarmonics, room, words);
+    case SceneLayerKind::noise:
+      return check_surface(view, layer, &NoiseSurfaceTable::octaves, kMostOctaves, room, words);
     case SceneLayerKind::spring:
     case SceneLayerKind::damper:
       break;
@@ -138,7 +150,7 @@ SceneFault read_scene_block(const void* block, uint32_t bytes, SceneView& view) 
   const uint32_t patches = header.patches * uint32_t{sizeof(ScenePatch)},
                  layers = header.layers * uint32_t{sizeof(SceneLayer)},
                  numbers = header.numbers * uint32_t{sizeof(float)};
-  const uint32_t before_tables = sizeof header + patches + layers + numbers;
+  const uint32_t before_tables = uint32_t{sizeof header} + patches + layers + numbers;
   if (bytes < before_tables || (bytes - before_tables) % sizeof(uint32_t) != 0 ||
       header.table_words != (bytes - before_tables) / sizeof(uint32_t))
     return SceneFault::size;

@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #include "firmware-host/core/scene/lattice_place.hpp"
+#include "firmware-host/core/scene/noise.hpp"
 
 namespace tacto::core {
 
@@ -14,8 +15,8 @@ inline constexpr uint32_t kMostSceneLayers = 256;
 inline constexpr uint32_t kMostLayerNumbers = 4;
 
 /// The kinds of layers that the kernel has. A number is never reused.
-enum class SceneLayerKind : uint16_t { spring = 0, damper = 1, grooves = 2 };
-inline constexpr uint16_t kSceneLayerKinds = 3;
+enum class SceneLayerKind : uint16_t { spring = 0, damper = 1, grooves = 2, noise = 3 };
+inline constexpr uint16_t kSceneLayerKinds = 4;
 
 /// The places of a layer's numbers, from its first one.
 enum SpringNumber : uint32_t { kSpringStiffness = 0, kSpringCentreX = 1, kSpringCentreY = 2 };
@@ -30,6 +31,7 @@ constexpr uint32_t numbers_of(SceneLayerKind kind) noexcept {
     case SceneLayerKind::damper:
       return 1;
     case SceneLayerKind::grooves:
+    case SceneLayerKind::noise:
       break;
   }
   return 2;
@@ -84,6 +86,22 @@ struct GroovesTable {
   uint32_t harmonics = 0;
 };
 static_assert(sizeof(GroovesTable) == 44);
+
+/// Before the amplitudes of the octaves, from the lowest on, f32, for a depth of 1. The surface is the
+/// section of the noise at z = 0.
+struct NoiseSurfaceTable {
+  SceneRow along[2];        ///< along the axes x and y of the patch
+  float periods_per_m = 0;  ///< of the lowest octave
+  uint32_t octaves = 0;
+  NoiseTable gradients;
+};
+static_assert(sizeof(NoiseSurfaceTable) == 328);
+
+/// The numbers behind a table: amplitudes.
+template <class Table>
+const float* amplitudes_of(const Table& table) noexcept {
+  return reinterpret_cast<const float*>(&table + 1);
+}
 
 /// A block that was read; it points into its memory.
 struct SceneView {

@@ -53,6 +53,21 @@ PlaneVector SceneKernel::groove_force(const SceneLayer& layer, const Hand& hand,
   return {force * table.periods_per_m_x, force * table.periods_per_m_y};
 }
 
+PlaneVector SceneKernel::noise_force(const SceneLayer& layer, const Hand& hand) const noexcept {
+  const auto& table = table_of<NoiseSurfaceTable>(scene_, layer);
+  const float* const number = live_ + layer.first_number;
+  const PlaneVector v = hand.speed_mps;
+  float cycles_per_tick =
+      __builtin_sqrtf(v.x * v.x + v.y * v.y) * table.periods_per_m * kNoiseCycles / setup_.rate_hz;
+  float weights[kMostOctaves];
+  for (uint32_t i = 0; i < table.octaves; ++i, cycles_per_tick *= 2)
+    weights[i] = amplitudes_of(table)[i] * held_by_rate(cycles_per_tick);
+  const NoiseSample at = fractal_noise(table.gradients, place_on(table.along[0], hand.counts),
+                                       place_on(table.along[1], hand.counts), 0, weights, table.octaves);
+  const float force = -(number[kSurfaceKappa] * number[kSurfaceDepth]) * table.periods_per_m;
+  return {force * at.by_x, force * at.by_y};
+}
+
 PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand,
                                   PlaneVector place) const noexcept {
   const PlaneVector speed = into_patch(patch, hand.speed_mps);
@@ -71,6 +86,9 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand,
         break;
       case SceneLayerKind::grooves:
         force = groove_force(layer, hand, speed);
+        break;
+      case SceneLayerKind::noise:
+        force = noise_force(layer, hand);
         break;
     }
     sum.x += force.x;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "playback/prepare/relief/groove_series.hpp"
+#include "playback/prepare/relief/noise_octaves.hpp"
 #include "playback/stability/free_limit.hpp"
 #include "playback/stability/sampled_spring.hpp"
 
@@ -33,11 +34,11 @@ struct KindInBlock {
 
 // Named one by one: a new kind of layer does not compile until it is here or has data.
 template <class L>
-concept NotPlayedYet = std::same_as<L, schema::HeightMapLayer> || std::same_as<L, schema::NoiseLayer> ||
-                       std::same_as<L, schema::TextureForceLayer> || std::same_as<L, schema::MassLayer> ||
-                       std::same_as<L, schema::BodyLayer> || std::same_as<L, schema::LassoLayer> ||
-                       std::same_as<L, schema::MoverLayer> || std::same_as<L, schema::ForceMapLayer> ||
-                       std::same_as<L, schema::FieldLayer>;
+concept NotPlayedYet =
+    std::same_as<L, schema::HeightMapLayer> || std::same_as<L, schema::TextureForceLayer> ||
+    std::same_as<L, schema::MassLayer> || std::same_as<L, schema::BodyLayer> ||
+    std::same_as<L, schema::LassoLayer> || std::same_as<L, schema::MoverLayer> ||
+    std::same_as<L, schema::ForceMapLayer> || std::same_as<L, schema::FieldLayer>;
 
 template <class T>
 void append(Words& words, const T* parts, std::size_t count) {
@@ -93,8 +94,23 @@ Words table_of(const schema::GroovesLayer& grooves, const schema::Patch& patch, 
   return words;
 }
 
+Words table_of(const schema::NoiseLayer& noise, const schema::Patch& patch, const PlaneSteps& steps) {
+  const double period_m = noise.period_m.value;
+  const auto amplitudes = octave_amplitudes(noise);
+  const core::NoiseSurfaceTable table{
+      {row_of(patch, patch.angle_deg, period_m, steps), row_of(patch, patch.angle_deg + 90, period_m, steps)},
+      static_cast<float>(1 / period_m),
+      static_cast<std::uint32_t>(amplitudes.size()),
+      core::shuffled_noise(static_cast<std::uint32_t>(noise.seed.value))};
+  Words words;
+  append(words, &table, 1);
+  append(words, std::vector<float>(amplitudes.begin(), amplitudes.end()));
+  return words;
+}
+
 Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneSteps& steps) {
   return layer.visit([&](const schema::GroovesLayer& grooves) { return table_of(grooves, patch, steps); },
+                     [&](const schema::NoiseLayer& noise) { return table_of(noise, patch, steps); },
                      [](const auto& /*without a table*/) { return Words(); });
 }
 
@@ -110,6 +126,9 @@ std::optional<KindInBlock> kind_of(const ForceLayer& layer) {
       [](const schema::GroovesLayer& /*grooves*/) -> Kind {
         return {{SceneLayerKind::grooves, {"depth_m", "kappa_n"}}};
       },
+      [](const schema::NoiseLayer& /*noise*/) -> Kind {
+        return {{SceneLayerKind::noise, {"depth_m", "kappa_n"}}};
+      },
       [](const NotPlayedYet auto& /*layer*/) -> Kind { return std::nullopt; });
 }
 
@@ -120,7 +139,7 @@ Result<void> check_types(const schema::Scene& scene, const std::string& where) {
         return fail(ErrorKind::unsuitable,
                     fmt::format("layers of the type {} cannot be played yet", type_of(layer)),
                     fmt::format("{}#/patches/{}/layers/{}/type", where, i, j),
-                    "the types that can be played are spring, damper and grooves");
+                    "the types that can be played are spring, damper, grooves and noise");
   return {};
 }
 

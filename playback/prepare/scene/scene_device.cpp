@@ -10,6 +10,7 @@
 
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
+#include "playback/prepare/relief/noise_octaves.hpp"
 
 namespace tacto::playback {
 
@@ -21,7 +22,8 @@ using schema::Result;
 
 namespace {
 
-constexpr int kPatchGrid = 101;  // places along each side of a patch
+constexpr double kNoiseCurvature = 12.5;  // of one octave, per squared cell: the largest of 8e6 places
+constexpr int kPatchGrid = 101;           // places along each side of a patch
 
 // A place, or a force, in the plane.
 struct Vector {
@@ -196,6 +198,14 @@ double local_stiffness_n_per_m(const schema::ForceLayer& layer) {
         const auto amplitudes = groove_amplitudes(grooves.profile, grooves.filter_m->value / period_m);
         return largest_value(grooves.kappa_n) * largest_value(grooves.depth_m) *
                largest_curvature(amplitudes) / (period_m * period_m);
+      },
+      [](const schema::NoiseLayer& noise) {
+        double curvature = 0, cells_per_m = 1 / noise.period_m.value;
+        for (const double amplitude : octave_amplitudes(noise)) {
+          curvature += kNoiseCurvature * amplitude * cells_per_m * cells_per_m;
+          cells_per_m *= 2;
+        }
+        return largest_value(noise.kappa_n) * largest_value(noise.depth_m) * curvature;
       },
       [](const auto& /*other*/) { return 0.0; });
 }

@@ -17,7 +17,8 @@ namespace tacto::playback {
 schema::Result<core::ForceSetup> force_setup_of(const schema::Device& device, std::optional<double> rate_hz);
 
 /// The largest stiffness of a layer for a small motion, with the upper ends of its sliders: of a spring, and
-/// kappa times the largest curvature of grooves. 0 for other types.
+/// kappa times the largest curvature of grooves, of noise
+/// the sum of those of its octaves. 0 for other types.
 double local_stiffness_n_per_m(const schema::ForceLayer& layer);
 
 /// Warnings, one line each: an axis x or y that the device does not have; patches beyond its travel, with the

@@ -8,6 +8,8 @@
 #include "firmware-host/core/scene/edge_speed.hpp"
 #include "firmware-host/core/scene/force_limiter.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
+#include "playback/prepare/relief/noise_octaves.hpp"
+#include "playback/render/reference/exact_noise.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -42,6 +44,25 @@ ExactScene::Vector ExactScene::groove_force(const schema::GroovesLayer& grooves,
   }
   const double force_n = -grooves.kappa_n.value * grooves.depth_m.value * slope;
   return {force_n * x, force_n * y};
+}
+
+// By central differences of the heights.
+ExactScene::Vector ExactScene::noise_force(const schema::NoiseLayer& noise, double angle_rad,
+                                           Vector from_centre, Vector speed) const {
+  const core::NoiseTable table = core::shuffled_noise(static_cast<std::uint32_t>(noise.seed.value));
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad), half = 1e-5;  // cells
+  double cells_per_m = 1 / noise.period_m.value, u = 0, v = 0;
+  for (const double amplitude : octave_amplitudes(noise)) {
+    const double x = (c * from_centre.x + s * from_centre.y) * cells_per_m,
+                 y = (c * from_centre.y - s * from_centre.x) * cells_per_m;
+    const double per_tick = core::kNoiseCycles * std::hypot(speed.x, speed.y) * cells_per_m / rate_hz_;
+    const double per_cell = amplitude * held_by_rate(per_tick) * cells_per_m / (2 * half);
+    u += per_cell * (exact_noise(table, x + half, y, 0) - exact_noise(table, x - half, y, 0));
+    v += per_cell * (exact_noise(table, x, y + half, 0) - exact_noise(table, x, y - half, 0));
+    cells_per_m *= 2;
+  }
+  const double force = -noise.kappa_n.value * noise.depth_m.value;
+  return {force * (c * u - s * v), force * (s * u + c * v)};
 }
 
 ExactScene::ExactScene(const PreparedScene& scene, const schema::Device& device, double rate_hz)
@@ -127,6 +148,10 @@ ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vec
             const Vector along =
                 groove_force(grooves, angle, {place.x - patch.x_m, place.y - patch.y_m}, speed);
             sum.x += along.x, sum.y += along.y;
+          },
+          [&](const schema::NoiseLayer& noise) {
+            const Vector slope = noise_force(noise, angle, {place.x - patch.x_m, place.y - patch.y_m}, speed);
+            sum.x += slope.x, sum.y += slope.y;
           },
           [](const auto& /*not prepared*/) {});
   }

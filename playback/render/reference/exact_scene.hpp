@@ -44,6 +44,8 @@ class ExactScene {
   double track(Speed& speed, std::int64_t count);
   Vector groove_force(const schema::GroovesLayer& grooves, double angle_rad, Vector from_centre,
                       Vector speed) const;
+  Vector noise_force(const schema::NoiseLayer& noise, double angle_rad, Vector from_centre,
+                     Vector speed) const;
   Vector force(Vector place, core::PlaneVector single, Vector speed) const;
   std::vector<double> limited(std::vector<double> force_n);
   struct Rms {

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One place on a surface of a force scene, value and slope: at most 1 us each. Batches of 1000 places.
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "firmware-host/core/scene/grooves.hpp"
+#include "firmware-host/core/scene/noise.hpp"
+#include "playback/prepare/relief/groove_series.hpp"
+
+namespace tacto::playback {
+namespace {
+
+constexpr int kPlaces = 1000;
+
+void count_places(benchmark::State& state) {
+  state.counters["ns_per_place"] = benchmark::Counter(
+      kPlaces * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void SceneFractalOf8Octaves(benchmark::State& state) {
+  const float weights[8] = {1, 0.7F, 0.5F, 0.35F, 0.25F, 0.18F, 0.13F, 0.09F};
+  const core::NoiseTable table = core::shuffled_noise(1);
+  core::Q32 x = 0, y = 0;
+  for (auto _ : state) {
+    float sum = 0;
+    for (int i = 0; i < kPlaces; ++i)
+      sum += core::fractal_noise(table, x += 77'777'777, y -= 33'333'333, 0, weights, 8).by_x;
+    benchmark::DoNotOptimize(sum);
+  }
+  count_places(state);
+}
+BENCHMARK(SceneFractalOf8Octaves);
+
+void SceneSquareGrooves(benchmark::State& state) {
+  std::vector<float> amplitudes;
+  for (const double amplitude : groove_amplitudes(schema::GrooveProfile::square, 1.0 / 76))
+    amplitudes.push_back(static_cast<float>(amplitude));
+  const core::Grooves grooves{amplitudes.data(), static_cast<std::uint32_t>(amplitudes.size())};
+  std::uint32_t phase = 0;
+  for (auto _ : state) {
+    float sum = 0;
+    for (int i = 0; i < kPlaces; ++i) sum += core::groove_at(grooves, phase += 12'345'678, 1e-3F).by_phase;
+    benchmark::DoNotOptimize(sum);
+  }
+  count_places(state);
+}
+BENCHMARK(SceneSquareGrooves);
+
+}  // namespace
+}  // namespace tacto::playback
