@@ -90,41 +90,21 @@ Result<DesignRequest> request_of(const DesignVerbOptions& o) {
   return request;
 }
 
-const char* limit_key(Holder holder) {
-  switch (holder) {
-    case Holder::nothing:
-      return "free_limit_n_per_m";
-    case Holder::hand:
-      return "hand_limit_n_per_m";
-    case Holder::lumped:
-      return "lumped_limit_n_per_m";
-    case Holder::any:
-      return "any_hand_limit_n_per_m";
-    case Holder::slower:
-      break;
-  }
-  return "slower_hand_limit_n_per_m";
+// What is infinite is left out.
+void add_finite(Report& row, const char* key, double value) {
+  if (std::isfinite(value)) row.add(key, value);
 }
 
 Report row_of_layer(const JudgedLayer& layer, const DesignRequest& request) {
   Report row;
-  row.add("patch", layer.patch).add("layer", layer.index).add("type", layer.type);
-  row.add("stiffness_n_per_m", layer.own.stiffness_n_per_m)
-      .add("damping_n_s_per_m", layer.own.damping_n_s_per_m);
-  if (layer.verdict != Stability::not_reached) {
-    row.add("total_stiffness_n_per_m", layer.total.stiffness_n_per_m)
-        .add("total_damping_n_s_per_m", layer.total.damping_n_s_per_m);
-    row.add("axis", layer.loop.axis.name);
-    for (const Holder holder : holders_of(request))
-      row.add(limit_key(holder), layer.loop.limit(holder, layer.total.damping_n_s_per_m));
-    if (std::isfinite(layer.margin)) row.add("margin", layer.margin);
-  }
-  return row.add("verdict", to_string(layer.verdict)).add("because", layer.because);
-}
-
-// What is infinite is left out.
-void add_finite(Report& row, const char* key, double value) {
-  if (std::isfinite(value)) row.add(key, value);
+  for (const auto& [key, value] : layer_fields(layer, request))
+    if (const auto* number = std::get_if<double>(&value); number == nullptr)
+      row.add(key, std::get<std::string>(value));
+    else if (key == "layer")
+      row.add(key, layer.index);
+    else
+      add_finite(row, key.c_str(), *number);
+  return row;
 }
 
 Report needs_of_layer(const JudgedLayer& layer, const DesignRequest& request) {

@@ -175,33 +175,54 @@ std::vector<schema::ResultFigure> design_figures(const Design& design) {
   return figures;
 }
 
+std::vector<LayerField> layer_fields(const JudgedLayer& layer, const DesignRequest& request) {
+  const bool reached = is_reached(layer);
+  const auto if_reached = [&](double value) { return reached ? value : NAN; };
+  std::vector<LayerField> fields = {{"patch", layer.patch},
+                                    {"layer", static_cast<double>(layer.index)},
+                                    {"type", layer.type},
+                                    {"stiffness_n_per_m", layer.own.stiffness_n_per_m},
+                                    {"damping_n_s_per_m", layer.own.damping_n_s_per_m},
+                                    {"total_stiffness_n_per_m", if_reached(layer.total.stiffness_n_per_m)},
+                                    {"total_damping_n_s_per_m", if_reached(layer.total.damping_n_s_per_m)},
+                                    {"axis", layer.loop.axis.name}};
+  constexpr std::pair<Holder, const char*> kLimits[] = {{Holder::nothing, "free_limit_n_per_m"},
+                                                        {Holder::hand, "hand_limit_n_per_m"},
+                                                        {Holder::lumped, "lumped_limit_n_per_m"},
+                                                        {Holder::any, "any_hand_limit_n_per_m"},
+                                                        {Holder::slower, "slower_hand_limit_n_per_m"}};
+  const std::vector<Holder> has = holders_of(request);
+  for (const auto& [holder, key] : kLimits) {
+    const bool known = reached && std::ranges::find(has, holder) != has.end();
+    fields.push_back({key, known ? layer.loop.limit(holder, layer.total.damping_n_s_per_m) : NAN});
+  }
+  fields.push_back({"margin", if_reached(layer.margin)});
+  fields.push_back({"verdict", std::string(to_string(layer.verdict))});
+  fields.push_back({"because", layer.because});
+  return fields;
+}
+
 std::string design_csv(const Design& design) {
-  std::string csv =
-      std::string(kDesignCsvHead) +
-      "damping_n_s_per_m,total_stiffness_n_per_m,total_damping_n_s_per_m,axis,free_limit_n_per_m,"
-      "hand_limit_n_per_m,lumped_limit_n_per_m,any_hand_limit_n_per_m,slower_hand_limit_n_per_m,margin,"
-      "verdict,because\n";
+  std::string csv;
+  for (const auto& [key, value] : layer_fields(design.layers.front(), design.request))
+    csv += (csv.empty() ? "" : ",") + key;
   const auto quoted = [](std::string text) {
     for (std::size_t at = 0; (at = text.find('"', at)) != text.npos; at += 2) text.insert(at, 1, '"');
     return '"' + text + '"';
   };
-  const std::vector<Holder> has = holders_of(design.request);
   for (const JudgedLayer& layer : design.layers) {
-    csv += fmt::format("{},{},{},{:.9g},{:.9g},", quoted(layer.patch), layer.index, layer.type,
-                       layer.own.stiffness_n_per_m, layer.own.damping_n_s_per_m);
-    if (is_reached(layer))
-      csv += fmt::format("{:.9g},{:.9g},{}", layer.total.stiffness_n_per_m, layer.total.damping_n_s_per_m,
-                         layer.loop.axis.name);
-    else
-      csv += ",,";
-    for (const Holder holder : {Holder::nothing, Holder::hand, Holder::lumped, Holder::any, Holder::slower})
-      csv += is_reached(layer) && std::ranges::find(has, holder) != has.end()
-                 ? fmt::format(",{:.9g}", layer.loop.limit(holder, layer.total.damping_n_s_per_m))
-                 : ",";
-    csv += is_reached(layer) && std::isfinite(layer.margin) ? fmt::format(",{:.9g}", layer.margin) : ",";
-    csv += fmt::format(",{},{}\n", to_string(layer.verdict), quoted(layer.because));
+    char separator = '\n';
+    for (const auto& [key, value] : layer_fields(layer, design.request)) {
+      csv += separator;
+      separator = ',';
+      const auto* number = std::get_if<double>(&value);
+      if (number == nullptr)
+        csv += quoted(std::get<std::string>(value));
+      else if (std::isfinite(*number))
+        csv += fmt::format("{:.9g}", *number);
+    }
   }
-  return csv;
+  return csv + '\n';
 }
 
 schema::Result<std::string> design_page(const Design& design, const std::string& scene,

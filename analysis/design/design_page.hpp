@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "analysis/design/design.hpp"
@@ -16,7 +17,14 @@ std::vector<schema::ResultFigure> design_figures(const Design& design);
 
 inline constexpr const char* kDesignCsvHead = "patch,layer,type,stiffness_n_per_m,";
 
-/// One line per layer, in SI units; a limit that was not asked for is empty.
+/// What a row of a layer's table has, as key and SI value; NaN or infinity: nothing.
+struct LayerField {
+  std::string key;
+  std::variant<double, std::string> value;
+};
+std::vector<LayerField> layer_fields(const JudgedLayer& layer, const DesignRequest& request);
+
+/// One line per layer. Precondition: there is a layer.
 std::string design_csv(const Design& design);
 
 /// The self-contained HTML page. `pictures`: of z_width(), or none. Errors: those of drawing.

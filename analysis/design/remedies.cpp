@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 
 #include "analysis/design/boundary.hpp"
 #include "analysis/design/design.hpp"
@@ -12,113 +13,92 @@ namespace {
 
 using schema::Dimension;
 
-std::string amount_words(double value, const char* unit) {
-  return fmt::format("{:.4g} {}", value, unit);
+struct LoadedLoop {
+  JudgedLoop loop;
+  VirtualLoad load;
+};
+
+// A number that is raised or lowered until the loop is stable. Searched up to or down to `end`.
+struct LoopNumber {
+  const char* name;
+  double now;
+  bool raised;
+  double end;
+  void (*set)(LoadedLoop& on, double value);
+  std::string (*words)(double value);
+};
+
+std::string loop_damping_words(double n_s_per_m) {
+  return fmt::format("{:.4g} N s/m", n_s_per_m);
 }
 
-// One layer's loop and the changes to it.
-class LayerChanges {
- public:
-  LayerChanges(const JudgedLayer& layer, const DesignRequest& request)
-      : loop_(layer.loop), load_(layer.total), request_(request), judged_(request.judged) {}
+std::vector<LoopNumber> loop_numbers(const JudgedLayer& layer, Holder judged) {
+  const JudgedLoop& loop = layer.loop;
+  std::vector<LoopNumber> numbers = {
+      {"stiffness", layer.total.stiffness_n_per_m, false, 1e-6,
+       [](LoadedLoop& on, double value) { on.load.stiffness_n_per_m = value; },
+       [](double value) { return fmt::format("{:.4g} N/m", value); }},
+      {"viscous friction of the device", loop.axis.viscous_n_s_per_m, true, 1e5,
+       [](LoadedLoop& on, double value) { on.loop.axis.viscous_n_s_per_m = value; }, loop_damping_words},
+      {"damper of the scene", layer.total.damping_n_s_per_m, true, 1e4,
+       [](LoadedLoop& on, double value) { on.load.damping_n_s_per_m = value; }, loop_damping_words}};
+  if (loop.delay_s > 0)
+    numbers.push_back({"delay", loop.delay_s, false, 1e-6 * loop.period_s,
+                       [](LoadedLoop& on, double value) { on.loop.delay_s = value; },
+                       [](double value) { return schema::for_people(value, Dimension::time); }});
+  if (is_proof(judged))
+    numbers.push_back({"encoder step", loop.axis.encoder_step_m, false, 1e-12,
+                       [](LoadedLoop& on, double value) { on.loop.axis.encoder_step_m = value; },
+                       [](double value) { return schema::for_people(value, Dimension::length); }});
+  return numbers;
+}
 
-  std::vector<Remedy> all() const {
-    std::vector<Remedy> remedies = {stiffness(), rate(), device_damping(), virtual_damping()};
-    if (loop_.delay_s > 0) remedies.push_back(delay());
-    if (is_proof(judged_)) remedies.push_back(encoder());
-    return remedies;
-  }
+Remedy changed_alone(const LoopNumber& number, const LoadedLoop& from, Holder judged) {
+  const auto with = [&](double value) {
+    LoadedLoop changed = from;
+    number.set(changed, value);
+    return changed;
+  };
+  const auto good = [&](double value) {
+    const LoadedLoop changed = with(value);
+    return changed.loop.carries(judged, changed.load);
+  };
+  constexpr double kLeast = 1e-3;  // N s/m: where a search upwards from 0 begins
+  const double needed = number.raised
+                            ? first_above(std::max(number.now, kLeast), number.end, good).value_or(0)
+                        : number.now > 0 ? last_good(number.now, number.end, number.now, good)
+                                         : 0;
+  if (needed <= 0) return {number.name, number.words(number.now), "none suffices", std::nullopt};
+  const LoadedLoop changed = with(needed);
+  return {number.name, number.words(number.now), (number.raised ? "above " : "below ") + number.words(needed),
+          changed.loop.limit(judged, changed.load.damping_n_s_per_m)};
+}
 
- private:
-  double limit_with(JudgedLoop loop, double damping) const { return loop.limit(judged_, damping); }
-
-  Remedy none(std::string change, std::string now, std::string why) const {
-    return {std::move(change), std::move(now), std::move(why), std::nullopt};
-  }
-
-  Remedy stiffness() const {
-    const double limit = loop_.limit(judged_, load_.damping_n_s_per_m);
-    const std::string now = amount_words(load_.stiffness_n_per_m, "N/m");
-    if (limit <= 0) return none("stiffness", now, "none is small enough");
-    return {"stiffness", now, "below " + amount_words(limit, "N/m"), limit};
-  }
-
-  JudgedLoop at_rate(double rate_hz) const {
-    JudgedLoop loop = loop_;
+// The lowest higher rate of the device that suffices.
+Remedy raised_rate(const JudgedLayer& layer, const DesignRequest& request) {
+  const auto words = [](double rate_hz) { return schema::for_people(rate_hz, Dimension::frequency); };
+  for (const double rate_hz : request.device.rates_hz) {
+    JudgedLoop loop = layer.loop;
     loop.period_s = 1 / rate_hz;
-    return loop;
+    if (rate_hz <= request.rate_hz || loop.timing().delay_ticks > kMostDelayTicks) continue;
+    if (loop.carries(request.judged, layer.total))
+      return {"rate", words(request.rate_hz), words(rate_hz),
+              loop.limit(request.judged, layer.total.damping_n_s_per_m)};
   }
-
-  Remedy rate() const {
-    const std::string now = schema::for_people(request_.rate_hz, Dimension::frequency);
-    for (const double rate_hz : request_.device.rates_hz)
-      if (rate_hz > request_.rate_hz && loop_.delay_s * rate_hz <= kMostDelayTicks &&
-          at_rate(rate_hz).carries(judged_, load_))
-        return {"rate", now, schema::for_people(rate_hz, Dimension::frequency),
-                limit_with(at_rate(rate_hz), load_.damping_n_s_per_m)};
-    const double period_s = loop_.greatest_period_s(judged_, load_);
-    if (period_s <= 0) return none("rate", now, "none is high enough");
-    return none("rate", now,
-                fmt::format("above {}, which the device does not have",
-                            schema::for_people(1 / period_s, Dimension::frequency)));
-  }
-
-  Remedy device_damping() const {
-    const auto with = [&](double damping) {
-      JudgedLoop loop = loop_;
-      loop.axis.viscous_n_s_per_m = damping;
-      return loop;
-    };
-    const double now = loop_.axis.viscous_n_s_per_m;
-    const auto needed = first_above(std::max(now, 1e-3), 1e5,
-                                    [&](double damping) { return with(damping).carries(judged_, load_); });
-    if (!needed) return none("viscous friction of the device", amount_words(now, "N s/m"), "none suffices");
-    return {"viscous friction of the device", amount_words(now, "N s/m"),
-            "above " + amount_words(*needed, "N s/m"), limit_with(with(*needed), load_.damping_n_s_per_m)};
-  }
-
-  Remedy virtual_damping() const {
-    const double now = load_.damping_n_s_per_m;
-    const auto needed = first_above(std::max(now, 1e-3), 1e4, [&](double damping) {
-      return loop_.carries(judged_, {load_.stiffness_n_per_m, damping});
-    });
-    if (!needed) return none("damper of the scene", amount_words(now, "N s/m"), "none suffices");
-    return {"damper of the scene", amount_words(now, "N s/m"), "above " + amount_words(*needed, "N s/m"),
-            limit_with(loop_, *needed)};
-  }
-
-  Remedy delay() const {
-    const std::string now = schema::for_people(loop_.delay_s, Dimension::time);
-    JudgedLoop loop = loop_;
-    loop.delay_s = loop_.largest_delay_s(judged_, load_);
-    if (loop.delay_s < 0) return none("delay", now, "not even without delay");
-    return {"delay", now, "below " + schema::for_people(loop.delay_s, Dimension::time),
-            limit_with(loop, load_.damping_n_s_per_m)};
-  }
-
-  Remedy encoder() const {
-    const std::string now = schema::for_people(loop_.axis.encoder_step_m, Dimension::length);
-    JudgedLoop loop = loop_;
-    const double needed_m = last_good(loop_.axis.encoder_step_m, 1e-12, 1, [&](double step_m) {
-      loop.axis.encoder_step_m = step_m;
-      return loop.carries(judged_, load_);
-    });
-    if (needed_m <= 0) return none("encoder step", now, "none is fine enough");
-    loop.axis.encoder_step_m = needed_m;
-    return {"encoder step", now, "below " + schema::for_people(needed_m, Dimension::length),
-            limit_with(loop, load_.damping_n_s_per_m)};
-  }
-
-  JudgedLoop loop_;
-  VirtualLoad load_;
-  const DesignRequest& request_;
-  Holder judged_;
-};
+  const double period_s = layer.loop.greatest_period_s(request.judged, layer.total);
+  return {"rate", words(request.rate_hz),
+          period_s > 0 ? fmt::format("above {}, which the device does not have", words(1 / period_s))
+                       : "none suffices",
+          std::nullopt};
+}
 
 }  // namespace
 
 std::vector<Remedy> remedies_for(const JudgedLayer& layer, const DesignRequest& request) {
-  return LayerChanges(layer, request).all();
+  std::vector<Remedy> remedies = {raised_rate(layer, request)};
+  for (const LoopNumber& number : loop_numbers(layer, request.judged))
+    remedies.push_back(changed_alone(number, {layer.loop, layer.total}, request.judged));
+  return remedies;
 }
 
 }  // namespace tacto::analysis
