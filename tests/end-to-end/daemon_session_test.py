@@ -113,7 +113,7 @@ def a_scene_of_forces_is_played_and_set():
     pathlib.Path("still.csv").write_text("time_s,x_m,y_m\n0,0.03,0\n1,0.03,0\n")
     spring = {"type": "spring", "stiffness_n_per_m": {"value": 50, "slider": {"from": 0, "to": 200}},
               "centre_x_m": {"value": 0, "slider": {"from": -0.02, "to": 0.02}}, "centre_y_m": 0}
-    pathlib.Path("bench.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.1", "patches": [
+    pathlib.Path("bench.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "patches": [
         {"name": "bench", "place": {"x_m": 0, "y_m": 0}, "size": {"width_m": 0.2, "height_m": 0.2}, "layers": [spring]}]}))
     number = "bench.spring.stiffness_n_per_m"
 

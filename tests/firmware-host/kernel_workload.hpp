@@ -117,7 +117,7 @@ class TextureWorkload {
   float samples_[kTextureSamples], taps_[kTextureTaps];
 };
 
-inline constexpr uint32_t kSceneFingerprint = 1542196115;
+inline constexpr uint32_t kSceneFingerprint = 3351755191;
 
 /// A scene of three overlapping patches with springs, dampers, grooves and noise, and a hand in the plane
 /// whose speed varies between rest and 60 counts per tick; all limits are reached.
