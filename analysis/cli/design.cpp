@@ -164,9 +164,11 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   auto request = request_of(o);
   TACTO_TRY(request);
   const std::string file = schema::scene_path(o.scene);
-  const auto scene = schema::read_scene(file);
+  auto scene = schema::read_scene(file);
   TACTO_TRY(scene);
   warn_of_newer(file, *scene);
+  const double limit = playback::stiffness_limit_of(request->device, request->rate_hz, request->hand);
+  TACTO_TRY(playback::set_filters(*scene, limit, file));
   auto designed = design_scene(*scene, file, *request);
   TACTO_TRY(designed);
   design = std::move(*designed);

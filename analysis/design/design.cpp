@@ -7,6 +7,7 @@
 #include <map>
 
 #include "data-schema/base/quantity.hpp"
+#include "playback/prepare/scene/scene_device.hpp"
 #include "playback/stability/acting_patches.hpp"
 
 namespace tacto::analysis {
@@ -38,7 +39,10 @@ LoadRange load_range(const schema::ForceLayer& layer) {
         range.least_damping = lower_end(damper.damping_n_s_per_m);
         range.most_damping = upper_end(damper.damping_n_s_per_m);
       },
-      [&](const auto& /*other*/) { range.unknown = type_of(layer); });
+      [&](const auto& /*other*/) {
+        range.stiffness = playback::local_stiffness_n_per_m(layer);
+        if (!(range.stiffness > 0)) range.unknown = type_of(layer);
+      });
   return range;
 }
 
@@ -207,8 +211,9 @@ schema::Result<Design> design_scene(const schema::Scene& scene, const std::strin
         has_larger_share(layer, design.layers[*design.first]))
       design.first = i;
   }
-  if (design.first && design.layers[*design.first].verdict != Stability::stable)
-    design.remedies = remedies_for(design.layers[*design.first], request);
+  if (!design.first) return design;
+  const JudgedLayer& first = design.layers[*design.first];
+  if (!first.loop.carries(request.judged, first.total)) design.remedies = remedies_for(first, request);
   return design;
 }
 

@@ -322,13 +322,27 @@ def outputs_are_written_and_valid():
 
 def what_is_not_known_is_said():
     write_device(0.1, 1.0)
-    groove = {"type": "grooves", "profile": "sine", "period_m": 0.001, "depth_m": 1e-4, "kappa_n": 1}
-    report = design_of(patch(spring(10), groove), patch(spring(10), name="b", x_m=0.07, width_m=0.01))
-    assert [row["verdict"] for row in report["layers"]] == ["not known", "not known", "stable"], report["layers"]
-    design_of(patch(spring(2500), groove), code=UNSTABLE)
+    mass = {"type": "mass", "mass_kg": 0.1}
+    report = design_of(patch(spring(10), mass), patch(spring(10), name="b", x_m=0.07, width_m=0.01))
+    assert [row["verdict"] for row in report["layers"]] == ["not known", "not known", "stable"] and not report.get("remedies"), report
+    design_of(patch(spring(2500), mass), code=UNSTABLE)
     # Between what is proved and what is unstable with nothing held: some passive hand may make it unstable.
     report = design_of(patch(spring(2003)), options=("--hand", "any"))
     assert report["layers"][0]["verdict"] == "not known" and report["remedies"], report
+
+
+def grooves_are_as_stiff_as_their_curvature():
+    write_device(0.1, 1.0)
+    groove = {"type": "grooves", "profile": "sine", "period_m": 0.001, "depth_m": 1e-4, "kappa_n": 0.5}
+    stiffness = 0.5 * 1e-4 / 2 * (2 * np.pi / 0.001) ** 2  # kappa x amplitude x wave number^2, of the single precision of its table
+    report = design_of(patch(spring(10), groove))
+    close(report["layers"][1]["stiffness_n_per_m"], stiffness, 1e-6)
+    close(report["layers"][1]["total_stiffness_n_per_m"], 10 + stiffness, 1e-6)
+    assert report["layers"][1]["verdict"] == "stable", report
+    design_of(patch(spring(10), {**groove, "kappa_n": 2}), code=UNSTABLE)
+    # The automatic filter keeps square grooves below the limit, by its margin of 1.5^2.
+    square = design_of(patch({**groove, "profile": "square"}))["layers"][0]
+    assert square["verdict"] == "stable" and 0 < square["stiffness_n_per_m"] < 1.001 * square["free_limit_n_per_m"] / 1.5**2, square
 
 
 def assumed_numbers_are_listed():
@@ -380,6 +394,6 @@ def wrong_uses_are_refused():
 if __name__ == "__main__":
     for test in (the_table_is_that_of_scipy, limits_are_those_of_eigenvalues, minskys_cases, massies_wall, passivity_is_the_integral_condition,
                  a_delay_of_half_a_tick_needs_more_than_the_mean, virtual_damping_has_a_best, patches_add_up_where_they_overlap,
-                 the_layer_that_is_too_stiff_is_named, remedies_make_it_stable, outputs_are_written_and_valid, what_is_not_known_is_said,
+                 the_layer_that_is_too_stiff_is_named, remedies_make_it_stable, outputs_are_written_and_valid, what_is_not_known_is_said, grooves_are_as_stiff_as_their_curvature,
                  assumed_numbers_are_listed, wrong_uses_are_refused):
         tacto.in_folder(test)

@@ -128,7 +128,7 @@ MAY_INCLUDE = {
         "sim/bench sim/physics} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
     "analysis/experiment": "analysis/{page psychometrics} capture/table data-schema/{base results}",
     "analysis/design":
-        "analysis/page data-schema/{base device results scene} playback/stability",
+        "analysis/page data-schema/{base device results scene} playback/{prepare/scene stability}",
     "analysis/extremes":
         "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/recording "
         "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram strokes}",

@@ -143,25 +143,6 @@ Result<void> check_types(const schema::Scene& scene, const std::string& where) {
   return {};
 }
 
-// Sets the filters that the file leaves to the program.
-Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::string& where) {
-  for (std::size_t i = 0; i < scene.patches.size(); ++i)
-    for (std::size_t j = 0; j < scene.patches[i].layers.size(); ++j)
-      TACTO_TRY(scene.patches[i].layers[j].visit(
-          [&](schema::GroovesLayer& grooves) -> Result<void> {
-            if (grooves.filter_m) return {};
-            if (grooves.profile != schema::GrooveProfile::sine && !(limit_n_per_m > 0))
-              return fail(ErrorKind::unsuitable,
-                          "a device without viscous friction has no stiffness limit to filter grooves for",
-                          fmt::format("{}#/patches/{}/layers/{}/filter_m", where, i, j),
-                          "give the filter, or the friction of the device");
-            grooves.filter_m = schema::LayerNumber{automatic_filter_m(grooves, limit_n_per_m)};
-            return {};
-          },
-          [](auto& /*other*/) { return Result<void>(); }));
-  return {};
-}
-
 std::vector<float> numbers_in(const ForceLayer& layer, const std::vector<std::string_view>& members) {
   const auto all = schema::numbers_of(layer);
   std::vector<float> numbers;
@@ -257,6 +238,24 @@ double stiffness_limit_of(const schema::Device& device, double rate_hz,
                                                         timing.delay_ticks));
   }
   return limit;
+}
+
+Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::string& where) {
+  for (std::size_t i = 0; i < scene.patches.size(); ++i)
+    for (std::size_t j = 0; j < scene.patches[i].layers.size(); ++j)
+      TACTO_TRY(scene.patches[i].layers[j].visit(
+          [&](schema::GroovesLayer& grooves) -> Result<void> {
+            if (grooves.filter_m) return {};
+            if (grooves.profile != schema::GrooveProfile::sine && !(limit_n_per_m > 0))
+              return fail(ErrorKind::unsuitable,
+                          "a device without viscous friction has no stiffness limit to filter grooves for",
+                          fmt::format("{}#/patches/{}/layers/{}/filter_m", where, i, j),
+                          "give the filter, or the friction of the device");
+            grooves.filter_m = schema::LayerNumber{automatic_filter_m(grooves, limit_n_per_m)};
+            return {};
+          },
+          [](auto& /*other*/) { return Result<void>(); }));
+  return {};
 }
 
 Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& where,

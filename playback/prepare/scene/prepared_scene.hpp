@@ -46,6 +46,10 @@ std::vector<std::string_view> numbers_in_block(const schema::ForceLayer& layer);
 double stiffness_limit_of(const schema::Device& device, double rate_hz,
                           const std::optional<schema::Hand>& hand);
 
+/// Sets the filters that the file leaves to the program (filter_m: auto) for that limit. `where` is the
+/// scene's file. Errors: unsuitable: the limit is 0, by JSON pointer.
+schema::Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::string& where);
+
 /// Builds what the scene names and nothing else. Equal orders: the later patch is above. `where` is the
 /// scene's file. Preconditions: a scene as read_scene() gives it; the device has this rate, and an axis x or
 /// y. Errors: unsuitable, if it has no patches; by JSON pointer, for a type of layer that cannot be played
