@@ -117,7 +117,7 @@ class TextureWorkload {
   float samples_[kTextureSamples], taps_[kTextureTaps];
 };
 
-inline constexpr uint32_t kSceneFingerprint = 1725858485;
+inline constexpr uint32_t kSceneFingerprint = 13270764;
 
 /// A scene of three overlapping patches with springs and dampers, and a hand in the plane whose speed varies
 /// between rest and 60 counts per tick; all limits are reached.
