@@ -237,7 +237,8 @@ std::optional<Result<ControlFields>> Service::finished_load() {
   auto program = loader_.take();
   if (!program) return std::nullopt;
   if (!*program) return schema::forward_error(*program);
-  return std::visit([this](auto&& made) { return load(std::move(made)); }, std::move(**program));
+  if (auto* const forces = std::get_if<ForceProgram>(&**program)) return load(std::move(*forces));
+  return load(std::get<Program>(std::move(**program)));
 }
 
 Result<ControlFields> Service::load(Program program) {
