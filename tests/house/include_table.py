@@ -116,7 +116,7 @@ MAY_INCLUDE = {
     "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":
         "analysis/{compare demo design experiment extremes fidelity identify/fit identify/measure identify/report live page report trade "
-        "trade/rows} data-schema/{base command device files kinds report results scene texture} playback/{model "
+        "trade/rows} data-schema/{base command files kinds report results scene texture} playback/{model "
         "player prepare/scene session stability} spatial/{cli picture}",
     "analysis/compare":
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
