@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The largest stiffness that a device which nobody holds displays without becoming unstable.
+// The largest stiffness with which a device is stable while no hand holds it.
 #pragma once
 
 namespace tacto::playback {
