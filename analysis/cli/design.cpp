@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "analysis/cli/results_output.hpp"
@@ -14,7 +13,6 @@
 #include "data-schema/command/output_options.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/stability/free_limit.hpp"
-#include "playback/stability/passive_limit.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -27,7 +25,8 @@ using schema::Result;
 struct DesignVerbOptions {
   std::string scene, device, hand, table;
   std::optional<double> rate_hz, speed_mps;
-  bool lumped = false, assume = false, z_width = false;
+  bool lumped = false, assume = false, z_width = false, simulate = false;
+  std::size_t adversary_paths = 0;
   std::vector<std::string> outputs;
   schema::Existing existing = schema::Existing::keep;
 };
@@ -42,10 +41,12 @@ constexpr const char* kDesignRule =
     "  --hand any       each passive hand (proved)\n"
     "  --speed V        each passive hand below this speed (proved)\n"
     "All of these limits are in the table. A layer that is proved for each passive hand is stable with any "
-    "hand. "
-    "Layers that act at the same place add up; a number with a slider counts at its worse end. Layers other "
-    "than "
-    "springs and dampers are reported as not known. Exit code 9: unstable.";
+    "hand. Layers that act at the same place add up; a number with a slider counts at its worse end. The "
+    "stiffness of grooves and noise is their largest one; other layers are reported as not known.\n"
+    "With --simulate each layer has a column more: rests, oscillates or grows, with the RMS in counts of the "
+    "encoder and in newtons. With --adversary it has the stiffness from which on a path gave energy.\n"
+    "Exit code 9: unstable. The computed limit is passed, or a simulated tap grows; a tap that oscillates "
+    "without growing and an adversary's path do not count.";
 
 void warn_of_newer(const std::string& name, const auto& document) {
   if (const std::string note = schema::unknown_note(name, document); !note.empty()) cli::warn(note);
@@ -80,6 +81,8 @@ Result<DesignRequest> request_of(const DesignVerbOptions& o) {
   request.rate_hz = o.rate_hz.value_or(device->rates_hz.back());
   request.device = std::move(*device);
   request.speed_mps = o.speed_mps;
+  request.simulate = o.simulate;
+  request.adversary_paths = o.adversary_paths;
   request.judged = o.speed_mps ? Holder::slower : o.hand == kAnyHand ? Holder::any : Holder::nothing;
   if (o.hand.empty() || o.hand == kAnyHand) return request;
   auto hand = schema::read_hand(o.hand);
@@ -88,41 +91,6 @@ Result<DesignRequest> request_of(const DesignVerbOptions& o) {
   request.hand = std::move(*hand);
   request.judged = o.lumped ? Holder::lumped : Holder::hand;
   return request;
-}
-
-// What is infinite is left out.
-void add_finite(Report& row, const char* key, double value) {
-  if (std::isfinite(value)) row.add(key, value);
-}
-
-Report row_of_layer(const JudgedLayer& layer, const DesignRequest& request) {
-  Report row;
-  for (const auto& [key, value] : layer_fields(layer, request))
-    if (const auto* number = std::get_if<double>(&value); number == nullptr)
-      row.add(key, std::get<std::string>(value));
-    else if (key == "layer")
-      row.add(key, layer.index);
-    else
-      add_finite(row, key.c_str(), *number);
-  return row;
-}
-
-Report needs_of_layer(const JudgedLayer& layer, const DesignRequest& request) {
-  const auto& [stiffness, damping] = layer.total;
-  const JudgedLoop& loop = layer.loop;
-  const auto timing = loop.timing();
-  Report row;
-  row.add("patch", layer.patch).add("layer", layer.index).add("x_m", layer.x_m).add("y_m", layer.y_m);
-  if (const double period_s = loop.greatest_period_s(request.judged, layer.total); period_s > 0)
-    add_finite(row, "greatest_period_s", period_s);
-  if (const double delay_s = loop.largest_delay_s(request.judged, layer.total); delay_s >= 0)
-    add_finite(row, "largest_delay_s", delay_s);
-  row.add("any_hand_needs_n_s_per_m", playback::passive_damping_needed(timing, stiffness, damping));
-  add_finite(row, "passive_below_mps",
-             playback::largest_passive_speed_mps(loop.axis, timing, stiffness, damping));
-  add_finite(row, "friction_stops_below_m",
-             playback::friction_basin_m(loop.axis, timing, stiffness, damping));
-  return row;
 }
 
 bool is_stable_free(const Design& design) {
@@ -137,20 +105,12 @@ Report report_of(const DesignVerbOptions& o, const Design& design) {
   report.add("verdict", design_verdict(design)).add("scene", schema::scene_path(o.scene));
   report.add("device", request.device.name).add("judged", holder_name(request.judged, request));
   report.add("rate_hz", request.rate_hz).add("delay_s", request.device.delay_s);
+  if (!design.simulated.empty()) report.add("simulated", design.simulated);
+  if (const std::string words = damper_words(design); !words.empty()) report.add("damper", words);
   if (request.hand) report.add("stable_if_released", is_stable_free(design));
-  std::vector<Report> layers, needs, remedies;
-  for (const JudgedLayer& layer : design.layers) {
-    layers.push_back(row_of_layer(layer, request));
-    if (layer.verdict != Stability::not_reached) needs.push_back(needs_of_layer(layer, request));
-  }
-  report.add("layers", std::move(layers)).add("needs", std::move(needs));
-  for (const Remedy& remedy : design.remedies) {
-    Report row;
-    row.add("change", remedy.change).add("now", remedy.now).add("needed", remedy.needed);
-    if (remedy.limit_n_per_m) row.add("limit_n_per_m", *remedy.limit_n_per_m);
-    remedies.push_back(std::move(row));
-  }
-  if (!remedies.empty()) report.add("remedies", std::move(remedies));
+  DesignTables tables = design_tables(design);
+  report.add("layers", std::move(tables.layers)).add("needs", std::move(tables.needs));
+  if (!tables.remedies.empty()) report.add("remedies", std::move(tables.remedies));
   if (design.is_unstable()) report.ends_with(ErrorKind::unstable);
   return report;
 }
@@ -180,7 +140,11 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   if (!o.hand.empty()) results.inputs.push_back(o.hand);
   results.device = design.request.device.name;
   results.figures = design_figures(design);
-  if (o.z_width && design.first) results.pictures = {z_width(design)};
+  results.simulated = design.simulated;
+  if (o.z_width && design.first) results.pictures.push_back(z_width(design));
+  if (std::ranges::any_of(design.layers,
+                          [](const JudgedLayer& layer) { return layer.simulated.has_value(); }))
+    results.pictures.push_back(worst_tap(design));
   const auto pictures = results.pictures;
   TACTO_TRY(write_outputs(
       o.outputs, o.existing, std::move(results), report,
@@ -220,6 +184,11 @@ cli::Action declare_design(CLI::App& app) {
   cli::add_quantity(app, "--speed", o.speed_mps, Dimension::speed,
                     "Each passive hand that is slower than this");
   app.add_flag("--lumped", o.lumped, "With --hand NAME: judge by the formula of Minsky 1990");
+  app.add_flag("--simulate", o.simulate,
+               "Tap each layer on its stiffest place, with the device's kernel on the emulated device");
+  app.add_option("--adversary", o.adversary_paths,
+                 "Search the energy that springs and dampers give on so many random paths of a hand")
+      ->type_name("N");
   app.add_flag("--assume", o.assume,
                "Assume what the device's file leaves out of mass, friction and encoder step, and list it");
   app.add_flag("--z-width", o.z_width, "Draw each limit over virtual damping, in the page and the results");
@@ -252,7 +221,7 @@ const cli::Verb kDesignVerb{
     "Compute whether a scene is stable on a force device, which layer is not, and what would make it stable",
     "tactograph design plane --device sandpaper-1990 --hand minsky-radial -o design.html --z-width\n"
     "  tactograph design plane --device sandpaper-1990 --hand any --rate 1kHz\n"
-    "  tactograph design plane --device sandpaper-1990 --speed 50mm/s\n"
+    "  tactograph design plane --device sandpaper-1990 --speed 50mm/s --simulate --adversary 10000\n"
     "  tactograph design --table C",
     declare_design};
 

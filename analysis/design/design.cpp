@@ -4,111 +4,144 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
+#include <span>
+#include <utility>
 
 #include "data-schema/base/quantity.hpp"
+#include "playback/prepare/scene/acting_load.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/stability/acting_patches.hpp"
+#include "playback/stability/adversary.hpp"
 
 namespace tacto::analysis {
 namespace {
 
 using schema::ErrorKind;
-using schema::Patch;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// The ends between which a slider moves the numbers of a layer.
-struct LoadRange {
-  double stiffness = 0, least_damping = 0, most_damping = 0;
-  std::string unknown;  // a type whose stiffness is not computed
-};
-
-double upper_end(const schema::LayerNumber& number) {
-  return number.slider ? number.slider->to : number.value;
-}
-double lower_end(const schema::LayerNumber& number) {
-  return number.slider ? number.slider->from : number.value;
-}
-
-LoadRange load_range(const schema::ForceLayer& layer) {
-  LoadRange range;
-  layer.visit(
-      [&](const schema::SpringLayer& spring) { range.stiffness = upper_end(spring.stiffness_n_per_m); },
-      [&](const schema::DamperLayer& damper) {
-        range.least_damping = lower_end(damper.damping_n_s_per_m);
-        range.most_damping = upper_end(damper.damping_n_s_per_m);
-      },
-      [&](const auto& /*other*/) {
-        range.stiffness = playback::local_stiffness_n_per_m(layer);
-        if (!(range.stiffness > 0)) range.unknown = type_of(layer);
-      });
-  return range;
-}
-
-LoadRange load_range(const std::vector<Patch>& patches, const std::vector<std::size_t>& acting) {
-  LoadRange sum;
-  for (const std::size_t i : acting)
-    for (const schema::ForceLayer& layer : patches[i].layers) {
-      const LoadRange range = load_range(layer);
-      sum.stiffness += range.stiffness;
-      sum.least_damping += range.least_damping;
-      sum.most_damping += range.most_damping;
-      if (!range.unknown.empty()) sum.unknown = range.unknown;
-    }
-  return sum;
-}
-
-struct Judgement {
-  Stability verdict = Stability::stable;
-  std::string because;
-};
-
-Judgement judgement_of(const JudgedLoop& loop, const VirtualLoad& load, const DesignRequest& request) {
-  const Holder judged = request.judged;
-  if (judged != Holder::lumped && loop.carries(Holder::any, load))
-    return {Stability::stable, "proved for each passive hand"};
-  if (request.speed_mps && judged != Holder::lumped && loop.carries(Holder::slower, load))
-    return {Stability::stable, "proved for " + holder_name(Holder::slower, request)};
-  const Holder computed = is_proof(judged) ? Holder::nothing : judged;
-  const std::string how = fmt::format("computed by eigenvalues, {}", holder_name(computed, request));
-  if (!loop.carries(computed, load)) return {Stability::unstable, how};
-  if (is_proof(judged)) return {Stability::not_known, "not proved for " + holder_name(judged, request)};
-  return {Stability::stable, how};
+void judge(JudgedLayer& layer, const DesignRequest& request, const std::string& unknown) {
+  const Holder judged = request.judged, computed = is_proof(judged) ? Holder::nothing : judged;
+  const auto proved = [&](Holder holder) {
+    return judged != Holder::lumped && layer.loop.carries(holder, layer.total);
+  };
+  layer.verdict = Stability::stable;
+  layer.because = fmt::format("computed by eigenvalues, {}", holder_name(computed, request));
+  if (proved(Holder::any)) {
+    layer.because = "proved for each passive hand";
+  } else if (request.speed_mps && proved(Holder::slower)) {
+    layer.because = "proved for " + holder_name(Holder::slower, request);
+  } else if (!layer.loop.carries(computed, layer.total)) {
+    layer.verdict = Stability::unstable;
+    if (!unknown.empty()) layer.because += fmt::format("; without the layer of type {}", unknown);
+    return;
+  } else if (is_proof(judged)) {
+    layer.verdict = Stability::not_known;
+    layer.because = "not proved for " + holder_name(judged, request);
+  }
+  if (unknown.empty()) return;
+  layer.verdict = Stability::not_known;
+  layer.because = fmt::format("the stiffness of a layer of type {} is not computed", unknown);
 }
 
 // The layers that act together at a place, on the axis and at the end of the sliders nearest to the limit.
 JudgedLayer judged_place(const DesignRequest& request, const playback::ActingPatches& place,
-                         const LoadRange& range) {
+                         const playback::ActingLoad& load) {
   JudgedLayer worst;
-  worst.margin = kInfinity;
-  bool any = false;
+  worst.acting = place.patches;
+  worst.x_m = place.x_m;
+  worst.y_m = place.y_m;
   for (const schema::DeviceAxis& axis : request.device.axes) {
     if (axis.name == "z") continue;
     const JudgedLoop loop{axis, request.hand, request.speed_mps, 1 / request.rate_hz, request.device.delay_s};
-    for (const double damping : {range.least_damping, range.most_damping}) {
-      const VirtualLoad load{range.stiffness, damping};
-      const double margin = loop.margin(request.judged, load);
-      if (any && !(margin < worst.margin)) continue;
-      any = true;
-      worst.total = load;
+    for (const double damping : {load.least_damping_n_s_per_m, load.most_damping_n_s_per_m}) {
+      const VirtualLoad total{load.stiffness_n_per_m, damping};
+      const double margin = loop.margin(request.judged, total);
+      if (!worst.loop.axis.name.empty() && !(margin < worst.margin)) continue;
+      worst.total = total;
       worst.loop = loop;
       worst.margin = margin;
     }
   }
-  worst.x_m = place.x_m;
-  worst.y_m = place.y_m;
-  const Judgement judgement = judgement_of(worst.loop, worst.total, request);
-  worst.verdict = judgement.verdict;
-  worst.because = judgement.because;
-  if (range.unknown.empty()) return worst;
-  if (worst.verdict == Stability::unstable) {
-    worst.because += fmt::format("; without the layer of type {}", range.unknown);
-  } else {
-    worst.verdict = Stability::not_known;
-    worst.because = fmt::format("the stiffness of a layer of type {} is not computed", range.unknown);
-  }
+  judge(worst, request, load.unknown);
   return worst;
+}
+
+// Of one scene: the layers that act together are tapped once.
+class Taps {
+ public:
+  Taps(const schema::Scene& scene, const playback::PreparedScene& prepared, const DesignRequest& request,
+       const core::ForceSetup& setup)
+      : request_(request),
+        hand_(request.hand.value_or(schema::Hand())),
+        bench_(scene, prepared, request.device, setup, hand_) {}
+
+  void simulate(JudgedLayer& layer) const {
+    const auto& axes = request_.device.axes;
+    const auto axis = std::ranges::find(axes, layer.loop.axis.name, &schema::DeviceAxis::name) - axes.begin();
+    const auto at = bench_.stiffest({layer.acting, layer.x_m, layer.y_m}, static_cast<std::size_t>(axis));
+    if (!at) return;
+    layer.simulated = SimulatedLayers{bench_.worst(*at)};
+    if (layer.total.damping_n_s_per_m <= 0 || layer.total.stiffness_n_per_m <= 0) return;
+    const double limit =
+        layer.loop.limit(request_.hand ? Holder::hand : Holder::nothing, layer.total.damping_n_s_per_m);
+    if (!(limit > 0) || std::isinf(limit)) return;
+    const auto factor = bench_.resting_factor(*at, 1.2 * limit / layer.total.stiffness_n_per_m);
+    if (factor) layer.simulated->limit_n_per_m = *factor * layer.total.stiffness_n_per_m;
+  }
+
+ private:
+  const DesignRequest& request_;
+  const schema::Hand hand_;
+  TapBench bench_;
+};
+
+using PlaceOfPatch = std::map<std::size_t, JudgedLayer>;
+
+// `each` changes the places once for all patches that act there together.
+void for_each_place(PlaceOfPatch& of_patch, const auto& each) {
+  std::map<std::vector<std::size_t>, JudgedLayer> done;
+  for (auto& [patch, layer] : of_patch) {
+    if (const auto [found, fresh] = done.try_emplace(layer.acting, layer); fresh) each(found->second);
+    layer = done.at(layer.acting);
+  }
+}
+
+schema::Result<void> simulate_places(PlaceOfPatch& of_patch, const schema::Scene& scene,
+                                     const std::string& where, const DesignRequest& request) {
+  const auto setup = playback::force_setup_of(request.device, request.rate_hz);
+  TACTO_TRY(setup);
+  const schema::Scene ends[] = {with_sliders_at_ends(scene, false), with_sliders_at_ends(scene, true)};
+  const auto least = playback::prepare_scene(ends[0], where, request.device, request.rate_hz, request.hand);
+  TACTO_TRY(least);
+  const auto most = playback::prepare_scene(ends[1], where, request.device, request.rate_hz, request.hand);
+  TACTO_TRY(most);
+  const Taps taps[] = {{ends[0], *least, request, *setup}, {ends[1], *most, request, *setup}};
+  for_each_place(of_patch, [&](JudgedLayer& layer) {
+    const double most_damping = playback::load_of(scene.patches, layer.acting).most_damping_n_s_per_m;
+    taps[layer.total.damping_n_s_per_m >= most_damping ? 1 : 0].simulate(layer);
+    if (!layer.simulated || layer.simulated->tap.end != TapEnd::grows || layer.verdict == Stability::unstable)
+      return;
+    layer.verdict = Stability::unstable;
+    layer.because = fmt::format("a simulated tap grows; {}", layer.because);
+  });
+  return {};
+}
+
+constexpr std::uint64_t kAdversarySeed = 33;
+
+void search_places(PlaceOfPatch& of_patch, const DesignRequest& request) {
+  std::map<std::pair<std::string, double>, double> found;  // the paths are those of axis and damper
+  for_each_place(of_patch, [&](JudgedLayer& layer) {
+    const std::pair key{layer.loop.axis.name, layer.total.damping_n_s_per_m};
+    if (!found.contains(key))
+      found[key] = playback::least_generating_stiffness(
+          layer.loop.axis, layer.loop.timing(), layer.total.damping_n_s_per_m,
+          request.speed_mps.value_or(std::numeric_limits<double>::infinity()), request.adversary_paths,
+          kAdversarySeed);
+    layer.generating_n_per_m = found[key];
+  });
 }
 
 bool is_worse(const JudgedLayer& a, const JudgedLayer& b) {
@@ -184,13 +217,19 @@ schema::Result<Design> design_scene(const schema::Scene& scene, const std::strin
         fmt::format("the delay of {:g} s is {:.4g} ticks at {:g} Hz: at most {:g} are computed",
                     request.device.delay_s, delay_ticks, request.rate_hz, kMostDelayTicks),
         request.device.name, "choose a lower --rate");
-  Design design{request, {}, std::nullopt, {}};
-  std::map<std::size_t, JudgedLayer> of_patch;
+  Design design{request, {}, std::nullopt, {}, {}};
+  PlaceOfPatch of_patch;
   for (const playback::ActingPatches& place : playback::acting_patches(scene.patches, request.device)) {
-    const JudgedLayer judged = judged_place(request, place, load_range(scene.patches, place.patches));
+    const JudgedLayer judged = judged_place(request, place, playback::load_of(scene.patches, place.patches));
     for (const std::size_t i : place.patches)
       if (const auto [at, fresh] = of_patch.try_emplace(i, judged); !fresh && is_worse(judged, at->second))
         at->second = judged;
+  }
+  if (request.adversary_paths > 0) search_places(of_patch, request);
+  if (request.simulate) {
+    TACTO_TRY(simulate_places(of_patch, scene, where, request));
+    design.simulated = fmt::format("tactograph sim:planar, device {}, hand {}", request.device.name,
+                                   request.hand ? request.hand->name : "none");
   }
   for (std::size_t i = 0; i < scene.patches.size(); ++i)
     for (std::size_t j = 0; j < scene.patches[i].layers.size(); ++j) {
@@ -200,8 +239,8 @@ schema::Result<Design> design_scene(const schema::Scene& scene, const std::strin
       judged.patch = scene.patches[i].name;
       judged.type = type_of(layer);
       judged.index = j;
-      const LoadRange own = load_range(layer);
-      judged.own = {own.stiffness, own.most_damping};
+      const playback::ActingLoad own = playback::load_of(layer);
+      judged.own = {own.stiffness_n_per_m, own.most_damping_n_s_per_m};
       design.layers.push_back(std::move(judged));
     }
   for (std::size_t i = 0; i < design.layers.size(); ++i) {
@@ -247,6 +286,37 @@ schema::ResultPicture z_width(const Design& design) {
     layers.y.push_back(layer.total.stiffness_n_per_m);
   }
   picture.curves.push_back(std::move(layers));
+  return picture;
+}
+
+schema::ResultPicture worst_tap(const Design& design) {
+  const JudgedLayer* worst = nullptr;
+  for (const JudgedLayer& layer : design.layers) {
+    const auto rank = [](const JudgedLayer& of) {
+      return std::pair(of.simulated->tap.end, of.simulated->tap.rms_counts);
+    };
+    if (layer.simulated && (worst == nullptr || rank(layer) > rank(*worst))) worst = &layer;
+  }
+  const SimulatedTap& tap = worst->simulated->tap;
+  schema::ResultPicture picture{
+      fmt::format("Simulated tap on {} {} of patch '{}' along {}: {} and {}, {}", worst->type, worst->index,
+                  worst->patch, worst->loop.axis.name,
+                  schema::for_people(tap.push_n, schema::Dimension::force),
+                  schema::for_people(tap.speed_mps, schema::Dimension::speed), to_string(tap.end)),
+      "time (s)",
+      "displacement (mm)",
+      false,
+      {{"", {}, {}, false, false}}};
+  constexpr std::size_t kPieces = 500;  // of the time; of each the least and the largest place
+  for (std::size_t i = 0; i < kPieces; ++i) {
+    const std::size_t from = tap.path_m.size() * i / kPieces, to = tap.path_m.size() * (i + 1) / kPieces;
+    if (from == to) continue;
+    const auto [low, high] = std::ranges::minmax(std::span(tap.path_m).subspan(from, to - from));
+    for (const double place_m : {low, high}) {
+      picture.curves[0].x.push_back(static_cast<double>(from) / design.request.rate_hz);
+      picture.curves[0].y.push_back(1e3 * place_m);
+    }
+  }
   return picture;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/design/judged_loop.hpp"
+#include "analysis/design/simulated_taps.hpp"
 #include "data-schema/results/results.hpp"
 #include "data-schema/scene/scene.hpp"
 
@@ -19,6 +20,8 @@ struct DesignRequest {
   std::optional<double> speed_mps;   ///< for Holder::slower
   double rate_hz = 0;
   Holder judged = Holder::nothing;  ///< which limit decides
+  bool simulate = false;
+  std::size_t adversary_paths = 0;
 };
 
 enum class Stability {
@@ -31,16 +34,25 @@ enum class Stability {
 /// "stable", "unstable", "not known", "not reached".
 std::string_view to_string(Stability verdict);
 
+/// The worst of the taps on the stiffest place of layers that act together.
+struct SimulatedLayers {
+  SimulatedTap tap;
+  std::optional<double> limit_n_per_m = std::nullopt;  ///< with a damper: up to where it rests
+};
+
 /// A layer, where the layers that act there together are nearest to their limit.
 struct JudgedLayer {
   std::string patch, type;
-  std::size_t index = 0;   ///< in its patch
+  std::size_t index = 0;            ///< in its patch
+  std::vector<std::size_t> acting;  ///< patches at that place
   VirtualLoad own, total;  ///< its own, and of all layers that act at that place; sliders at the worse end
   double x_m = 0, y_m = 0;
   JudgedLoop loop;    ///< of the axis that is nearest to its limit
   double margin = 0;  ///< JudgedLoop::margin() of the judged limit
   Stability verdict = Stability::not_reached;
   std::string because;  ///< "proved for each passive hand", "computed by eigenvalues", ...
+  std::optional<SimulatedLayers> simulated = std::nullopt;
+  std::optional<double> generating_n_per_m = std::nullopt;  ///< playback::least_generating_stiffness()
 };
 
 /// A change that alone makes the layer stable.
@@ -54,13 +66,15 @@ struct Design {
   std::vector<JudgedLayer> layers;
   std::optional<std::size_t> first;  ///< the layer of smallest margin
   std::vector<Remedy> remedies;      ///< for it, if it is not stable
+  std::string simulated = {};        ///< by what; empty if nothing is
   bool is_unstable() const;
 };
 
 /// Springs, dampers, grooves and noise (their largest local stiffness) of all patches on the axes x and y.
-/// Patches that act at one place add up. Precondition: grooves have a filter (set_filters()). Errors:
-/// unsuitable: the scene has no patches; the delay is beyond 50 ticks. `where` is the scene's file.
-/// Precondition: a device with an axis x or y, and a rate that it has.
+/// Patches that act at one place add up. A layer is unstable if the computed limit is passed, or if a
+/// simulated tap grows. Errors: unsuitable: the scene has no patches; the delay is beyond 50 ticks; with
+/// `simulate`, those of playback::prepare_scene(). `where` is the scene's file. Preconditions: grooves have a
+/// filter (set_filters()); a device with an axis x or y, and a rate that it has.
 schema::Result<Design> design_scene(const schema::Scene& scene, const std::string& where,
                                     const DesignRequest& request);
 
@@ -77,5 +91,9 @@ std::string holder_name(Holder holder, const DesignRequest& request);
 /// Each limit but the lumped one over virtual damping, up to where that of the free device falls to 0, on the
 /// axis of the first layer; the layers as marks. Precondition: there is a first layer.
 schema::ResultPicture z_width(const Design& design);
+
+/// The worst simulated tap: the place over time, and the layers as its title. Precondition: one was
+/// simulated.
+schema::ResultPicture worst_tap(const Design& design);
 
 }  // namespace tacto::analysis

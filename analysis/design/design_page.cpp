@@ -9,6 +9,7 @@
 #include "analysis/page/html.hpp"
 #include "analysis/page/picture_svg.hpp"
 #include "data-schema/base/quantity.hpp"
+#include "data-schema/report/value_text.hpp"
 #include "playback/stability/passive_limit.hpp"
 
 namespace tacto::analysis {
@@ -32,82 +33,17 @@ std::string layer_name(const JudgedLayer& layer) {
   return fmt::format("{} {} of patch '{}'", layer.type, layer.index, layer.patch);
 }
 
-bool is_reached(const JudgedLayer& layer) {
-  return layer.verdict != Stability::not_reached;
-}
-
-std::string limit_words(const JudgedLayer& layer, Holder holder) {
-  if (!is_reached(layer)) return "-";
-  const double limit = layer.loop.limit(holder, layer.total.damping_n_s_per_m);
-  return limit > 0 ? stiffness_words(limit) : "none";
-}
-
-std::string delay_words(const JudgedLayer& layer, Holder judged) {
-  const double delay_s = layer.loop.largest_delay_s(judged, layer.total);
-  if (delay_s < 0) return "none";
-  return std::isinf(delay_s) ? "over 50 ticks" : for_people(delay_s, Dimension::time);
-}
-
-std::string period_words(const JudgedLayer& layer, Holder judged) {
-  const double period_s = layer.loop.greatest_period_s(judged, layer.total);
-  if (std::isinf(period_s)) return "any";
-  return period_s > 0 ? for_people(period_s, Dimension::time) : "none";
-}
-
-std::string passive_speed_words(const JudgedLayer& layer) {
-  const double speed = playback::largest_passive_speed_mps(
-      layer.loop.axis, layer.loop.timing(), layer.total.stiffness_n_per_m, layer.total.damping_n_s_per_m);
-  if (std::isinf(speed)) return "any";
-  return speed > 0 ? for_people(speed, Dimension::speed) : "none";
-}
-
-std::string layers_table(const Design& design) {
-  std::vector<Column<JudgedLayer>> columns = {
-      {"layer", layer_name},
-      {"asked", [](const JudgedLayer& layer) { return load_words(layer.own); }},
-      {"with the layers there",
-       [](const JudgedLayer& layer) { return is_reached(layer) ? load_words(layer.total) : "-"; }}};
-  for (const Holder holder : holders_of(design.request))
-    columns.push_back({holder_name(holder, design.request),
-                       [holder](const JudgedLayer& layer) { return limit_words(layer, holder); }});
-  columns.push_back({"margin", [](const JudgedLayer& layer) {
-                       return is_reached(layer) && std::isfinite(layer.margin)
-                                  ? fmt::format("{:.3g}", layer.margin)
-                                  : "-";
-                     }});
-  columns.push_back({"verdict", [](const JudgedLayer& layer) {
-                       return layer.because.empty()
-                                  ? std::string(to_string(layer.verdict))
-                                  : fmt::format("{}: {}", to_string(layer.verdict), layer.because);
-                     }});
-  return html_table(design.layers, columns);
-}
-
-std::string needs_table(const Design& design) {
-  std::vector<JudgedLayer> judged;
-  std::ranges::copy_if(design.layers, std::back_inserter(judged), is_reached);
-  const Holder holder = design.request.judged;
-  return html_table(
-      judged, {{"layer", layer_name},
-               {"axis", [](const JudgedLayer& layer) { return layer.loop.axis.name; }},
-               {"longest period", [holder](const JudgedLayer& layer) { return period_words(layer, holder); }},
-               {"longest delay", [holder](const JudgedLayer& layer) { return delay_words(layer, holder); }},
-               {"friction for any hand",
-                [](const JudgedLayer& layer) {
-                  return fmt::format("{:.4g} N s/m", playback::passive_damping_needed(
-                                                         layer.loop.timing(), layer.total.stiffness_n_per_m,
-                                                         layer.total.damping_n_s_per_m));
-                }},
-               {"passive below", passive_speed_words}});
-}
-
-std::string remedies_table(const Design& design) {
-  return html_table(design.remedies, {{"change", &Remedy::change},
-                                      {"now", &Remedy::now},
-                                      {"needed", &Remedy::needed},
-                                      {"limit then", [](const Remedy& r) {
-                                         return r.limit_n_per_m ? stiffness_words(*r.limit_n_per_m) : "-";
-                                       }}});
+// Columns that are empty in all rows are left out.
+std::string rows_table(const std::vector<cli::Report>& rows) {
+  std::vector<std::string> keys;
+  for (const cli::Report& row : rows)
+    for (const auto& [key, value] : cli::ReportPrinter::entries(row))
+      if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+  return html_table(cli::labels_of(keys), rows.size(), [&](std::size_t row, std::size_t column) {
+    for (const auto& [key, value] : cli::ReportPrinter::entries(rows[row]))
+      if (key == keys[column]) return cli::cell_text(key, value);
+    return std::string("-");
+  });
 }
 
 constexpr const char* kDesignNotes =
@@ -119,11 +55,13 @@ constexpr const char* kDesignNotes =
     "delay of the device; without Coulomb friction, encoder steps and force limits. <em>Proved</em>: the "
     "friction of the "
     "device dissipates at least the energy that the sampled spring and damper give, encoder steps included "
-    "(Colgate and Schenkel 1997; Abbott and Okamura 2005), so that no passive hand makes it unstable. The "
-    "velocity is "
-    "that between two ticks; the kernel averages a slow one over more ticks, which delays a damper. Nothing "
-    "here is "
-    "simulated.</p>\n"
+    "(Colgate and Schenkel 1997; Abbott and Okamura 2005), so that no passive hand makes it unstable. Both "
+    "take the velocity of a damper between two ticks; the kernel averages a slow one over more ticks, which "
+    "delays a damper. <em>Simulated</em> (--simulate): taps and presses on the stiffest place, with the "
+    "device's kernel on the emulated device: encoder, friction, delay and force limits included; the RMS of "
+    "the place (in counts of the encoder) and of the force in the last quarter of the time. "
+    "<em>Adversary</em> (--adversary): the stiffness from which on one of the random paths gives more energy "
+    "than friction dissipates.</p>\n"
     "<p>The margin is the factor by which the stiffness and damping at that place may grow together. Longest "
     "period and "
     "delay are those of the limit that is judged.</p>\n";
@@ -152,6 +90,30 @@ std::string design_verdict(const Design& design) {
                      limited, layer.because, rest);
 }
 
+std::string damper_words(const Design& design) {
+  const JudgedLayer* lowest = nullptr;
+  double least = 1 - 2 * kRestingPart;
+  bool any = false;
+  for (const JudgedLayer& layer : design.layers) {
+    any = any || (layer.simulated && layer.total.damping_n_s_per_m > 0);
+    if (!layer.simulated || !layer.simulated->limit_n_per_m) continue;
+    const Holder holder = design.request.hand ? Holder::hand : Holder::nothing;
+    const double part =
+        *layer.simulated->limit_n_per_m / layer.loop.limit(holder, layer.total.damping_n_s_per_m);
+    if (part >= least) continue;
+    least = part;
+    lowest = &layer;
+  }
+  if (!any) return "";
+  if (lowest == nullptr)
+    return "simulated taps on layers with a virtual damper rest up to the computed limit";
+  return fmt::format(
+      "{}: simulated taps rest within a count up to {}, {:.2g} of the computed limit, which has no encoder "
+      "and "
+      "takes the velocity between two ticks; the kernel averages a slow one over more ticks",
+      layer_name(*lowest), stiffness_words(*lowest->simulated->limit_n_per_m), least);
+}
+
 std::vector<schema::ResultFigure> design_figures(const Design& design) {
   const DesignRequest& request = design.request;
   std::vector<schema::ResultFigure> figures = {
@@ -170,22 +132,23 @@ std::vector<schema::ResultFigure> design_figures(const Design& design) {
     figures.push_back({"hand", fmt::format("{}: {:.4g} kg, {:.4g} N s/m, {:.4g} N/m", request.hand->name,
                                            request.hand->mass_kg, request.hand->damping_n_s_per_m,
                                            request.hand->stiffness_n_per_m)});
+  if (const std::string words = damper_words(design); !words.empty()) figures.push_back({"damper", words});
   for (const Remedy& remedy : design.remedies)
     figures.push_back({"remedy: " + remedy.change, fmt::format("{} (now {})", remedy.needed, remedy.now)});
   return figures;
 }
 
-std::vector<LayerField> layer_fields(const JudgedLayer& layer, const DesignRequest& request) {
-  const bool reached = is_reached(layer);
+DesignRow layer_row(const JudgedLayer& layer, const DesignRequest& request) {
+  const bool reached = layer.verdict != Stability::not_reached;
   const auto if_reached = [&](double value) { return reached ? value : NAN; };
-  std::vector<LayerField> fields = {{"patch", layer.patch},
-                                    {"layer", static_cast<double>(layer.index)},
-                                    {"type", layer.type},
-                                    {"stiffness_n_per_m", layer.own.stiffness_n_per_m},
-                                    {"damping_n_s_per_m", layer.own.damping_n_s_per_m},
-                                    {"total_stiffness_n_per_m", if_reached(layer.total.stiffness_n_per_m)},
-                                    {"total_damping_n_s_per_m", if_reached(layer.total.damping_n_s_per_m)},
-                                    {"axis", layer.loop.axis.name}};
+  DesignRow row = {{"patch", layer.patch},
+                   {"layer", layer.index},
+                   {"type", layer.type},
+                   {"stiffness_n_per_m", layer.own.stiffness_n_per_m},
+                   {"damping_n_s_per_m", layer.own.damping_n_s_per_m},
+                   {"total_stiffness_n_per_m", if_reached(layer.total.stiffness_n_per_m)},
+                   {"total_damping_n_s_per_m", if_reached(layer.total.damping_n_s_per_m)},
+                   {"axis", layer.loop.axis.name}};
   constexpr std::pair<Holder, const char*> kLimits[] = {{Holder::nothing, "free_limit_n_per_m"},
                                                         {Holder::hand, "hand_limit_n_per_m"},
                                                         {Holder::lumped, "lumped_limit_n_per_m"},
@@ -194,17 +157,66 @@ std::vector<LayerField> layer_fields(const JudgedLayer& layer, const DesignReque
   const std::vector<Holder> has = holders_of(request);
   for (const auto& [holder, key] : kLimits) {
     const bool known = reached && std::ranges::find(has, holder) != has.end();
-    fields.push_back({key, known ? layer.loop.limit(holder, layer.total.damping_n_s_per_m) : NAN});
+    row.push_back({key, known ? layer.loop.limit(holder, layer.total.damping_n_s_per_m) : NAN});
   }
-  fields.push_back({"margin", if_reached(layer.margin)});
-  fields.push_back({"verdict", std::string(to_string(layer.verdict))});
-  fields.push_back({"because", layer.because});
-  return fields;
+  if (request.adversary_paths > 0)
+    row.push_back({"adversary_from_n_per_m", layer.generating_n_per_m.value_or(NAN)});
+  if (request.simulate) {
+    const auto& simulated = layer.simulated;
+    row.push_back({"simulated", simulated ? std::string(to_string(simulated->tap.end)) : "not simulated"});
+    row.push_back({"simulated_rms_counts", simulated ? simulated->tap.rms_counts : NAN});
+    row.push_back({"simulated_rms_n", simulated ? simulated->tap.rms_n : NAN});
+    row.push_back({"simulated_limit_n_per_m", simulated ? simulated->limit_n_per_m.value_or(NAN) : NAN});
+  }
+  row.push_back({"margin", if_reached(layer.margin)});
+  row.push_back({"verdict", std::string(to_string(layer.verdict))});
+  row.push_back({"because", layer.because});
+  return row;
+}
+
+DesignRow needs_row(const JudgedLayer& layer, const DesignRequest& request) {
+  const auto& [stiffness, damping] = layer.total;
+  const JudgedLoop& loop = layer.loop;
+  const auto above = [](double least, double value) { return value > least ? value : NAN; };
+  return {
+      {"patch", layer.patch},
+      {"layer", layer.index},
+      {"x_m", layer.x_m},
+      {"y_m", layer.y_m},
+      {"greatest_period_s", above(0, loop.greatest_period_s(request.judged, layer.total))},
+      {"largest_delay_s", above(-1, loop.largest_delay_s(request.judged, layer.total))},
+      {"any_hand_needs_n_s_per_m", playback::passive_damping_needed(loop.timing(), stiffness, damping)},
+      {"passive_below_mps",
+       playback::largest_passive_speed_mps(loop.axis, loop.timing(), stiffness, damping)},
+      {"friction_stops_below_m", playback::friction_basin_m(loop.axis, loop.timing(), stiffness, damping)}};
+}
+
+cli::Report report_of(const DesignRow& row) {
+  cli::Report report;
+  for (const auto& [key, value] : row)
+    if (const auto* number = std::get_if<double>(&value); number == nullptr || std::isfinite(*number))
+      std::visit([&, k = &key](const auto& each) { report.add(*k, each); }, value);
+  return report;
+}
+
+DesignTables design_tables(const Design& design) {
+  DesignTables tables;
+  for (const JudgedLayer& layer : design.layers) {
+    tables.layers.push_back(report_of(layer_row(layer, design.request)));
+    if (layer.verdict != Stability::not_reached)
+      tables.needs.push_back(report_of(needs_row(layer, design.request)));
+  }
+  for (const auto& [change, now, needed, limit_n_per_m] : design.remedies)
+    tables.remedies.push_back(report_of({{"change", change},
+                                         {"now", now},
+                                         {"needed", needed},
+                                         {"limit_n_per_m", limit_n_per_m.value_or(NAN)}}));
+  return tables;
 }
 
 std::string design_csv(const Design& design) {
   std::string csv;
-  for (const auto& [key, value] : layer_fields(design.layers.front(), design.request))
+  for (const auto& [key, value] : layer_row(design.layers.front(), design.request))
     csv += (csv.empty() ? "" : ",") + key;
   const auto quoted = [](std::string text) {
     for (std::size_t at = 0; (at = text.find('"', at)) != text.npos; at += 2) text.insert(at, 1, '"');
@@ -212,12 +224,13 @@ std::string design_csv(const Design& design) {
   };
   for (const JudgedLayer& layer : design.layers) {
     char separator = '\n';
-    for (const auto& [key, value] : layer_fields(layer, design.request)) {
+    for (const auto& [key, value] : layer_row(layer, design.request)) {
       csv += separator;
       separator = ',';
-      const auto* number = std::get_if<double>(&value);
-      if (number == nullptr)
-        csv += quoted(std::get<std::string>(value));
+      if (const auto* text = std::get_if<std::string>(&value))
+        csv += quoted(*text);
+      else if (const auto* number = std::get_if<double>(&value); number == nullptr)
+        csv += std::to_string(std::get<std::size_t>(value));
       else if (std::isfinite(*number))
         csv += fmt::format("{:.9g}", *number);
     }
@@ -227,24 +240,25 @@ std::string design_csv(const Design& design) {
 
 schema::Result<std::string> design_page(const Design& design, const std::string& scene,
                                         const std::vector<schema::ResultPicture>& pictures) {
-  const auto drawn = pictures_html(pictures, "");
+  const auto drawn = pictures_html(pictures, design.simulated);
   TACTO_TRY(drawn);
   std::vector<schema::ResultFigure> figures = design_figures(design);
   std::erase_if(figures, [](const auto& figure) {
     return figure.name == "verdict" || figure.name.starts_with("remedy: ");
   });
+  const DesignTables tables = design_tables(design);
   std::string body = fmt::format("<h1>{}</h1>\n", escaped(scene + " on " + design.request.device.name)) +
-                     answer(design_verdict(design)) + figures_html(figures) + "<h2>Layers</h2>\n" +
-                     layers_table(design);
-  if (!design.remedies.empty())
+                     simulated_box(design.simulated) + answer(design_verdict(design)) +
+                     figures_html(figures) + "<h2>Layers</h2>\n" + rows_table(tables.layers);
+  if (!tables.remedies.empty())
     body +=
         fmt::format(
             "<h2>What would make it stable</h2>\n<p>Each change alone, for {} ({}); the limit is computed "
             "again.</p>\n",
             escaped(layer_name(design.layers[*design.first])),
             escaped(holder_name(design.request.judged, design.request))) +
-        remedies_table(design);
-  body += *drawn + "<h2>What each layer needs</h2>\n" + needs_table(design) + kDesignNotes;
+        rows_table(tables.remedies);
+  body += *drawn + "<h2>What each layer needs</h2>\n" + rows_table(tables.needs) + kDesignNotes;
   return html_document("Stability of " + scene, body);
 }
 

@@ -3,26 +3,35 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "analysis/design/design.hpp"
+#include "data-schema/report/report.hpp"
 
 namespace tacto::analysis {
 
 /// The answer in one sentence.
 std::string design_verdict(const Design& design);
 
+/// By how much the simulated limit of layers with a virtual damper is below the computed one; empty without.
+std::string damper_words(const Design& design);
+
 std::vector<schema::ResultFigure> design_figures(const Design& design);
 
 inline constexpr const char* kDesignCsvHead = "patch,layer,type,stiffness_n_per_m,";
 
-/// What a row of a layer's table has, as key and SI value; NaN or infinity: nothing.
-struct LayerField {
-  std::string key;
-  std::variant<double, std::string> value;
+/// Keys and SI values of a row; NaN or infinity: nothing.
+using DesignRow = std::vector<std::pair<std::string, std::variant<double, std::size_t, std::string>>>;
+
+DesignRow layer_row(const JudgedLayer& layer, const DesignRequest& request);
+
+/// The tables of the verb and of the page, without what is nothing.
+struct DesignTables {
+  std::vector<cli::Report> layers, needs, remedies;
 };
-std::vector<LayerField> layer_fields(const JudgedLayer& layer, const DesignRequest& request);
+DesignTables design_tables(const Design& design);
 
 /// One line per layer. Precondition: there is a layer.
 std::string design_csv(const Design& design);

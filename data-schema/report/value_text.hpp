@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keys and values of a report in words. Internal to this folder.
+// Keys and values of a report in words, for texts and pages.
 #pragma once
 
 #include <string>

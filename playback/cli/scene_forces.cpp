@@ -60,7 +60,7 @@ Result<SceneOnDevice> scene_on_device(const std::string& scene_name, const std::
   warn_of_newer(device_name, *device);
   if (!scene->layers.empty())
     cli::warn(fmt::format("{}: its {} layers of a tray are left out", file, scene->layers.size()));
-  for (const std::string& note : limits_of_device(*prepared, *device, *setup)) cli::warn(note);
+  for (const std::string& note : limits_of_device(*prepared, *device, *setup, hand)) cli::warn(note);
   return SceneOnDevice{std::move(*device), std::move(*prepared), *setup};
 }
 

@@ -112,7 +112,7 @@ Result<ForceProgram> make_force_program(const ForceRequest& request, const schem
   TACTO_TRY(prepared);
   const auto limits = limits_for(request, device, own, rate_hz);
   TACTO_TRY(limits);
-  auto notes = limits_of_device(*prepared, device, *setup);
+  auto notes = limits_of_device(*prepared, device, *setup, hand);
   return ForceProgram{std::move(*prepared), *limits, header_of(file, own, rate_hz), std::move(notes)};
 }
 

@@ -79,18 +79,34 @@ void add_crossing(const PatchEdge& a, const PatchEdge& b, std::vector<Vertex>& v
 
 }  // namespace
 
+PatchStack::PatchStack(const std::vector<schema::Patch>& patches)
+    : patches_(patches), topmost_first_(patches.size()) {
+  std::iota(topmost_first_.rbegin(), topmost_first_.rend(), std::size_t{0});
+  std::ranges::stable_sort(topmost_first_, std::ranges::greater(),
+                           [&](std::size_t i) { return patches[i].order; });
+}
+
+std::vector<std::size_t> PatchStack::acting_at(double x_m, double y_m) const {
+  std::vector<std::size_t> acting;
+  for (bool covered = false; const std::size_t i : topmost_first_) {
+    const bool adds = patches_[i].combine == schema::PatchCombine::add;
+    const double from_x = x_m - patches_[i].x_m, from_y = y_m - patches_[i].y_m;
+    const double width = patches_[i].width_m, height = patches_[i].height_m;
+    const bool near = 4 * (from_x * from_x + from_y * from_y) < 1.1 * (width * width + height * height);
+    if ((covered && !adds) || !near || !rectangle_of(patches_[i]).contains({x_m, y_m})) continue;
+    covered = covered || !adds;
+    acting.push_back(i);
+  }
+  return acting;
+}
+
 std::vector<ActingPatches> acting_patches(const std::vector<schema::Patch>& patches,
                                           const schema::Device& device) {
-  std::vector<std::size_t> topmost_first(patches.size());
-  std::iota(topmost_first.rbegin(), topmost_first.rend(), std::size_t{0});
-  std::ranges::stable_sort(topmost_first, std::ranges::greater(),
-                           [&](std::size_t i) { return patches[i].order; });
-  std::vector<Rectangle> rectangles;
-  for (const schema::Patch& patch : patches) rectangles.push_back(rectangle_of(patch));
+  const PatchStack stack(patches);
   const Rectangle travel = travel_of(device);
   std::vector<PatchEdge> edges;
   std::vector<Vertex> vertices;
-  for (const Rectangle& rectangle : rectangles) add_edges_and_corners(rectangle, edges, vertices);
+  for (const schema::Patch& patch : patches) add_edges_and_corners(rectangle_of(patch), edges, vertices);
   add_edges_and_corners(travel, edges, vertices);
   for (std::size_t i = 0; i < edges.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) add_crossing(edges[i], edges[j], vertices);
@@ -99,13 +115,7 @@ std::vector<ActingPatches> acting_patches(const std::vector<schema::Patch>& patc
   const auto test = [&](Point place) {
     place.x = std::clamp(place.x, travel.centre.x - travel.half_width, travel.centre.x + travel.half_width);
     place.y = std::clamp(place.y, travel.centre.y - travel.half_height, travel.centre.y + travel.half_height);
-    std::vector<std::size_t> acting;
-    for (bool covered = false; const std::size_t i : topmost_first) {
-      const bool adds = patches[i].combine == schema::PatchCombine::add;
-      if ((covered && !adds) || !rectangles[i].contains(place)) continue;
-      covered = covered || !adds;
-      acting.push_back(i);
-    }
+    std::vector<std::size_t> acting = stack.acting_at(place.x, place.y);
     if (!acting.empty()) sets.try_emplace(std::move(acting), place);
   };
   for (const Vertex& vertex : vertices)

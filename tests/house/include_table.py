@@ -111,7 +111,7 @@ MAY_INCLUDE = {
     "playback/session":
         "data-schema/{base control files session wav} firmware-host/{core/firmware core/kernel core/wire link} "
         "playback/model",
-    "playback/stability": "data-schema/{device scene} firmware-host/sim/planar",
+    "playback/stability": "data-schema/{device scene} firmware-host/{core/scene sim/planar}",
     "playback/strokes":
         "data-schema/{base texture} firmware-host/{core/kernel core/wire} playback/{choose model render "
         "render/reference session} spatial/features",
@@ -128,7 +128,8 @@ MAY_INCLUDE = {
         "sim/bench sim/physics} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
     "analysis/experiment": "analysis/{page psychometrics} capture/table data-schema/{base results}",
     "analysis/design":
-        "analysis/page data-schema/{base device results scene} playback/{prepare/scene stability}",
+        "analysis/page data-schema/{base device report results scene} firmware-host/{core/scene sim/planar} "
+        "playback/{prepare/scene stability}",
     "analysis/extremes":
         "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/recording "
         "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram strokes}",

@@ -11,7 +11,7 @@ std::int32_t encoder_count(const schema::DeviceAxis& axis, double place_m) {
 }
 
 PlanarBody::PlanarBody(const schema::Device& device, const schema::Hand& hand, double period_s)
-    : device_(device), states_(device.axes.size()), period_s_(period_s) {
+    : device_(device), states_(device.axes.size()), push_n_(device.axes.size()), period_s_(period_s) {
   const double whole = std::floor(device.delay_s / period_s + 1e-9);
   late_ticks_ = static_cast<std::size_t>(whole);
   late_s_ = std::max(0.0, device.delay_s - whole * period_s);
@@ -21,12 +21,19 @@ PlanarBody::PlanarBody(const schema::Device& device, const schema::Hand& hand, d
 }
 
 void PlanarBody::rest_at(const std::vector<double>& place_m) {
+  const std::vector<double> none(place_m.size());
+  start_at(place_m, none, none);
+}
+
+void PlanarBody::start_at(const std::vector<double>& place_m, const std::vector<double>& speed_mps,
+                          const std::vector<double>& push_n) {
   forces_n_.clear();
-  for (std::size_t i = 0; i < states_.size(); ++i) states_[i] = {place_m[i], 0};
+  push_n_ = push_n;
+  for (std::size_t i = 0; i < states_.size(); ++i) states_[i] = {place_m[i], speed_mps[i]};
 }
 
 double PlanarBody::force_of(std::size_t axis, std::size_t ticks_ago) const {
-  return ticks_ago < forces_n_.size() ? forces_n_[ticks_ago][axis] : 0;
+  return push_n_[axis] + (ticks_ago < forces_n_.size() ? forces_n_[ticks_ago][axis] : 0);
 }
 
 void PlanarBody::step(const std::vector<double>& force_n, const std::vector<double>& hand_from_m,

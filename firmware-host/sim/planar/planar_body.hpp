@@ -21,6 +21,9 @@ class PlanarBody {
 
   /// At rest at these places, without forces. One number per axis, here and below.
   void rest_at(const std::vector<double>& place_m);
+  /// In motion, without forces of the device; a constant force of the outside pushes from now on.
+  void start_at(const std::vector<double>& place_m, const std::vector<double>& speed_mps,
+                const std::vector<double>& push_n);
   /// Moves over one period, in which the hand's places move evenly, after a tick with these forces (N, on the
   /// hand).
   void step(const std::vector<double>& force_n, const std::vector<double>& hand_from_m,
@@ -35,6 +38,7 @@ class PlanarBody {
   schema::Device device_;
   std::vector<AxisBody> bodies_;
   std::vector<PlaceAndSpeed> states_;
+  std::vector<double> push_n_;
   double period_s_, late_s_;                  // the part of the delay within a period
   std::size_t late_ticks_;                    // and its whole periods
   std::deque<std::vector<double>> forces_n_;  // of the last ticks, the newest first

@@ -13,7 +13,7 @@
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
 #include "playback/stability/free_limit.hpp"
-#include "playback/stability/sampled_spring.hpp"
+#include "playback/stability/hand_limit.hpp"
 
 namespace tacto::playback {
 
@@ -225,17 +225,16 @@ std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLa
 }
 
 double stiffness_limit_of(const schema::Device& device, double rate_hz,
-                          const std::optional<schema::Hand>& hand) {
+                          const std::optional<schema::Hand>& hand, double virtual_damping_n_s_per_m) {
   double limit = INFINITY;
+  const TickTiming timing{1 / rate_hz, device.delay_s * rate_hz};
   for (const schema::DeviceAxis& axis : device.axes) {
     if (axis.name == "z") continue;
-    const TickTiming timing{1 / rate_hz, device.delay_s * rate_hz};
-    limit = std::min(limit, hand ? stiffness_limit({axis.mass_kg + hand->mass_kg,
-                                                    axis.viscous_n_s_per_m + hand->damping_n_s_per_m,
-                                                    hand->stiffness_n_per_m},
-                                                   timing, 0)
-                                 : free_stiffness_limit(axis.mass_kg, axis.viscous_n_s_per_m, timing.period_s,
-                                                        timing.delay_ticks));
+    const schema::Hand held = hand.value_or(schema::Hand());
+    limit = std::min(limit, hand || virtual_damping_n_s_per_m > 0
+                                ? hand_stiffness_limit(axis, held, timing, virtual_damping_n_s_per_m)
+                                : free_stiffness_limit(axis.mass_kg, axis.viscous_n_s_per_m, timing.period_s,
+                                                       timing.delay_ticks));
   }
   return limit;
 }

@@ -41,10 +41,11 @@ struct PreparedScene {
 /// (core::SceneKernel::change). Empty for a type that cannot be played yet.
 std::vector<std::string_view> numbers_in_block(const schema::ForceLayer& layer);
 
-/// The largest stiffness that is stable at this rate along both axes: of the free device, or of the device
-/// with the mass, damping and stiffness of a hand. Coulomb friction is left out.
+/// The largest stiffness that is stable at this rate along both axes, with this damper of the scene: of the
+/// free device, or of the device with the mass, damping and stiffness of a hand. Coulomb friction is left
+/// out.
 double stiffness_limit_of(const schema::Device& device, double rate_hz,
-                          const std::optional<schema::Hand>& hand);
+                          const std::optional<schema::Hand>& hand, double virtual_damping_n_s_per_m = 0);
 
 /// Sets the filters that the file leaves to the program (filter_m: auto) for that limit. `where` is the
 /// scene's file. Errors: unsuitable: the limit is 0, by JSON pointer.

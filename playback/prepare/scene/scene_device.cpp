@@ -11,6 +11,8 @@
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
+#include "playback/prepare/scene/acting_load.hpp"
+#include "playback/stability/acting_patches.hpp"
 
 namespace tacto::playback {
 
@@ -158,15 +160,44 @@ void note_patch(const PreparedScene& alone, const Device& device, const core::Fo
                     patch.name, percent_of(static_cast<std::size_t>(high), places.size())));
 }
 
-void note_stiffness(const schema::Patch& patch, double limit_n_per_m, std::vector<std::string>& notes) {
-  for (const schema::ForceLayer& layer : patch.layers) {
-    const double stiffness_n_per_m = local_stiffness_n_per_m(layer);
-    if (limit_n_per_m > 0 && stiffness_n_per_m > limit_n_per_m)
-      notes.push_back(fmt::format(
-          "patch '{}': a layer of the type {} has a stiffness of {:.4g} N/m; the device is stable up "
-          "to {:.4g} N/m",
-          patch.name, type_of(layer), stiffness_n_per_m, limit_n_per_m));
+// "spring 0 of patch 'floor'": the layer with the largest share of what acts at a place.
+std::string largest_share(const std::vector<schema::Patch>& patches, const std::vector<std::size_t>& acting) {
+  std::pair<double, double> most{-1, -1};
+  std::string name;
+  for (const std::size_t i : acting)
+    for (std::size_t j = 0; j < patches[i].layers.size(); ++j) {
+      const ActingLoad load = load_of(patches[i].layers[j]);
+      const std::pair share{load.stiffness_n_per_m, load.most_damping_n_s_per_m};
+      if (share <= most) continue;
+      most = share;
+      name = fmt::format("{} {} of patch '{}'", type_of(patches[i].layers[j]), j, patches[i].name);
+    }
+  return name;
+}
+
+// One sentence about the place that is the farthest beyond its limit. Not for a device of unknown mass.
+void note_instability(const PreparedScene& scene, const Device& device, double rate_hz,
+                      const std::optional<schema::Hand>& hand, std::vector<std::string>& notes) {
+  if (!(device.axes.front().mass_kg > 0)) return;
+  const std::vector<schema::Patch> patches(scene.patches.rbegin(), scene.patches.rend());  // as in a file
+  double farthest = 1;
+  std::string note;
+  for (const ActingPatches& place : acting_patches(patches, device)) {
+    const ActingLoad load = load_of(patches, place.patches);
+    for (const double damping : {load.least_damping_n_s_per_m, load.most_damping_n_s_per_m}) {
+      if (load.stiffness_n_per_m <= 0 && damping <= 0) continue;
+      const double limit = stiffness_limit_of(device, rate_hz, hand, damping);
+      const double beyond = limit > 0 ? load.stiffness_n_per_m / limit : INFINITY;
+      if (beyond < farthest) continue;
+      farthest = beyond;
+      note = fmt::format(
+          "{} is unstable on this device with {}: {:.4g} N/m and {:.4g} N s/m act there together, the limit "
+          "is {:.4g} N/m (computed); 'tactograph design' lists what would prevent it",
+          largest_share(patches, place.patches), hand ? "hand " + hand->name : "nothing held",
+          load.stiffness_n_per_m, damping, limit);
+    }
   }
+  if (!note.empty()) notes.push_back(std::move(note));
 }
 
 }  // namespace
@@ -211,7 +242,8 @@ double local_stiffness_n_per_m(const schema::ForceLayer& layer) {
 }
 
 std::vector<std::string> limits_of_device(const PreparedScene& scene, const Device& device,
-                                          const core::ForceSetup& setup) {
+                                          const core::ForceSetup& setup,
+                                          const std::optional<schema::Hand>& hand) {
   std::vector<std::string> notes;
   for (const char* name : {"x", "y"})
     if (axis_named(device, name) == nullptr)
@@ -219,10 +251,8 @@ std::vector<std::string> limits_of_device(const PreparedScene& scene, const Devi
           fmt::format("the device has no axis {0}: the hand stays at {0} = 0, and forces along {0} "
                       "are left out",
                       name));
-  for (const schema::Patch& patch : scene.patches) {
-    note_patch(scene.with({patch}), device, setup, notes);
-    note_stiffness(patch, scene.stiffness_limit_n_per_m, notes);
-  }
+  for (const schema::Patch& patch : scene.patches) note_patch(scene.with({patch}), device, setup, notes);
+  note_instability(scene, device, double{setup.rate_hz}, hand, notes);
   return notes;
 }
 

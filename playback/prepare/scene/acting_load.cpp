@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/prepare/scene/acting_load.hpp"
+
+#include "playback/prepare/scene/scene_device.hpp"
+
+namespace tacto::playback {
+
+ActingLoad load_of(const schema::ForceLayer& layer) {
+  ActingLoad load;
+  load.stiffness_n_per_m = local_stiffness_n_per_m(layer);
+  layer.visit([](const schema::SpringLayer& /*spring*/) {},
+              [&](const schema::DamperLayer& damper) {
+                const schema::LayerNumber& number = damper.damping_n_s_per_m;
+                load.least_damping_n_s_per_m = number.slider ? number.slider->from : number.value;
+                load.most_damping_n_s_per_m = largest_value(number);
+              },
+              [&](const auto& /*other*/) {
+                if (!(load.stiffness_n_per_m > 0)) load.unknown = type_of(layer);
+              });
+  return load;
+}
+
+ActingLoad load_of(const std::vector<schema::Patch>& patches, const std::vector<std::size_t>& acting) {
+  ActingLoad sum;
+  for (const std::size_t i : acting)
+    for (const schema::ForceLayer& layer : patches[i].layers) {
+      const ActingLoad load = load_of(layer);
+      sum.stiffness_n_per_m += load.stiffness_n_per_m;
+      sum.least_damping_n_s_per_m += load.least_damping_n_s_per_m;
+      sum.most_damping_n_s_per_m += load.most_damping_n_s_per_m;
+      if (!load.unknown.empty()) sum.unknown = load.unknown;
+    }
+  return sum;
+}
+
+}  // namespace tacto::playback

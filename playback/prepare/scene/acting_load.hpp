@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The stiffness and damping of layers that act together.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "data-schema/scene/patch.hpp"
+
+namespace tacto::playback {
+
+/// With each slider at its upper end, of dampers at both ends.
+struct ActingLoad {
+  double stiffness_n_per_m = 0, least_damping_n_s_per_m = 0, most_damping_n_s_per_m = 0;
+  std::string unknown;  ///< a type whose stiffness is not computed
+};
+
+ActingLoad load_of(const schema::ForceLayer& layer);
+/// The sum over all layers of these patches.
+ActingLoad load_of(const std::vector<schema::Patch>& patches, const std::vector<std::size_t>& acting);
+
+}  // namespace tacto::playback
