@@ -188,7 +188,8 @@ cli::Action declare_design(CLI::App& app) {
                "Tap each layer on its stiffest place, with the device's kernel on the emulated device");
   app.add_option("--adversary", o.adversary_paths,
                  "Search the energy that springs and dampers give on so many random paths of a hand")
-      ->type_name("N");
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
   app.add_flag("--assume", o.assume,
                "Assume what the device's file leaves out of mass, friction and encoder step, and list it");
   app.add_flag("--z-width", o.z_width, "Draw each limit over virtual damping, in the page and the results");

@@ -88,7 +88,8 @@ class Taps {
         layer.loop.limit(request_.hand ? Holder::hand : Holder::nothing, layer.total.damping_n_s_per_m);
     if (!(limit > 0) || std::isinf(limit)) return;
     const auto factor = bench_.resting_factor(*at, 1.2 * limit / layer.total.stiffness_n_per_m);
-    if (factor) layer.simulated->limit_n_per_m = *factor * layer.total.stiffness_n_per_m;
+    layer.simulated->limit_n_per_m =
+        factor ? *factor * layer.total.stiffness_n_per_m : std::numeric_limits<double>::infinity();
   }
 
  private:

@@ -37,7 +37,8 @@ std::string_view to_string(Stability verdict);
 /// The worst of the taps on the stiffest place of layers that act together.
 struct SimulatedLayers {
   SimulatedTap tap;
-  std::optional<double> limit_n_per_m = std::nullopt;  ///< with a damper: up to where it rests
+  /// With a damper: up to where it rests; infinity if it does beyond the computed limit.
+  std::optional<double> limit_n_per_m = std::nullopt;
 };
 
 /// A layer, where the layers that act there together are nearest to their limit.

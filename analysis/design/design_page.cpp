@@ -59,7 +59,8 @@ constexpr const char* kDesignNotes =
     "take the velocity of a damper between two ticks; the kernel averages a slow one over more ticks, which "
     "delays a damper. <em>Simulated</em> (--simulate): taps and presses on the stiffest place, with the "
     "device's kernel on the emulated device: encoder, friction, delay and force limits included; the RMS of "
-    "the place (in counts of the encoder) and of the force in the last quarter of the time. "
+    "the place (in counts of the encoder) and of the force in the last quarter of the time. An edge at which "
+    "the force jumps may oscillate, too: the limits do not have it. "
     "<em>Adversary</em> (--adversary): the stiffness from which on one of the random paths gives more energy "
     "than friction dissipates.</p>\n"
     "<p>The margin is the factor by which the stiffness and damping at that place may grow together. Longest "
@@ -95,8 +96,8 @@ std::string damper_words(const Design& design) {
   double least = 1 - 2 * kRestingPart;
   bool any = false;
   for (const JudgedLayer& layer : design.layers) {
-    any = any || (layer.simulated && layer.total.damping_n_s_per_m > 0);
     if (!layer.simulated || !layer.simulated->limit_n_per_m) continue;
+    any = true;
     const Holder holder = design.request.hand ? Holder::hand : Holder::nothing;
     const double part =
         *layer.simulated->limit_n_per_m / layer.loop.limit(holder, layer.total.damping_n_s_per_m);

@@ -22,6 +22,7 @@ constexpr double kStiffnessStep_m =
     2e-6;                         // over which a stiffness is measured: above single precision's rounding
 constexpr double kTapPart = 0.4;  // of what layers and device give
 constexpr double kTapDecays = 0.9, kTapGrows = 1.15;  // RMS from one quarter of the time to the next
+constexpr int kSwings = 6;                            // crossings, before a motion is a swing
 
 double limit_n(const schema::Device& device, std::size_t axis) {
   return std::min(device.axes[axis].continuous_force_n, device.continuous_force_n);
@@ -41,27 +42,41 @@ double spread(std::span<const double> values) {
   return std::sqrt(std::max(0.0, square - (squares > 0 ? slope * slope / squares : 0)) / n);
 }
 
-double largest(std::span<const double> values) {
-  double most = 0;
-  for (const double value : values) most = std::max(most, std::abs(value));
-  return most;
+// How often the values cross their mean.
+int crossings(std::span<const double> values) {
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  int count = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) count += (values[i] > mean) != (values[i - 1] > mean);
+  return count;
 }
 
-// Judges the quarters of the time until the layers were left for good: a tap may leave a wall and come to
-// rest beside it.
+struct Quarters {
+  double rms_counts[4], rms_n;  // of the force in the last quarter
+};
+
+Quarters quarters_of(const std::vector<double>& path_m, const std::vector<double>& force_n, std::size_t ticks,
+                     double step_m) {
+  const std::size_t quarter = std::max<std::size_t>(ticks / 4, 1);
+  Quarters quarters;
+  for (std::size_t i = 0; i < 4; ++i)
+    quarters.rms_counts[i] = spread(std::span(path_m).subspan(i * quarter, quarter)) / step_m;
+  quarters.rms_n = spread(std::span(force_n).subspan(3 * quarter, quarter));
+  return quarters;
+}
+
+// Growth is that of the time until the layers were left for good; leaving them at once, as a wall or a spring
+// near an edge, is none. Otherwise a tap ends where it is at last.
 void judge(SimulatedTap& tap, const std::vector<double>& force_n, std::size_t inside, double step_m) {
-  const std::size_t ticks = tap.path_m.size(), quarter = std::max<std::size_t>(inside / 4, 1);
-  const bool left = ticks - inside >= ticks / 4;
-  const auto part = [&](std::size_t i) { return std::span(tap.path_m).subspan(i * quarter, quarter); };
-  double rms[4];
-  for (std::size_t i = 0; i < 4; ++i) rms[i] = spread(part(i)) / step_m;
+  Quarters of = quarters_of(tap.path_m, force_n, inside, step_m);
+  const auto& rms = of.rms_counts;
+  const bool swings = crossings(std::span(tap.path_m).first(std::max<std::size_t>(inside, 1))) >= kSwings;
+  const bool grows = swings && rms[3] > 1 && rms[3] > kTapGrows * rms[2] && rms[2] > kTapGrows * rms[1];
+  if (!grows) of = quarters_of(tap.path_m, force_n, tap.path_m.size(), step_m);
   tap.rms_counts = rms[3];
-  tap.rms_n = spread(std::span(force_n).subspan(3 * quarter, quarter));
-  const bool grew = left ? largest(part(3)) > kTapGrows * largest(part(0))
-                         : rms[3] > 1 && rms[3] > kTapGrows * rms[2] && rms[2] > kTapGrows * rms[1];
-  if (grew)
+  tap.rms_n = of.rms_n;
+  if (grows)
     tap.end = TapEnd::grows;
-  else if (!left && rms[3] > 1 && rms[3] > kTapDecays * rms[2])
+  else if (rms[3] > 1 && rms[3] > kTapDecays * rms[2])
     tap.end = TapEnd::oscillates;
 }
 

@@ -19,7 +19,7 @@ namespace tacto::analysis {
 enum class TapEnd {
   rests,       ///< within 1 count RMS, decaying, or beside the layers
   oscillates,  ///< above that, and neither decaying nor growing
-  grows,       ///< from second to second, or until it leaves the layers
+  grows,       ///< from quarter to quarter of the time, or of that until it leaves the layers
 };
 
 inline constexpr double kRestingPart = 0.02;
