@@ -100,14 +100,9 @@ bool is_stable_free(const Design& design) {
 }
 
 Report report_of(const DesignVerbOptions& o, const Design& design) {
-  const DesignRequest& request = design.request;
-  Report report;
-  report.add("verdict", design_verdict(design)).add("scene", schema::scene_path(o.scene));
-  report.add("device", request.device.name).add("judged", holder_name(request.judged, request));
-  report.add("rate_hz", request.rate_hz).add("delay_s", request.device.delay_s);
-  if (!design.simulated.empty()) report.add("simulated", design.simulated);
-  if (const std::string words = damper_words(design); !words.empty()) report.add("damper", words);
-  if (request.hand) report.add("stable_if_released", is_stable_free(design));
+  Report report = design_head(design);
+  report.add("scene", schema::scene_path(o.scene));
+  if (design.request.hand) report.add("stable_if_released", is_stable_free(design));
   DesignTables tables = design_tables(design);
   report.add("layers", std::move(tables.layers)).add("needs", std::move(tables.needs));
   if (!tables.remedies.empty()) report.add("remedies", std::move(tables.remedies));

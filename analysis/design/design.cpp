@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -55,7 +56,7 @@ JudgedLayer judged_place(const DesignRequest& request, const playback::ActingPat
   for (const schema::DeviceAxis& axis : request.device.axes) {
     if (axis.name == "z") continue;
     const JudgedLoop loop{axis, request.hand, request.speed_mps, 1 / request.rate_hz, request.device.delay_s};
-    for (const double damping : {load.least_damping_n_s_per_m, load.most_damping_n_s_per_m}) {
+    for (const double damping : std::set{load.least_damping_n_s_per_m, load.most_damping_n_s_per_m}) {
       const VirtualLoad total{load.stiffness_n_per_m, damping};
       const double margin = loop.margin(request.judged, total);
       if (!worst.loop.axis.name.empty() && !(margin < worst.margin)) continue;

@@ -67,8 +67,7 @@ constexpr const char* kDesignNotes =
     "period and "
     "delay are those of the limit that is judged.</p>\n";
 
-}  // namespace
-
+// The answer in one sentence.
 std::string design_verdict(const Design& design) {
   const auto unknown = std::ranges::find_if(design.layers, [](const JudgedLayer& layer) {
     return layer.verdict == Stability::not_known && layer.own.is_nothing();
@@ -115,13 +114,25 @@ std::string damper_words(const Design& design) {
       layer_name(*lowest), stiffness_words(*lowest->simulated->limit_n_per_m), least);
 }
 
+}  // namespace
+
+cli::Report design_head(const Design& design) {
+  const DesignRequest& request = design.request;
+  cli::Report head;
+  head.add("verdict", design_verdict(design)).add("device", request.device.name);
+  head.add("judged", holder_name(request.judged, request)).add("rate_hz", request.rate_hz);
+  head.add("delay_s", request.device.delay_s);
+  if (!design.simulated.empty()) head.add("simulated", design.simulated);
+  if (const std::string words = damper_words(design); !words.empty()) head.add("damper", words);
+  return head;
+}
+
 std::vector<schema::ResultFigure> design_figures(const Design& design) {
   const DesignRequest& request = design.request;
-  std::vector<schema::ResultFigure> figures = {
-      {"verdict", design_verdict(design)},
-      {"judged", holder_name(request.judged, request)},
-      {"rate", for_people(request.rate_hz, Dimension::frequency)},
-      {"delay", for_people(request.device.delay_s, Dimension::time)}};
+  std::vector<schema::ResultFigure> figures;
+  const cli::Report head = design_head(design);
+  for (const auto& [key, value] : cli::ReportPrinter::entries(head))
+    figures.push_back({cli::labels_of({key}).front(), cli::cell_text(key, value)});
   for (const schema::DeviceAxis& axis : request.device.axes)
     if (axis.name != "z")
       figures.push_back(
@@ -133,7 +144,6 @@ std::vector<schema::ResultFigure> design_figures(const Design& design) {
     figures.push_back({"hand", fmt::format("{}: {:.4g} kg, {:.4g} N s/m, {:.4g} N/m", request.hand->name,
                                            request.hand->mass_kg, request.hand->damping_n_s_per_m,
                                            request.hand->stiffness_n_per_m)});
-  if (const std::string words = damper_words(design); !words.empty()) figures.push_back({"damper", words});
   for (const Remedy& remedy : design.remedies)
     figures.push_back({"remedy: " + remedy.change, fmt::format("{} (now {})", remedy.needed, remedy.now)});
   return figures;

@@ -12,11 +12,9 @@
 
 namespace tacto::analysis {
 
-/// The answer in one sentence.
-std::string design_verdict(const Design& design);
-
-/// By how much the simulated limit of layers with a virtual damper is below the computed one; empty without.
-std::string damper_words(const Design& design);
+/// What is true of the whole scene; among it by how much the simulated limit of layers with a virtual damper
+/// is below the computed one.
+cli::Report design_head(const Design& design);
 
 std::vector<schema::ResultFigure> design_figures(const Design& design);
 
