@@ -7,6 +7,7 @@
 #include "analysis/design/boundary.hpp"
 #include "analysis/design/design.hpp"
 #include "data-schema/base/quantity.hpp"
+#include "data-schema/report/value_text.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -21,56 +22,44 @@ struct LoadedLoop {
 // A number that is raised or lowered until the loop is stable. Searched up to or down to `end`.
 struct LoopNumber {
   const char* name;
-  double now;
+  const char* key;  // with the ending of its unit
   bool raised;
   double end;
-  void (*set)(LoadedLoop& on, double value);
-  std::string (*words)(double value);
+  double& (*of)(LoadedLoop& on);
 };
 
-std::string loop_damping_words(double n_s_per_m) {
-  return fmt::format("{:.4g} N s/m", n_s_per_m);
-}
-
-std::vector<LoopNumber> loop_numbers(const JudgedLayer& layer, Holder judged) {
-  const JudgedLoop& loop = layer.loop;
+std::vector<LoopNumber> loop_numbers(const JudgedLoop& loop, Holder judged) {
   std::vector<LoopNumber> numbers = {
-      {"stiffness", layer.total.stiffness_n_per_m, false, 1e-6,
-       [](LoadedLoop& on, double value) { on.load.stiffness_n_per_m = value; },
-       [](double value) { return fmt::format("{:.4g} N/m", value); }},
-      {"viscous friction of the device", loop.axis.viscous_n_s_per_m, true, 1e5,
-       [](LoadedLoop& on, double value) { on.loop.axis.viscous_n_s_per_m = value; }, loop_damping_words},
-      {"damper of the scene", layer.total.damping_n_s_per_m, true, 1e4,
-       [](LoadedLoop& on, double value) { on.load.damping_n_s_per_m = value; }, loop_damping_words}};
+      {"stiffness", "_n_per_m", false, 1e-6,
+       [](LoadedLoop& on) -> double& { return on.load.stiffness_n_per_m; }},
+      {"viscous friction of the device", "_n_s_per_m", true, 1e5,
+       [](LoadedLoop& on) -> double& { return on.loop.axis.viscous_n_s_per_m; }},
+      {"damper of the scene", "_n_s_per_m", true, 1e4,
+       [](LoadedLoop& on) -> double& { return on.load.damping_n_s_per_m; }}};
   if (loop.delay_s > 0)
-    numbers.push_back({"delay", loop.delay_s, false, 1e-6 * loop.period_s,
-                       [](LoadedLoop& on, double value) { on.loop.delay_s = value; },
-                       [](double value) { return schema::for_people(value, Dimension::time); }});
+    numbers.push_back({"delay", "_s", false, 1e-6 * loop.period_s,
+                       [](LoadedLoop& on) -> double& { return on.loop.delay_s; }});
   if (is_proof(judged))
-    numbers.push_back({"encoder step", loop.axis.encoder_step_m, false, 1e-12,
-                       [](LoadedLoop& on, double value) { on.loop.axis.encoder_step_m = value; },
-                       [](double value) { return schema::for_people(value, Dimension::length); }});
+    numbers.push_back({"encoder step", "_m", false, 1e-12,
+                       [](LoadedLoop& on) -> double& { return on.loop.axis.encoder_step_m; }});
   return numbers;
 }
 
-Remedy changed_alone(const LoopNumber& number, const LoadedLoop& from, Holder judged) {
-  const auto with = [&](double value) {
-    LoadedLoop changed = from;
-    number.set(changed, value);
-    return changed;
-  };
-  const auto good = [&](double value) {
-    const LoadedLoop changed = with(value);
+Remedy changed_alone(const LoopNumber& number, LoadedLoop changed, Holder judged) {
+  double& value = number.of(changed);
+  const double now = value;
+  const auto good = [&](double tried) {
+    value = tried;
     return changed.loop.carries(judged, changed.load);
   };
+  const auto words = [&](double of) { return cli::cell_text(number.key, of); };
   constexpr double kLeast = 1e-3;  // N s/m: where a search upwards from 0 begins
-  const double needed = number.raised
-                            ? first_above(std::max(number.now, kLeast), number.end, good).value_or(0)
-                        : number.now > 0 ? last_good(number.now, number.end, number.now, good)
-                                         : 0;
-  if (needed <= 0) return {number.name, number.words(number.now), "none suffices", std::nullopt};
-  const LoadedLoop changed = with(needed);
-  return {number.name, number.words(number.now), (number.raised ? "above " : "below ") + number.words(needed),
+  const double needed = number.raised ? first_above(std::max(now, kLeast), number.end, good).value_or(0)
+                        : now > 0     ? last_good(now, number.end, now, good)
+                                      : 0;
+  if (needed <= 0) return {number.name, words(now), "none suffices", std::nullopt};
+  value = needed;
+  return {number.name, words(now), (number.raised ? "above " : "below ") + words(needed),
           changed.loop.limit(judged, changed.load.damping_n_s_per_m)};
 }
 
@@ -96,7 +85,7 @@ Remedy raised_rate(const JudgedLayer& layer, const DesignRequest& request) {
 
 std::vector<Remedy> remedies_for(const JudgedLayer& layer, const DesignRequest& request) {
   std::vector<Remedy> remedies = {raised_rate(layer, request)};
-  for (const LoopNumber& number : loop_numbers(layer, request.judged))
+  for (const LoopNumber& number : loop_numbers(layer.loop, request.judged))
     remedies.push_back(changed_alone(number, {layer.loop, layer.total}, request.judged));
   return remedies;
 }

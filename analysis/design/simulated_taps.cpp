@@ -96,6 +96,7 @@ schema::Scene with_sliders_at_ends(schema::Scene scene, bool most_damping) {
                     if (number.slider) number.value = most_damping ? number.slider->to : number.slider->from;
                   },
                   [&](schema::GroovesLayer& grooves) { raise(grooves.kappa_n), raise(grooves.depth_m); },
+                  [&](schema::HeightMapLayer& map) { raise(map.kappa_n); },
                   [&](schema::NoiseLayer& noise) { raise(noise.kappa_n), raise(noise.depth_m); },
                   [](auto& /*other*/) {});
   return scene;
@@ -201,7 +202,7 @@ SimulatedTap TapBench::tap(const TapPlace& at, double push_n, double speed_mps, 
   for (std::uint32_t i = 0; i < view_.layer_count; ++i) {
     const core::SceneLayer& layer = view_.layers[i];
     if (const auto kind = static_cast<core::SceneLayerKind>(layer.kind); kind != core::SceneLayerKind::damper)
-      live[layer.first_number] *= static_cast<float>(factor);
+      live[layer.first_number] *= static_cast<float>(factor);  // the force of each kind is proportional to it
   }
   firmware_host::PlanarBody body(device_, hand_, 1 / double{setup_.rate_hz});
   std::vector<double> push(at.rest_n), speed(at.place_m.size()), force(at.place_m.size());
