@@ -57,7 +57,7 @@ void declare_data(CLI::App& app, ImportRequest& request) {
       "--no-position", [&request] { request.integrate_speed = false; },
       "Do not integrate a speed channel to a position");
   app.add_flag("--mask-outliers", request.mask_outliers,
-               "Remove rows with implausible samples: they become gaps and are not filled in");
+               "Remove rows with implausible or missing values: they become gaps and are not filled in");
   app.add_flag("--force", request.replace, "Replace a recording of the same name");
 }
 

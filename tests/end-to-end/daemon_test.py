@@ -88,6 +88,12 @@ class Client:
         self.socket.sendall((json.dumps(request) + "\n").encode())
         return json.loads(self.lines.readline())
 
+    def next_event(self, name):
+        """The next event of this name; those before it are passed over."""
+        while (event := json.loads(self.lines.readline()))["event"] != name:
+            pass
+        return event
+
     def rest_of_events(self):
         """All unread events of a watcher, until none arrives for half a second."""
         events = []
