@@ -324,6 +324,11 @@ void Import::add_warnings(RecordingHeader& header) const {
     header.warnings.push_back(fmt::format(
         "the rate is the one given; the table's times are not read: --time-column '{}' takes it from them",
         plan_.source.columns[*column]));
+  for (const ChannelSpec& channel : plan_.channels)
+    if (!channel.source.other_unit.empty())
+      header.warnings.push_back(
+          fmt::format("{}: the unit of its column '{}' is {}; that of --channel is used instead",
+                      channel.name, plan_.source.columns[channel.source.column], channel.source.other_unit));
   if (derived_)
     header.warnings.push_back("no position was measured: it is " + derived_->position.channel().derivation);
   std::ranges::move(gap_warnings(source.gaps), std::back_inserter(header.warnings));
