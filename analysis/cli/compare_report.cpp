@@ -96,10 +96,6 @@ void add_detectable(Report& report, const Comparison& c) {
     report.add("detectable_line_db", std::max(c.evidence.line->detectable_db, c.tolerance_db));
 }
 
-std::string rms_key(const char* whose, const std::string& unit) {
-  return std::string(whose) + (unit == "N" ? "_rms_n" : unit == "m" ? "_rms_m" : "_rms");
-}
-
 std::string compared_band(const Comparison& c) {
   return fmt::format("{} to {}", for_people(c.low_per_m, Dimension::spatial_frequency),
                      for_people(c.high_per_m, Dimension::spatial_frequency));
@@ -107,7 +103,8 @@ std::string compared_band(const Comparison& c) {
 
 void add_rms(Report& report, const Comparison& c) {
   report.add("rms_band", compared_band(c) + ": of both RMS values, the band that is compared");
-  report.add(rms_key("a", c.pair.unit), c.a_rms).add(rms_key("b", c.pair.unit), c.b_rms);
+  report.add(schema::key_in("a_rms", c.pair.unit), c.a_rms)
+      .add(schema::key_in("b_rms", c.pair.unit), c.b_rms);
 }
 
 }  // namespace

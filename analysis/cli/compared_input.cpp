@@ -16,7 +16,11 @@ Result<ComparedInput> session_input(const std::string& name, std::size_t stroke,
                                     const std::function<void(double)>& progress) {
   auto played = played_texture(name, stroke, progress);
   TACTO_TRY(played);
-  ComparedInput input{fmt::format("{}, stroke {}", name, played->stroke), "", played->texture, {}};
+  ComparedInput input{
+      fmt::format("{}, stroke {}{}", name, played->stroke, stroke == 0 ? ", its longest" : ""),
+      "",
+      played->texture,
+      {}};
   input.played = std::move(*played);
   return input;
 }

@@ -23,6 +23,7 @@ using schema::Result;
 
 constexpr double kShortestCompareWindow = 16;  // samples
 constexpr double kHannBandwidth = 1.5;         // bins
+constexpr double kLeastCoherence = 0.5;        // of two copies; two gratings with common lines have less
 constexpr double kExplained = 0.5;             // smallest correlation that counts as agreement
 constexpr double kThousandDb = 60, kNearThousandDb = 1;
 constexpr double kParts = 8, kWavelengths = 8;
@@ -171,7 +172,7 @@ void compare_formants(Comparison& comparison, const CompareOptions& options,
 // A small shift hardly changes the coherence, but it changes the gain: half a wave makes the gain negative
 // and leaves little of B explained.
 void note_likeness(Comparison& comparison) {
-  if (!comparison.point_by_point) return;
+  if (!comparison.point_by_point || *comparison.coherence < kLeastCoherence) return;
   const double correlation = *comparison.gain * comparison.a_rms / comparison.b_rms;
   if (correlation < -kExplained)
     comparison.notes.emplace_back("B is A with inverted sign: the gain is negative");

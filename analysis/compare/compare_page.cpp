@@ -243,9 +243,11 @@ std::vector<schema::ResultFigure> comparison_figures(const Comparison& c, const 
                                 c.formants.missed.size(), c.formants.extra.size()));
   }
   if (!c.pair.paired) return figures;
-  add("coherence",
-      fmt::format("{:.2f}; chance {:.2f}: {}", *c.coherence, c.chance_coherence,
-                  c.point_by_point ? "the two agree point by point" : "they do not agree point by point"));
+  add("coherence", c.point_by_point
+                       ? fmt::format("{:.2f}; chance {:.2f}: {:.0f} % of the power agrees point by point",
+                                     *c.coherence, c.chance_coherence, 100 * *c.coherence)
+                       : fmt::format("{:.2f}; chance {:.2f}: no agreement point by point", *c.coherence,
+                                     c.chance_coherence));
   add("gain, least squares", fmt::format("{:.3g}", *c.gain));
   if (!names.with_target) add("error of B re A", optional_db(c.error_db));
   add("residual after the best gain, re B", optional_db(c.residual_db));

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "spatial/dsp/fourier/fft.hpp"
+#include "spatial/dsp/spectrum/window.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -17,10 +18,12 @@ using Bins = std::vector<std::complex<double>>;
 class Segments {
  public:
   Segments(double pitch, std::size_t window, std::size_t first, std::size_t bins)
-      : fft_(window), first_(first), bins_(bins), weights_(window), frame_(window), spectrum_(fft_.bins()) {
-    for (std::size_t n = 0; n < window; ++n)
-      weights_[n] =
-          0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(window));
+      : fft_(window),
+        first_(first),
+        bins_(bins),
+        weights_(spatial::hann(window)),
+        frame_(window),
+        spectrum_(fft_.bins()) {
     const double power = std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 0.0);
     scale_ = std::sqrt(pitch / power);
   }

@@ -66,7 +66,7 @@ std::vector<double> stroke_levels_db(std::span<const double> values, double pitc
     levels.push_back(power_between(density, step, edges_per_m[i], edges_per_m[i + 1]));
   const double most = *std::ranges::max_element(levels);
   if (!(most > 0)) return {};
-  const double least = most * std::pow(10, -kLevelFloorDb / 10);
+  const double least = most * schema::power_of_db(-kLevelFloorDb);
   for (double& level : levels) level = schema::power_db(std::max(level, least));
   return levels;
 }

@@ -171,8 +171,8 @@ void append(ComparedStroke& stroke, const ComparedStroke& next) {
   const auto n = static_cast<double>(stroke.values.size()), more = static_cast<double>(next.values.size());
   const auto mean = [&](double before, double after) { return (n * before + more * after) / (n + more); };
   for (std::size_t b = 0; b < stroke.level_db.size(); ++b)
-    stroke.level_db[b] =
-        schema::power_db(mean(std::pow(10, stroke.level_db[b] / 10), std::pow(10, next.level_db[b] / 10)));
+    stroke.level_db[b] = schema::power_db(
+        mean(schema::power_of_db(stroke.level_db[b]), schema::power_of_db(next.level_db[b])));
   for (const auto member : {&ComparedStroke::log_speed, &ComparedStroke::log_load})
     stroke.*member = stroke.*member && next.*member ? std::optional(mean(*(stroke.*member), *(next.*member)))
                                                     : std::nullopt;

@@ -31,7 +31,7 @@ Bands summed(std::span<const double> rows, std::size_t bands, std::span<const st
   Bands sum(bands, 0.0);
   for (const std::size_t row : drawn)
     for (std::size_t b = 0; b < bands; ++b) sum[b] += rows[row * bands + b];
-  const double least = *std::ranges::max_element(sum) * std::pow(10, -kFloorDb / 10);
+  const double least = *std::ranges::max_element(sum) * schema::power_of_db(-kFloorDb);
   for (double& power : sum) power = std::max(power, least) / static_cast<double>(drawn.size());
   return sum;
 }

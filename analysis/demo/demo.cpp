@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "analysis/demo/replay_error.hpp"
+#include "analysis/page/html.hpp"
 #include "capture/record/record.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/spectrogram/spectrogram.hpp"
@@ -137,7 +138,9 @@ Result<Made> surface_made(const std::string& stem, DemoSurface& row) {
   Made made{std::move(*texture), std::move(*spectrogram)};
   const spatial::SpectrogramFigure figure({{&made.texture, &made.spectrogram}});
   TACTO_TRY(write_made(stem, made, figure));
-  auto svg = spatial::to_page_svg(figure);
+  schema::Texture shown = made.texture;
+  shown.simulated = kSimulatedOnPage;
+  auto svg = spatial::to_page_svg(spatial::SpectrogramFigure({{&shown, &made.spectrogram}}));
   TACTO_TRY(svg);
   row.spectrogram_svg = std::move(*svg);
   describe_spectrogram(made, row);
@@ -199,7 +202,7 @@ Result<void> replayed(const Made& made, const schema::Transducer& transducer, De
   row.error_rms_m = error.error_rms;
   row.error_db = error.error_db;
   row.delay_s = error.delay_s;
-  auto svg = spatial::to_page_svg(replay_figure(*rendering, came, row, made.texture.simulated));
+  auto svg = spatial::to_page_svg(replay_figure(*rendering, came, row, kSimulatedOnPage));
   TACTO_TRY(svg);
   row.replay_svg = std::move(*svg);
   return {};

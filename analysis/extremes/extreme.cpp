@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/extremes/extreme.hpp"
 
+#include "data-schema/base/decibels.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -9,7 +11,7 @@ namespace tacto::analysis {
 
 double Extreme::margin_db() const {
   constexpr double kLeast = 1e-300;  // gives a finite margin for an error of 0
-  return 20 * std::log10(most / std::max(error, kLeast));
+  return schema::amplitude_db(most / std::max(error, kLeast));
 }
 
 std::vector<Extreme> all_extremes(bool all, const ExtremesProgress& progress) {

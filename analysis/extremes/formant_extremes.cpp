@@ -9,6 +9,7 @@
 #include <random>
 
 #include "analysis/extremes/extreme.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "spatial/features/formants.hpp"
 #include "spatial/spectrogram/spectrogram.hpp"
 
@@ -172,7 +173,7 @@ double slope_error(double per_m) {
 
 double under_strongest_db(double per_m) {
   const double strongest = slope_density(2 * kBinPerM), line = 100 * slope_density(per_m);
-  return 10 * std::log10(strongest / line);
+  return schema::power_db(strongest / line);
 }
 
 double deepest_on_slope_db() {
@@ -192,7 +193,7 @@ double size_error(double size_n) {
   const auto usual = formants_in(texture_of_lines({{kLinePerM, 1}}));
   if (found.size() != 1 || usual.size() != 1) return INFINITY;
   return std::max(std::abs(found[0].frequency_per_m - usual[0].frequency_per_m) / kBinPerM,
-                  std::abs(found[0].level_db - usual[0].level_db - 20 * std::log10(size_n)));
+                  std::abs(found[0].level_db - usual[0].level_db - schema::amplitude_db(size_n)));
 }
 
 // The spectrogram's cells are squares in single precision, so that very large and very small forces are

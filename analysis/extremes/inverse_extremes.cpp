@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "analysis/extremes/extreme.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "playback/prepare/inverse_filter.hpp"
 #include "playback/prepare/prepare.hpp"
 
@@ -90,7 +91,7 @@ Extreme undone_row(std::string condition, const Transducer& t, double most, std:
 Extreme refused_row(std::string condition, const Transducer& t, std::string note) {
   const auto filter = undone(t);
   const bool said = filter.error_db > playback::kMostInverseErrorDb;
-  const double stated = std::pow(10, filter.error_db / 20);
+  const double stated = schema::amplitude_of_db(filter.error_db);
   return {"playback",
           std::move(condition) + ": refused",
           "the remaining error in closed form, against that of the design",

@@ -9,6 +9,7 @@
 #include "analysis/extremes/extreme.hpp"
 #include "analysis/extremes/rough_signals.hpp"
 #include "analysis/identify/fit/response_fit.hpp"
+#include "data-schema/base/decibels.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -56,7 +57,7 @@ double level_error(double times) {
   CompareOptions options;
   options.formants = false;
   const auto comparison = compare(a, b, options);
-  return comparison ? std::abs(comparison->power_level_db - 20 * std::log10(times)) : INFINITY;
+  return comparison ? std::abs(comparison->power_level_db - schema::amplitude_db(times)) : INFINITY;
 }
 
 }  // namespace

@@ -63,6 +63,9 @@ std::string folded(std::string_view summary, std::string_view html);
 /// The sentence that answers the page's question, in large letters at the top.
 std::string answer(std::string_view sentence);
 
+/// The badge of a picture on a page that states the origin of its simulated data.
+inline constexpr const char* kSimulatedOnPage = "see the page";
+
 /// The box with the origin of a page's simulated data; empty for real data.
 std::string simulated_box(std::string_view by_what);
 

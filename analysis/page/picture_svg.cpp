@@ -51,7 +51,7 @@ schema::Result<std::string> pictures_html(std::span<const schema::ResultPicture>
       html += fmt::format("<p class=\"note\">{}: there is nothing to draw</p>\n", escaped(picture.title));
       continue;
     }
-    const auto svg = spatial::to_page_svg(figure_of(picture, simulated));
+    const auto svg = spatial::to_page_svg(figure_of(picture, simulated.empty() ? "" : kSimulatedOnPage));
     TACTO_TRY(svg);
     html += inline_svg(*svg, picture.title + (simulated.empty() ? "" : ", simulated"));
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "analysis/page/html.hpp"
 #include "analysis/report/project_readers.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/recording/recording_frames.hpp"
@@ -108,7 +109,9 @@ Result<void> draw_texture(const schema::Texture& texture, const std::string& nam
     return {};
   }
   spectrogram->name = name;
-  auto svg = spatial::to_page_svg(spatial::SpectrogramFigure({{&texture, &*spectrogram}}));
+  schema::Texture shown = texture;
+  if (!shown.simulated.empty()) shown.simulated = kSimulatedOnPage;
+  auto svg = spatial::to_page_svg(spatial::SpectrogramFigure({{&shown, &*spectrogram}}));
   TACTO_TRY(svg);
   file.drawings.push_back(std::move(*svg));
   return {};

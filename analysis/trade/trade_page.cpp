@@ -191,11 +191,6 @@ void add_knob(spatial::LineFigure& figure, const TradeHalf& half, const std::vec
   figure.series.back().name = name;
 }
 
-// The device without the description of the recording, for a small picture.
-std::string device_of(const std::string& simulated) {
-  return simulated.substr(0, simulated.find(": "));
-}
-
 std::string under_fold(const std::string& summary, const std::string& html) {
   return fmt::format("<details><summary>{}</summary>\n{}</details>\n", escaped(summary), html);
 }
@@ -225,7 +220,7 @@ schema::Result<std::string> knob_pictures(const TradeHalf& half, const Trade& tr
       "<div style=\"display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,24rem),1fr));"
       "gap:.5rem 1.5rem\">\n";
   for (const spatial::LineFigure& figure : knob_figures(half, trade)) {
-    const auto svg = spatial::to_svg(figure);
+    const auto svg = spatial::to_page_svg(figure);
     TACTO_TRY(svg);
     html += inline_svg(*svg, fmt::format("{}, {}: error against cost", half.name, figure.title));
   }
@@ -261,7 +256,7 @@ std::vector<spatial::LineFigure> knob_figures(const TradeHalf& half, const Trade
     if (rows.size() < 2) continue;
     const TradeRow& first = half.rows[rows.front()];
     spatial::LineFigure figure = figure_about(half, trade, first.knob, first.per);
-    figure.simulated = device_of(trade.simulated);
+    if (!trade.simulated.empty()) figure.simulated = kSimulatedOnPage;
     figure.size = {360, 280};
     add_knob(figure, half, worth, rows, spatial::series_colour(0), "");
     figures.push_back(std::move(figure));

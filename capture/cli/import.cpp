@@ -57,7 +57,7 @@ void declare_data(CLI::App& app, ImportRequest& request) {
       "--no-position", [&request] { request.integrate_speed = false; },
       "Do not integrate a speed channel to a position");
   app.add_flag("--mask-outliers", request.mask_outliers,
-               "Remove rows with implausible samples: they become gaps and are not filled in");
+               "Remove rows with implausible or missing values: they become gaps and are not filled in");
   app.add_flag("--force", request.replace, "Replace a recording of the same name");
 }
 
@@ -91,18 +91,10 @@ std::vector<cli::Report> rows_of(const Imported& imported) {
 }
 
 // The channels that `spatial` can make textures of; its default is tangential_force.
-std::vector<std::string> texture_channels(const schema::RecordingHeader& header) {
-  constexpr std::string_view kQuantities[] = {"tangential_force",
-                                              "tangential_force_x",
-                                              "net_force",
-                                              "acceleration",
-                                              "displacement",
-                                              "height",
-                                              "signal"};
+std::vector<std::string> names_for_textures(const schema::RecordingHeader& header) {
   std::vector<std::string> names;
-  for (const schema::Channel& channel : header.channels)
-    if (std::ranges::find(kQuantities, channel.quantity) != std::end(kQuantities))
-      names.push_back(channel.name);
+  for (const std::size_t index : schema::texture_channels(header))
+    names.push_back(header.channels[index].name);
   const auto usual = std::ranges::find(names, "tangential_force");
   return usual == names.end() ? names : std::vector{*usual};
 }
@@ -111,7 +103,7 @@ std::vector<std::string> texture_channels(const schema::RecordingHeader& header)
 std::string next_command(const schema::Recording& recording) {
   const auto& channels = recording.header.channels;
   const bool placed = std::ranges::find(channels, "position", &schema::Channel::quantity) != channels.end();
-  const auto textures = texture_channels(recording.header);
+  const auto textures = names_for_textures(recording.header);
   const std::string name = cli::shell_word(recording.stem);
   if (!placed || textures.empty()) return fmt::format("tactograph info {}", name);
   if (textures.front() == "tangential_force") return fmt::format("tactograph spatial {0} -o {0}", name);

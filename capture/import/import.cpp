@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <iterator>
 #include <memory>
@@ -28,6 +29,13 @@ void gather(const RowBlock& block, std::size_t column, std::vector<double>& valu
   values.resize(block.rows());
   const double* const numbers = block.numbers.data() + column;
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = numbers[i * block.columns];
+}
+
+// For the search for outliers only: an unknown value becomes the one before it. Its row is not stored.
+void hold_unknown(std::vector<double>& values) {
+  const auto known = std::ranges::find_if(values, [](double value) { return !std::isnan(value); });
+  double last = known == values.end() ? 0 : *known;
+  for (double& value : values) last = value = std::isnan(value) ? last : value;
 }
 
 // A measured channel during the import.
@@ -55,6 +63,7 @@ class Import {
   Result<void> first_clock();
   Result<void> find_outliers();
   Result<void> survey(const RowBlock& block);
+  Result<void> note_unknown(const RowBlock& block);
   Result<void> mask_what_was_found();
   Result<void> write_all();
   Result<void> take(const RowBlock& block);
@@ -80,6 +89,7 @@ class Import {
   std::vector<std::unique_ptr<Plausibility>>
       unmasked_plausibility_;  // only with the mask: statistics of all rows
   OutlierMask mask_;
+  std::vector<std::uint64_t> unknown_rows_;  // only with the mask: rows that lack a value
   std::uint64_t rows_ = 0;
   ClockFinder clock_;
   bool clock_known_ = true, decimal_comma_ = false;
@@ -102,6 +112,11 @@ Import::Import(const ImportRequest& request, ImportPlan plan, Progress progress)
   for (std::size_t k = 0; k < plan_.channels.size(); ++k)
     measured_.push_back(
         {place(plan_.channels[k].source.column), std::make_unique<Plausibility>(header_.channels[k]), {}});
+  if (plan_.source.csv) {
+    plan_.source.csv->unknown_as_nan = request.mask_outliers;
+    plan_.source.csv->unknown_remedy =
+        "unknown values are not filled in: --mask-outliers makes gaps of their rows";
+  }
   choose_derived();
 }
 
@@ -150,14 +165,32 @@ Result<void> Import::first_clock() {
   return {};
 }
 
+// Rows that lack a value are left out, too; but where a row is in time must be known.
+Result<void> Import::note_unknown(const RowBlock& block) {
+  for (std::size_t i = 0; i < block.numbers.size(); ++i) {
+    if (!std::isnan(block.numbers[i])) continue;
+    const std::uint64_t row = block.first_row + i / block.columns;
+    const std::size_t column = columns_[i % block.columns];
+    if (plan_.time && column == plan_.time->column)
+      return schema::fail(schema::ErrorKind::malformed, "has no time",
+                          fmt::format("{}: {}, {}", request_.file, block.place_of(row),
+                                      column_in_words(plan_.source.columns, column)),
+                          "give --rate instead of --time-column, or leave out the row");
+    if (unknown_rows_.empty() || unknown_rows_.back() != row) unknown_rows_.push_back(row);
+  }
+  return {};
+}
+
 Result<void> Import::survey(const RowBlock& block) {
   const auto place_of = [&](std::uint64_t row) { return block.place_of(row); };
+  TACTO_TRY(note_unknown(block));
   if (plan_.time) {
     take_times(block);
     clock_.survey(times_s_);
   }
   for (Measured& channel : measured_) {
     gather(block, channel.column, channel.stored);
+    if (!unknown_rows_.empty()) hold_unknown(channel.stored);
     channel.judged->survey(channel.stored, block.first_row, place_of);
   }
   rows_ += block.rows();
@@ -177,7 +210,7 @@ Result<void> Import::find_outliers() {
 }
 
 Result<void> Import::mask_what_was_found() {
-  std::vector<std::uint64_t> rows;
+  std::vector<std::uint64_t> rows = unknown_rows_;
   for (std::size_t k = 0; k < measured_.size(); ++k) {
     unmasked_plausibility_.push_back(
         std::exchange(measured_[k].judged, std::make_unique<Plausibility>(header_.channels[k])));
@@ -259,6 +292,7 @@ Result<void> Import::name(const RowBlock& block, bool clock) {
   for (Measured& channel : measured_) {
     if (!channel.judged->second_pass_needed()) continue;
     gather(block, channel.column, channel.stored);
+    if (!unknown_rows_.empty()) hold_unknown(channel.stored);
     channel.judged->find(channel.stored, place_of);
   }
   return {};
@@ -290,6 +324,11 @@ void Import::add_warnings(RecordingHeader& header) const {
     header.warnings.push_back(fmt::format(
         "the rate is the one given; the table's times are not read: --time-column '{}' takes it from them",
         plan_.source.columns[*column]));
+  for (const ChannelSpec& channel : plan_.channels)
+    if (!channel.source.other_unit.empty())
+      header.warnings.push_back(
+          fmt::format("{}: the unit of its column '{}' is {}; that of --channel is used instead",
+                      channel.name, plan_.source.columns[channel.source.column], channel.source.other_unit));
   if (derived_)
     header.warnings.push_back("no position was measured: it is " + derived_->position.channel().derivation);
   std::ranges::move(gap_warnings(source.gaps), std::back_inserter(header.warnings));
@@ -312,7 +351,7 @@ std::uint64_t Import::outliers() const {
   std::uint64_t count = 0;
   for (const Measured& channel : measured_) count += channel.judged->outliers();
   for (const auto& judged : unmasked_plausibility_) count += judged->outliers();
-  return count;
+  return count + unknown_rows_.size();
 }
 
 Result<Imported> Import::close() {

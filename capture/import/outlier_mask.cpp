@@ -28,10 +28,11 @@ schema::Result<OutlierMask> OutlierMask::of(std::vector<std::uint64_t> rows, std
   rows.erase(twice.begin(), twice.end());
   const bool many = static_cast<double>(rows.size()) > kMostShare * static_cast<double>(all);
   if (rows.size() > kFewRows && many)
-    return schema::fail(
-        schema::ErrorKind::unsuitable,
-        fmt::format("{} of {} rows contain outliers: too many to be removed", rows.size(), all), file,
-        "check unit and scale; an import without --mask-outliers lists the first of them");
+    return schema::fail(schema::ErrorKind::unsuitable,
+                        fmt::format("{} of {} rows contain outliers or lack a value: too many to be removed",
+                                    rows.size(), all),
+                        file,
+                        "check unit and scale; an import without --mask-outliers lists the first of them");
   OutlierMask mask;
   mask.rows_ = std::move(rows);
   return mask;

@@ -76,11 +76,16 @@ void Plausibility::end_survey() {
 }
 
 void Plausibility::find(std::span<const double> stored, const PlaceOf& place_of) {
-  lone_.find(stored, [&](std::uint64_t sample, double value) { note(alone_, sample, value, place_of); });
+  lone_.find(stored, [&](std::uint64_t sample, double value) { note_alone(sample, value, place_of); });
 }
 
 void Plausibility::end_find(const PlaceOf& place_of) {
-  lone_.end_find([&](std::uint64_t sample, double value) { note(alone_, sample, value, place_of); });
+  lone_.end_find([&](std::uint64_t sample, double value) { note_alone(sample, value, place_of); });
+}
+
+// A sample beyond the bound is counted already.
+void Plausibility::note_alone(std::uint64_t sample, double value, const PlaceOf& place_of) {
+  if (!is_beyond(value)) note(alone_, sample, value, place_of);
 }
 
 std::string Plausibility::people(double in_si) const {

@@ -65,6 +65,7 @@ class Plausibility {
   };
   double physical(double stored) const { return channel_.physical(stored); }
   bool is_beyond(double stored) const;
+  void note_alone(std::uint64_t sample, double value, const PlaceOf& place_of);
   void note(Sightings& sightings, std::uint64_t sample, double value, const PlaceOf& place_of);
   std::string people(double in_si) const;
   std::string listed(const Sightings& sightings, const TimeOf& time_of) const;

@@ -93,6 +93,7 @@ class Capture {
   bool goes_on() const;
   void take_block();
   void take_events(FrameBlock& block);
+  void take_marks(FrameBlock& block);
   void tell();
 
   Device& device_;
@@ -150,9 +151,13 @@ void Capture::take_block() {
   block.used = got.value_or(0) * channels_;
   figures_.add(std::span<const std::int32_t>(block.codes).first(block.used));
   frames_ += got.value_or(0);
+  take_marks(block);
+  writer_.filled();
+}
+
+void Capture::take_marks(FrameBlock& block) {
   if (hooks_.new_marks)
     for (std::size_t mark = hooks_.new_marks(); mark > 0; --mark) block.marks.push_back({frames_, "mark"});
-  writer_.filled();
 }
 
 void Capture::tell() {
@@ -181,6 +186,9 @@ void Capture::take_all() {
     take_block();
     tell();
   }
+  FrameBlock& last = writer_.to_fill();  // a mark may be asked for together with the end
+  take_marks(last);
+  writer_.filled();
 }
 
 Result<Recorded> Capture::finish(schema::LiveRecording& live) {

@@ -151,7 +151,12 @@ Result<ScaledColumn> scaled(std::string_view text, Dimension dimension, const Co
   const auto si = si_worth(calibration->unit, dimension, columns.units[cut->column]);
   TACTO_TRY(si);
   if (calibration->scale == 0) return fail(ErrorKind::usage, "has a scale of 0, which removes the column");
-  return ScaledColumn{cut->column, calibration->scale * *si, calibration->offset * *si};
+  ScaledColumn column{cut->column, calibration->scale * *si, calibration->offset * *si};
+  const std::string& own = columns.units[cut->column];
+  const auto known = own.empty() ? std::nullopt : schema::known_unit(own, dimension);
+  const bool same = known && (known->si == *si || std::abs(std::abs(column.scale) / known->si - 1) < 1e-9);
+  if (known && known->dimension == dimension && !same) column.other_unit = own;
+  return column;
 }
 
 Result<ChannelSpec> channel_without_column(std::string_view name) {

@@ -19,6 +19,7 @@ struct ScaledColumn {
   std::size_t column = 0;  ///< 0-based
   double scale = 1;
   double offset = 0;
+  std::string other_unit = {};  ///< of the column, if the text has another unit of the same quantity
 
   /// In the SI unit of the channel's dimension.
   double physical(double number) const { return number * scale + offset; }

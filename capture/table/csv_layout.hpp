@@ -22,7 +22,10 @@ struct CsvLayout {
   std::size_t lines_before = 0;                 ///< that do not belong to the table: titles, settings
   std::size_t data_offset =
       0;  ///< the offset of the first line after the header (or byte-order mark), in bytes
-  std::size_t data_line = 1;  ///< the number of that line in the file, from 1
+  std::size_t data_line = 1;    ///< the number of that line in the file, from 1
+  bool unknown_as_nan = false;  ///< a missing, NaN or infinite number is read as NaN; otherwise it is refused
+  std::string unknown_remedy =
+      "unknown values are not filled in: leave out their rows";  ///< when it is refused
 };
 
 /// The part of a file that is sufficient to find its layout.

@@ -43,10 +43,8 @@ std::string words_for(NumberFault fault, std::string_view field) {
   }
 }
 
-std::string remedy_for(NumberFault fault) {
-  const bool unknown =
-      fault == NumberFault::nan || fault == NumberFault::infinite || fault == NumberFault::missing;
-  return unknown ? "import the part without it: unknown values are not filled in" : "";
+bool is_unknown(NumberFault fault) {
+  return fault == NumberFault::nan || fault == NumberFault::infinite || fault == NumberFault::missing;
 }
 
 }  // namespace
@@ -168,7 +166,11 @@ bool CsvReader::take_number(std::string_view line, std::size_t& at, std::size_t 
   const std::size_t end = field_end(line, at, layout_.delimiter);
   const std::string field = unquoted(line.substr(at, end - at));
   const NumberFault fault = read_number(field, decimal_mark_, value);
-  if (fault != NumberFault::none) return refuse_number(fault, line, field, column);
+  if (is_unknown(fault) && layout_.unknown_as_nan) {
+    value = std::nan("");
+  } else if (fault != NumberFault::none) {
+    return refuse_number(fault, line, field, column);
+  }
   at = end;
   return true;
 }
@@ -194,7 +196,7 @@ bool CsvReader::take_plain_number(std::string_view line, std::size_t& at, double
 bool CsvReader::refuse_number(NumberFault fault, std::string_view line, std::string_view field,
                               std::size_t column) {
   if (field_count(line, layout_.delimiter) != places_.size()) return refuse_ragged(line);
-  return refuse(words_for(fault, field), remedy_for(fault), column);
+  return refuse(words_for(fault, field), is_unknown(fault) ? layout_.unknown_remedy : "", column);
 }
 
 bool CsvReader::refuse_ragged(std::string_view line) {

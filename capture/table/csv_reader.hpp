@@ -36,8 +36,9 @@ class CsvReader {
   CsvReader(CsvLayout layout, const std::vector<std::size_t>& columns, std::string file);
 
   /// The next bytes from layout.data_offset on. Errors: malformed, with line and column: a row with another
-  /// number of fields, text in a number, NaN, Inf, a missing value, a number out of the range of double,
-  /// mixed decimal marks, a blank line between rows. After an error the reader cannot be used any more.
+  /// number of fields, text in a number, NaN, Inf, a missing value (unless layout.unknown_as_nan), a number
+  /// out of the range of double, mixed decimal marks, a blank line between rows. After an error the reader
+  /// cannot be used any more.
   schema::Result<void> feed(std::string_view piece);
   /// The end of the file: its last line may lack a line end. Errors: as feed(); malformed, if there is no
   /// row.

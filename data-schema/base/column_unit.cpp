@@ -44,17 +44,13 @@ std::size_t bracket_in(std::string_view name) {
   return name.ends_with(']') ? name.rfind('[') : std::string_view::npos;
 }
 
-// In the names of members and columns of this project's files.
-constexpr Spelling kInNames[] = {{"n", "N"},   {"mn", "mN"},   {"v", "V"},     {"mv", "mV"},
-                                 {"hz", "Hz"}, {"khz", "kHz"}, {"mps", "m/s"}, {"mps2", "m/s^2"}};
-
 // "x" and "mm" of "x_mm", "speed" and "cm/s" of "speed_cm_per_s" or "speed_cm_s": the longest unit; empty if
 // the name does not end in a unit.
 NameWithUnit split_at_underline(std::string_view name) {
   for (auto at = name.find('_', 1); at < name.size(); at = name.find('_', at + 1)) {
     std::string end(name.substr(at + 1));
-    for (const Spelling& spelling : kInNames)
-      if (spelling.written == end) return {std::string(name.substr(0, at)), std::string(spelling.symbol)};
+    if (const auto unit = unit_with_ending(name.substr(at)); unit)
+      return {std::string(name.substr(0, at)), std::string(unit->symbol)};
     if (const auto per = end.find("_per_"); per != std::string::npos) end.replace(per, 5, "/");
     const bool letters = std::ranges::all_of(end, [](unsigned char c) { return std::isdigit(c) == 0; });
     if (std::string ratio = end; letters && std::ranges::count(ratio, '_') == 1) {

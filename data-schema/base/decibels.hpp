@@ -14,6 +14,12 @@ inline double power_db(double ratio) {
 inline double amplitude_db(double ratio) {
   return 20 * std::log10(ratio);
 }
+inline double power_of_db(double level_db) {
+  return std::pow(10, level_db / 10);
+}
+inline double amplitude_of_db(double level_db) {
+  return std::pow(10, level_db / 20);
+}
 
 /// out[i] = factor * log10(cells[i]), within 2e-5 dB for factors up to 20 (single precision, a polynomial of
 /// the mantissa); NaN where a cell is not above 0. `out` gives the number of cells.

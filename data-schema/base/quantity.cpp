@@ -3,59 +3,59 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <optional>
 
 namespace tacto::schema {
 namespace {
 
 // In each dimension from small to large: for_people picks the largest unit that leaves the value at 1 or
-// above.
+// above. Some are only read: "cm" would surprise where "12 mm" is expected.
 constexpr double kStandardGravity = 9.80665;  // m/s^2, by definition (3rd CGPM 1901; ISO 80000-3)
 
 constexpr Unit kUnits[] = {
     {"nm", Dimension::length, 1e-9},
     {"um", Dimension::length, 1e-6},
     {"mm", Dimension::length, 1e-3},
-    {"cm", Dimension::length, 1e-2},
+    {"cm", Dimension::length, 1e-2, "", true},
     {"m", Dimension::length, 1},
     {"ns", Dimension::time, 1e-9},
     {"us", Dimension::time, 1e-6},
     {"ms", Dimension::time, 1e-3},
     {"s", Dimension::time, 1},
-    {"min", Dimension::time, 60},
-    {"h", Dimension::time, 3600},
-    {"days", Dimension::time, 86400},
+    {"min", Dimension::time, 60, "", true},
+    {"h", Dimension::time, 3600, "", true},
+    {"days", Dimension::time, 86400, "", true},
     {"mHz", Dimension::frequency, 1e-3},
-    {"Hz", Dimension::frequency, 1},
-    {"kHz", Dimension::frequency, 1e3},
+    {"Hz", Dimension::frequency, 1, "_hz"},
+    {"kHz", Dimension::frequency, 1e3, "_khz"},
     {"MHz", Dimension::frequency, 1e6},
-    {"/m", Dimension::spatial_frequency, 1},
-    {"/cm", Dimension::spatial_frequency, 1e2},
+    {"/m", Dimension::spatial_frequency, 1, "_per_m", true},
+    {"/cm", Dimension::spatial_frequency, 1e2, "", true},
     {"/mm", Dimension::spatial_frequency, 1e3},
-    {"/um", Dimension::spatial_frequency, 1e6},
+    {"/um", Dimension::spatial_frequency, 1e6, "", true},
     {"um/s", Dimension::speed, 1e-6},
     {"mm/s", Dimension::speed, 1e-3},
-    {"cm/s", Dimension::speed, 1e-2},
-    {"m/s", Dimension::speed, 1},
+    {"cm/s", Dimension::speed, 1e-2, "", true},
+    {"m/s", Dimension::speed, 1, "_mps"},
     {"mm/s^2", Dimension::acceleration, 1e-3},
-    {"m/s^2", Dimension::acceleration, 1},
-    {"mg", Dimension::acceleration, 1e-3 * kStandardGravity},
-    {"g", Dimension::acceleration, kStandardGravity},
+    {"m/s^2", Dimension::acceleration, 1, "_mps2"},
+    {"mg", Dimension::acceleration, 1e-3 * kStandardGravity, "", true},
+    {"g", Dimension::acceleration, kStandardGravity, "", true},
     {"uN", Dimension::force, 1e-6},
-    {"mN", Dimension::force, 1e-3},
-    {"N", Dimension::force, 1},
+    {"mN", Dimension::force, 1e-3, "_mn"},
+    {"N", Dimension::force, 1, "_n"},
     {"kN", Dimension::force, 1e3},
     {"uV", Dimension::voltage, 1e-6},
-    {"mV", Dimension::voltage, 1e-3},
-    {"V", Dimension::voltage, 1},
+    {"mV", Dimension::voltage, 1e-3, "_mv"},
+    {"V", Dimension::voltage, 1, "_v"},
     {"kV", Dimension::voltage, 1e3},
     {"nm/N", Dimension::compliance, 1e-9},
     {"um/N", Dimension::compliance, 1e-6},
     {"mm/N", Dimension::compliance, 1e-3},
-    {"m/N", Dimension::compliance, 1},
+    {"m/N", Dimension::compliance, 1, "_m_per_n"},
     {"1", Dimension::none, 1},
     {"dB", Dimension::level, 1},
     {"mg", Dimension::mass, 1e-6},
@@ -64,14 +64,6 @@ constexpr Unit kUnits[] = {
     {"ppm", Dimension::share, 1e-6},
     {"%", Dimension::share, 1e-2},
 };
-
-// Units that are read but not used for writing: "cm" would surprise where "12 mm" is expected.
-bool for_reading_only(const Unit& unit) {
-  const std::string_view symbol = unit.symbol;
-  const bool of_gravity = unit.dimension == Dimension::acceleration && symbol.ends_with('g');
-  return of_gravity || symbol == "cm" || symbol == "cm/s" || symbol == "/cm" || symbol == "/m" ||
-         symbol == "min" || symbol == "h" || symbol == "days" || symbol == "/um";
-}
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -100,6 +92,10 @@ std::optional<Unit> unit_named(std::string_view symbol, Dimension target = Dimen
     if (!any) any = unit;
   }
   return any;
+}
+
+std::string ending_of(const Unit& unit) {
+  return unit.ending.empty() ? "_" + std::string(unit.symbol) : std::string(unit.ending);
 }
 
 struct NumberAndUnit {
@@ -156,6 +152,20 @@ Result<Unit> parse_unit(std::string_view symbol) {
               "the units are: " + known);
 }
 
+std::optional<Unit> unit_with_ending(std::string_view ending) {
+  const auto has_it = [&](const Unit& unit) {
+    return unit.dimension != Dimension::none && ending_of(unit) == ending;
+  };
+  const auto found = std::ranges::find_if(kUnits, has_it);
+  return found == std::end(kUnits) ? std::nullopt : std::optional(*found);
+}
+
+std::string key_in(std::string_view key, std::string_view symbol) {
+  const auto unit = unit_named(symbol);
+  const bool named = unit && unit->si == 1 && unit->dimension != Dimension::none;
+  return std::string(key) + (named ? ending_of(*unit) : "");
+}
+
 std::string_view si_symbol(Dimension dimension) {
   constexpr std::array<std::string_view, 13> kSymbols = {"m", "s",   "Hz", "1/m", "m/s", "m/s^2", "N",
                                                          "V", "m/N", "1",  "dB",  "kg",  "1"};
@@ -166,7 +176,7 @@ std::string for_people(double value_si, Dimension dimension) {
   constexpr double kHalfDigit = 5e-5;  // four digits are printed
   const Unit* best = nullptr;
   for (const Unit& unit : kUnits) {
-    if (unit.dimension != dimension || for_reading_only(unit)) continue;
+    if (unit.dimension != dimension || unit.only_read) continue;
     // 1e-6 m may be slightly less: it is 1 um, not 1000 nm.
     if (best == nullptr || std::abs(value_si) >= (1 - kHalfDigit) * unit.si ||
         (value_si == 0 && unit.si <= 1))

@@ -3,6 +3,7 @@
 // back.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -31,6 +32,9 @@ struct Unit {
   std::string_view symbol;
   Dimension dimension;
   double si;
+  std::string_view ending =
+      {};                  ///< in names of members, columns and reports: "_mn"; empty if it is "_" + symbol
+  bool only_read = false;  ///< people may write it; no value is printed in it
 };
 
 /// Reads a number with its unit, such as "10mm", "1e-3 m" or "15/mm", to SI.
@@ -41,6 +45,12 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension);
 /// Finds a unit by its symbol in any dimension ("N", "um", "mm/s", "1"). "u" and both micro signs are alike.
 /// Errors: usage, with the known units.
 Result<Unit> parse_unit(std::string_view symbol);
+
+/// The unit with this ending of a name: "N" of "_n", "m/N" of "_m_per_n". nullopt if there is none.
+std::optional<Unit> unit_with_ending(std::string_view ending);
+
+/// `key` with the ending of a unit in SI: key_in("rms", "N") is "rms_n". Unchanged for "1" and unknown units.
+std::string key_in(std::string_view key, std::string_view symbol);
 
 /// The units people may write for a dimension, for messages and help: "nm, um, mm, cm, m".
 std::string units_of(Dimension dimension);

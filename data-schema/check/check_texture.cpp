@@ -5,6 +5,7 @@
 
 #include "data-schema/check/check_parts.hpp"
 #include "data-schema/texture/texture_json.hpp"
+#include "data-schema/texture/texture_wav.hpp"
 
 namespace tacto::schema {
 namespace {

@@ -14,12 +14,4 @@ void add_text(cli::Report& report, const char* key, const std::string& text) {
   if (!text.empty()) report.add(key, text);
 }
 
-std::string key_in(const char* key, const std::string& unit) {
-  constexpr std::pair<const char*, const char*> kEndings[] = {
-      {"N", "_n"}, {"m", "_m"}, {"m/s", "_mps"}, {"m/s^2", "_mps2"}, {"V", "_v"}};
-  for (const auto& [symbol, ending] : kEndings)
-    if (unit == symbol) return std::string(key) + ending;
-  return key;
-}
-
 }  // namespace tacto::schema

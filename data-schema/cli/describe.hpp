@@ -38,9 +38,6 @@ void add_strokes(cli::Report& report, const RecordingHeader& header);
 /// Adds the text if there is one.
 void add_text(cli::Report& report, const char* key, const std::string& text);
 
-/// `key` with the ending of a unit: key_in("rms", "N") is "rms_n". Without an ending for "1".
-std::string key_in(const char* key, const std::string& unit);
-
 /// Warns on stderr of a newer minor version and of unknown members.
 template <class File>
 void warn_of_unknown(const std::string& path, const File& file) {

@@ -12,9 +12,9 @@ namespace {
 void add_zero(cli::Report& row, const CalibrationEntry& entry) {
   if (!entry.zero) return;
   const double scale = entry.scale.value_or(entry.nominal_scale);
-  const std::string ending = entry.unit == "N" || entry.unit == "m" ? (entry.unit == "N" ? "_n" : "_m") : "";
-  row.add("zero_as_stored", *entry.zero).add("zero" + ending, *entry.zero * scale);
-  if (entry.zero_uncertainty) row.add("zero_uncertainty" + ending, std::abs(*entry.zero_uncertainty * scale));
+  row.add("zero_as_stored", *entry.zero).add(key_in("zero", entry.unit), *entry.zero * scale);
+  if (entry.zero_uncertainty)
+    row.add(key_in("zero_uncertainty", entry.unit), std::abs(*entry.zero_uncertainty * scale));
 }
 
 cli::Report row_of(const CalibrationEntry& entry) {

@@ -118,8 +118,11 @@ struct Recording {
 struct QuantityName {
   std::string_view name;
   Dimension dimension;
+  bool of_texture = false;  ///< a texture can be made of it
 };
 std::span<const QuantityName> quantity_names();
+/// The indices of the channels of which a texture can be made.
+std::vector<std::size_t> texture_channels(const RecordingHeader& header);
 /// Errors: usage, with the known names.
 Result<QuantityName> quantity_named(std::string_view name);
 

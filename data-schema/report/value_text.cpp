@@ -19,54 +19,50 @@ namespace {
 
 struct Suffix {
   std::string_view text;
-  std::optional<Dimension> dimension;  // none: the unit is printed as it is
-  std::string_view unit;
+  std::string_view unit;                    // printed as it is
+  std::optional<Dimension> dimension = {};  // the value is printed in a unit that fits it
 };
 
-// Longest first, so that "_n_per_m" is not read as "_per_m".
+// Units without a prefix of their own for small and large values. Longest first, so that "_n_per_m" is not
+// read as "_per_m".
 constexpr Suffix kSuffixes[] = {
-    {"_n_per_sqrt_hz", std::nullopt, "N/sqrt(Hz)"},
-    {"_n_s_per_m", std::nullopt, "N s/m"},
-    {"_v_per_n", std::nullopt, "V/N"},
-    {"_v_per_s", std::nullopt, "V/s"},
-    {"_n_per_s", std::nullopt, "N/s"},
-    {"_n_per_m", std::nullopt, "N/m"},
-    {"_n_per_v", std::nullopt, "N/V"},
-    {"_m_per_n", Dimension::compliance, ""},
-    {"_m_per_v", std::nullopt, "m/V"},
-    {"_per_m", Dimension::spatial_frequency, ""},
-    {"_percent", std::nullopt, "%"},
-    {"_mb_per_s", std::nullopt, "MB/s"},
-    {"_ppm", std::nullopt, "ppm"},
-    {"_mps2", Dimension::acceleration, ""},
-    {"_mps", Dimension::speed, ""},
-    {"_ohm", std::nullopt, "ohm"},
-    {"_hz", Dimension::frequency, ""},
-    {"_kg", std::nullopt, "kg"},
-    {"_deg", std::nullopt, "degrees"},
-    {"_db", std::nullopt, "dB"},
-    {"_s", Dimension::time, ""},
-    {"_m", Dimension::length, ""},
-    {"_n", Dimension::force, ""},
-    {"_v", Dimension::voltage, ""},
-    {"_f", std::nullopt, "F"},
+    {"_n_per_sqrt_hz", "N/sqrt(Hz)"},
+    {"_n_s_per_m", "N s/m"},
+    {"_v_per_n", "V/N"},
+    {"_v_per_s", "V/s"},
+    {"_n_per_s", "N/s"},
+    {"_n_per_m", "N/m"},
+    {"_n_per_v", "N/V"},
+    {"_m_per_v", "m/V"},
+    {"_mb_per_s", "MB/s"},
+    {"_percent", "%"},
+    {"_ppm", "ppm"},
+    {"_ohm", "ohm"},
+    {"_kg", "kg"},
+    {"_deg", "degrees"},
+    {"_db", "dB"},
+    {"_f", "F"},
 };
 
-const Suffix* suffix_of(std::string_view key) {
+std::optional<Suffix> suffix_of(std::string_view key) {
   const auto found = std::ranges::find_if(kSuffixes, [&](const Suffix& s) { return key.ends_with(s.text); });
-  return found == std::end(kSuffixes) ? nullptr : found;
+  if (found != std::end(kSuffixes)) return *found;
+  for (auto at = key.find('_'); at != std::string_view::npos; at = key.find('_', at + 1))
+    if (const auto unit = schema::unit_with_ending(key.substr(at)); unit && unit->si == 1)
+      return Suffix{key.substr(at), unit->symbol, unit->dimension};
+  return std::nullopt;
 }
 
 std::string number_for_people(std::string_view key, double value) {
-  const Suffix* suffix = suffix_of(key);
+  const auto suffix = suffix_of(key);
   if (!std::isfinite(value)) return "unknown";
-  if (suffix == nullptr) return fmt::format("{:.4g}", value);
+  if (!suffix) return fmt::format("{:.4g}", value);
   if (suffix->dimension) return schema::for_people(value, *suffix->dimension);
   return fmt::format("{:.4g} {}", value, suffix->unit);
 }
 
 std::string label_of(std::string_view key) {
-  if (const Suffix* suffix = suffix_of(key)) key.remove_suffix(suffix->text.size());
+  if (const auto suffix = suffix_of(key)) key.remove_suffix(suffix->text.size());
   std::string label(key);
   std::ranges::replace(label, '_', ' ');
   return label;
@@ -95,7 +91,7 @@ std::string_view difference_of(const Suffix& suffix) {
     case Dimension::compliance:
       return "displacement per force";
     default:
-      return schema::si_symbol(*suffix.dimension);
+      return suffix.unit;
   }
 }
 
@@ -105,8 +101,8 @@ std::vector<std::string> labels_of(const std::vector<std::string>& keys) {
   std::vector<std::string> plain, labels;
   for (const std::string& key : keys) plain.push_back(label_of(key));
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const Suffix* suffix = suffix_of(keys[i]);
-    const bool alone = suffix == nullptr || std::ranges::count(plain, plain[i]) == 1;
+    const auto suffix = suffix_of(keys[i]);
+    const bool alone = !suffix || std::ranges::count(plain, plain[i]) == 1;
     labels.push_back(alone ? plain[i] : fmt::format("{} ({})", plain[i], difference_of(*suffix)));
   }
   return labels;

@@ -213,8 +213,4 @@ TextureData texture_data_from(const Json& body) {
           body.contains("average") ? 2U : 1U};
 }
 
-double header_rate_of(double pitch_m) {
-  return std::round(1 / pitch_m);
-}
-
 }  // namespace tacto::schema

@@ -29,7 +29,4 @@ TextureData texture_data_from(const nlohmann::ordered_json& body);
 /// The member `playback_gain`.
 nlohmann::ordered_json playback_gain_body(const PlaybackGain& gain);
 
-/// The header rate of a texture's WAV: samples per metre, rounded.
-double header_rate_of(double pitch_m);
-
 }  // namespace tacto::schema

@@ -27,7 +27,8 @@ void declare_tick_budget(CLI::App& app, AskedBudget& asked) {
 
 void add_decision(cli::Report& report, const TickDecision& decision, bool explain) {
   report.add("chosen", words_of(decision.chosen))
-      .add(decision.promised ? "promised_error_percent" : "least_error_percent", 100 * decision.chosen.error)
+      .add(decision.promised ? "guaranteed_error_percent" : "least_error_percent",
+           100 * decision.chosen.error)
       .add("which_is", "at constant speed and exact position; --explain lists further errors")
       .add("tick_s", 1e-9 * decision.chosen.tick_ns);
   if (!explain) return;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "playback/cli/ends_option.hpp"
 
+#include "data-schema/base/playback_defaults.hpp"
+#include "data-schema/base/quantity.hpp"
+
 namespace tacto::playback {
 
 void declare_ends(CLI::App& app, std::optional<schema::TextureEnds>& ends, const std::string& of_what) {
@@ -11,7 +14,8 @@ void declare_ends(CLI::App& app, std::optional<schema::TextureEnds>& ends, const
          },
          of_what +
              "Beyond the ends of a texture: nothing (stop), its mirror image, or the texture again (loop: if "
-             "the end does not meet the beginning, the last 1 mm fades into the first)")
+             "the end does not meet the beginning, the last " +
+             schema::length_for_people(schema::kSeamM) + " fades into the first)")
       ->type_name("stop|mirror|loop");
 }
 

@@ -169,7 +169,7 @@ Result<Report> explained_at_speed(const Program& program, double speed_mps) {
     report.add("largest_gain_m_per_n", largest)
         .add("largest_gain_times_default", largest / program.default_gain_m_per_n);
   report.add("rate_hz", program.options.rate_hz).add("tightest_limit", answer.tightest.name);
-  return report.add("of_limit_percent", 100 * answer.tightest.used())
+  return report.add("limit_used_percent", 100 * answer.tightest.used())
       .add("power_kept_percent", answer.power_kept_percent)
       .add("band", fmt::format("{:g}-{:g} Hz", program.options.band.low_hz, program.options.band.high_hz));
 }

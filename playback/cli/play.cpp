@@ -22,6 +22,8 @@
 #include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/player/session_name.hpp"
+#include "playback/render/at_speed.hpp"
+#include "playback/strokes/stroke_report.hpp"
 
 namespace tacto::playback {
 
@@ -96,6 +98,21 @@ void add_played(Report& report, const PlayOutcome& outcome) {
   cli::add_choices(report, outcome.choices);
 }
 
+// The verb `session` judges the strokes, and says why it cannot; here only what the band removed is of
+// interest.
+void add_power(Report& report, const std::string& session) {
+  const auto strokes = report_strokes(session);
+  if (!strokes || !strokes->power_kept_percent) return;
+  report.add("mean_speed_mps", strokes->mean_speed_mps)
+      .add("power_kept_percent", *strokes->power_kept_percent);
+  if (*strokes->power_kept_percent < kLeastPowerPercent)
+    cli::warn(fmt::format("at {} the band of {} to {} keeps {:.3g} % of the texture's power",
+                          schema::for_people(strokes->mean_speed_mps, Dimension::speed),
+                          schema::for_people(strokes->low_hz, Dimension::frequency),
+                          schema::for_people(strokes->high_hz, Dimension::frequency),
+                          *strokes->power_kept_percent));
+}
+
 Report add_end(Report report, const PlayOutcome& outcome) {
   if (!outcome.recorder.failure.empty()) {
     cli::warn(fmt::format("the session is incomplete, {} ticks are not in it: {}", outcome.recorder.lost(),
@@ -118,6 +135,7 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, const cli::
   if (!outcome.real_time) pace.add_to(report, outcome.status.ticks.span_s());
   report.add("off_texture_percent", 100 * outcome.status.ticks.off_textures());
   add_loop(report, outcome.loop_period_m, outcome.loop_seam_m);
+  add_power(report, o.session);
   add_played(report, outcome);
   if (outcome.decision) add_decision(report, *outcome.decision, explain);
   cli::warn_grouped(outcome.notes);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "data-schema/base/playback_defaults.hpp"
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/device/device.hpp"
@@ -92,7 +93,8 @@ void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
   cli::add_quantity(
       app, "--onset", o.onset_s, Dimension::time,
       "Fade of the force at both ends of the path, for a finger that starts inside the texture; default: "
-      "5ms. With --engine kernel the drive's onset, as in play; default: 20ms");
+      "5ms. With --engine kernel the drive's onset, as in play; default: " +
+          schema::for_people(schema::kOnsetS, Dimension::time));
 }
 
 // The same names as in play. A path has no normal force, so there is no contact.

@@ -45,7 +45,7 @@ std::string paced(const std::string& uri) {
 
 void add_decision(ControlFields& fields, const TickDecision& decision) {
   fields.emplace_back("chosen", words_of(decision.chosen));
-  fields.emplace_back(decision.promised ? "promised_error" : "least_error", decision.chosen.error);
+  fields.emplace_back(decision.promised ? "guaranteed_error" : "least_error", decision.chosen.error);
   fields.emplace_back("tick_s", 1e-9 * decision.chosen.tick_ns);
   fields.emplace_back("by_table", decision.table);
   for (std::size_t i = 0; i < decision.reasons.size(); ++i)

@@ -12,6 +12,7 @@
 #include "firmware-host/core/firmware/drive_supervisor.hpp"
 #include "firmware-host/link/wire_fields.hpp"
 #include "playback/player/placed_textures.hpp"
+#include "playback/player/program.hpp"
 #include "playback/player/served_folder.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 
@@ -100,6 +101,7 @@ Result<ForceProgram> make_force_program(const ForceRequest& request, const schem
   if (!names_a_scene(request.file))
     return fail(ErrorKind::unsuitable, "is a texture; a force device plays the force patches of a scene",
                 request.file, "name a scene, or play on a device with a tray");
+  TACTO_TRY(check_onset(request.onset_s));
   const auto served = request.only_in ? served_file(*request.only_in, request.file) : request.file;
   TACTO_TRY(served);
   const std::string file = schema::scene_path(*served);

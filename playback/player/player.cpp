@@ -9,6 +9,7 @@
 #include <cstring>
 #include <utility>
 
+#include "firmware-host/core/firmware/drive_supervisor.hpp"
 #include "firmware-host/link/wire_device.hpp"
 #include "firmware-host/link/wire_fields.hpp"
 #include "firmware-host/link/wire_words.hpp"
@@ -25,8 +26,7 @@ using schema::Result;
 namespace {
 
 constexpr double kIdleWaitS = 1, kIdleStepS = 0.01;
-constexpr double kLongestFadeS = 10;  // limit of the wire
-constexpr double kBehindS = 0.05;     // how far the device may be ahead of the ticks received
+constexpr double kBehindS = 0.05;  // how far the device may be ahead of the ticks received
 
 std::int64_t steady_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -171,8 +171,9 @@ Result<void> Player::load(ForceProgram forces) {
 }
 
 Result<void> Player::may_change(const Program& program, double fade_s) const {
-  if (!(fade_s >= 0 && fade_s <= kLongestFadeS))
-    return fail(ErrorKind::usage, fmt::format("the fade is {:g} s", fade_s), uri_, "use 0 s to 10 s");
+  if (!(fade_s >= 0 && fade_s <= double{core::kLongestFadeS}))
+    return fail(ErrorKind::usage, fmt::format("the fade is {:g} s", fade_s), uri_,
+                fmt::format("use 0 s to {:g} s", double{core::kLongestFadeS}));
   if (view_.expected() < faded_at_)
     return fail(ErrorKind::usage, "the last change of texture has not ended", uri_, "load again later");
   return check_texture_change(program_->prepared, program.prepared,

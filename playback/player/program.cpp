@@ -10,6 +10,7 @@
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/version.hpp"
+#include "firmware-host/core/firmware/drive_supervisor.hpp"
 #include "firmware-host/core/kernel/profile.hpp"
 #include "playback/player/placed_textures.hpp"
 #include "playback/prepare/displacement_limit.hpp"
@@ -20,8 +21,6 @@ namespace {
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
-
-constexpr double kLongestOnsetS = 10;  // limit of the wire
 
 std::string transducer_sum(const std::string& name) {
   for (const std::string& path : {name, name + ".transducer.json"})
@@ -73,14 +72,6 @@ void name_files(Program& program, const PlacedTextures& laid) {
   program.session.scene_sha256 = schema::sha256_of_file(program.scene_path).value_or("");
 }
 
-// The device would refuse it with the same limit.
-Result<void> check_onset(const PrepareOptions& options) {
-  if (options.onset_s <= kLongestOnsetS) return {};
-  return fail(ErrorKind::usage, fmt::format("an onset of {:g} s is out of range", options.onset_s), {},
-              fmt::format("choose from 0 s to {:g} s (--onset, or onset_s in the daemon's configuration)",
-                          kLongestOnsetS));
-}
-
 // Beyond it the kernel reads zero.
 Result<void> check_place(const PlacedTextures& laid, double farthest_m) {
   const double at_m = std::max(std::abs(laid.start_m()), std::abs(laid.end_m()));
@@ -120,7 +111,7 @@ Result<void> prepare_placed(Program& program, const PlacedTextures& laid, const 
   const schema::Transducer& transducer = program.session.transducer;
   options.gain_m_per_n = laid.gain();
   options.ends = laid.ends();
-  if (const auto soft = check_onset(options); !soft) return soft;
+  if (const auto soft = check_onset(options.onset_s); !soft) return soft;
   auto decision = decided(laid.placed(), transducer, budget, options);
   TACTO_TRY(decision);
   program.decision = std::move(*decision);
@@ -139,6 +130,13 @@ Result<void> prepare_placed(Program& program, const PlacedTextures& laid, const 
 }
 
 }  // namespace
+
+Result<void> check_onset(double onset_s) {
+  if (onset_s <= double{core::kLongestOnsetS}) return {};
+  return fail(ErrorKind::usage, fmt::format("an onset of {:g} s is out of range", onset_s), {},
+              fmt::format("choose from 0 s to {:g} s (--onset, or onset_s in the daemon's configuration)",
+                          double{core::kLongestOnsetS}));
+}
 
 Result<Program> make_program(const ProgramRequest& request, const std::string& transducer_name,
                              PrepareOptions options) {

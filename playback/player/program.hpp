@@ -59,4 +59,7 @@ struct Program {
 schema::Result<Program> make_program(const ProgramRequest& request, const std::string& transducer,
                                      PrepareOptions options);
 
+/// The device refuses a longer onset. Errors: usage.
+schema::Result<void> check_onset(double onset_s);
+
 }  // namespace tacto::playback

@@ -111,7 +111,7 @@ class Designer {
 
   // Returns false if the gain is within its limit.
   bool raise_penalties(const std::vector<double>& taps) {
-    const double bound = std::pow(10, design_.most_gain_db / 20), aim = kAim * bound;
+    const double bound = schema::amplitude_of_db(design_.most_gain_db), aim = kAim * bound;
     bool beyond = false;
     for (std::size_t k = 0; k <= kGrid; ++k) {
       const double gain = std::abs(response_of(taps, k)) * leads_[k];

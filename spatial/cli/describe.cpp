@@ -44,19 +44,13 @@ Result<schema::DescriptionFile> described(const std::vector<NamedTexture>& files
   return all;
 }
 
-std::string in_unit(const char* key, const std::string& unit) {
-  if (unit == "N") return std::string(key) + "_n";
-  if (unit == "m") return std::string(key) + "_m";
-  if (unit == "V") return std::string(key) + "_v";
-  return key;
-}
-
 Report row_of(const Description& each) {
   Report row;
   row.add("texture", each.texture).add("from_m", each.from_m).add("to_m", each.to_m);
   if (each.mean_speed_mps > 0) row.add("mean_speed_mps", each.mean_speed_mps);
   row.add("low_per_m", each.low_per_m).add("high_per_m", each.high_per_m);
-  row.add(in_unit("rms", each.unit), each.rms).add(in_unit("total_rms", each.unit), each.total_rms);
+  row.add(schema::key_in("rms", each.unit), each.rms)
+      .add(schema::key_in("total_rms", each.unit), each.total_rms);
   if (std::isfinite(each.centroid_per_m)) row.add("centroid_per_m", each.centroid_per_m);
   if (std::isfinite(each.slope_db_per_octave)) row.add("slope_db_per_octave", each.slope_db_per_octave);
   return row;
@@ -69,7 +63,7 @@ std::vector<Report> band_rows(const schema::DescriptionFile& file) {
     for (const auto& band : each.bands) {
       Report row;
       row.add("texture", each.texture).add("centre_per_m", band.centre_per_m);
-      row.add(in_unit("rms", each.unit), band.rms).add("partial", band.partial);
+      row.add(schema::key_in("rms", each.unit), band.rms).add("partial", band.partial);
       rows.push_back(std::move(row));
     }
   return rows;

@@ -66,13 +66,6 @@ SpectrogramFigure figure_of(const SpectrogramRun& run, const FormantLists& forma
   return SpectrogramFigure(panels, options);
 }
 
-std::string rms_key(const std::string& unit) {
-  if (unit == "N") return "band_rms_n";
-  if (unit == "m") return "band_rms_m";
-  if (unit == "V") return "band_rms_v";
-  return "band_rms";
-}
-
 Report row_of(const SpectrogramRun::Line& line, const SpectrogramHeader& header, double lowest_per_m) {
   const SpectralPeak peak = line.tally.strongest_peak(lowest_per_m);
   Report row;
@@ -81,7 +74,7 @@ Report row_of(const SpectrogramRun::Line& line, const SpectrogramHeader& header,
       .add("peak_position_m", peak.position_m)
       .add("peak_frequency_per_m", peak.frequency_per_m)
       .add("peak_level_db", level_db(peak.cell, level_reference(header)))
-      .add(rms_key(header.unit), line.tally.band_rms(lowest_per_m));
+      .add(schema::key_in("band_rms", header.unit), line.tally.band_rms(lowest_per_m));
   return row;
 }
 

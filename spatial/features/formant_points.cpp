@@ -40,7 +40,7 @@ class RowPeaks {
 
   // A side whose known cells end before that is not tested.
   bool is_isolated(std::size_t bin) const {
-    const double enough = density(bin) * std::pow(10, -kValley_db / 10);
+    const double enough = density(bin) * schema::power_of_db(-kValley_db);
     const bool below = bin < known_.first + valley_bins_ || lowest(bin - valley_bins_, bin) < enough;
     return below && (bin + valley_bins_ >= known_.end || lowest(bin + 1, bin + valley_bins_ + 1) < enough);
   }
@@ -91,7 +91,7 @@ std::vector<RidgePoint> ridge_points(const Spectrogram& spectrogram, std::size_t
   const RowPeaks peaks(spectrogram, row, known);
   std::vector<RidgePoint> points;
   const std::size_t end = std::min(known.end, spectrogram.bins - 1);
-  const double least = peaks.strongest() * std::pow(10, -kPointLeakage_db / 10);
+  const double least = peaks.strongest() * schema::power_of_db(-kPointLeakage_db);
   for (std::size_t bin = std::max<std::size_t>(known.first, 1); bin < end; ++bin) {
     if (!peaks.is_maximum(bin) || peaks.density(bin) < least) continue;
     const auto [offset, level_db] = parabolic_peak(level(peaks.density(bin - 1)), level(peaks.density(bin)),
@@ -99,7 +99,7 @@ std::vector<RidgePoint> ridge_points(const Spectrogram& spectrogram, std::size_t
     const double prominence_db = level_db - level(background.at(row, bin));
     if (!(prominence_db >= least_prominence_db) || !peaks.is_isolated(bin)) continue;
     points.push_back({row, (static_cast<double>(bin) + offset) * spectrogram.frequency_step_per_m,
-                      std::pow(10, level_db / 10), prominence_db, peaks.width_per_m(bin, level_db)});
+                      schema::power_of_db(level_db), prominence_db, peaks.width_per_m(bin, level_db)});
   }
   return points;
 }

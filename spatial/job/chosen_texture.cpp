@@ -96,8 +96,8 @@ Result<ChosenTexture> choose_texture(const SpatialOptions& options, const Textur
   chosen.options.method = choices->taken.method;
   chosen.options.pitch_m = choices->taken.pitch_m;
   chosen.report.add("method", std::string(name_of(choices->taken.method)))
-      .add("promised_error_percent", 100 * choices->taken.error)
-      .add("asked_error", asked(budget))
+      .add("guaranteed_error_percent", 100 * choices->taken.error)
+      .add("allowed_error", asked(budget))
       .add("promise_is",
            "relative to the force after the same band-pass; --explain reports what the band-pass removes");
   if (!options.chosen_by.explain) return chosen;

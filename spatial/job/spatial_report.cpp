@@ -2,7 +2,6 @@
 #include "spatial/job/spatial_report.hpp"
 
 #include <cmath>
-#include <map>
 
 #include "data-schema/recording/statistics.hpp"
 #include "spatial/texture/make_texture.hpp"
@@ -13,16 +12,8 @@ namespace {
 
 using cli::Report;
 
-// The suffix of a report's key for a unit.
-std::string ending_of(const std::string& unit) {
-  static const std::map<std::string, std::string> kEndings = {
-      {"N", "_n"}, {"m", "_m"}, {"m/s", "_mps"}, {"m/s^2", "_mps2"}, {"V", "_v"}};
-  const auto found = kEndings.find(unit);
-  return found == kEndings.end() ? "" : found->second;
-}
-
 std::string rms_key(const schema::Texture& texture) {
-  return (texture.unit == "N" ? "force_rms" : "rms") + ending_of(texture.unit);
+  return schema::key_in(texture.unit == "N" ? "force_rms" : "rms", texture.unit);
 }
 
 void add_filter(Report& report, const schema::TextureSource& source) {
@@ -111,7 +102,7 @@ Report average_row(const std::string& stem, const schema::Texture& texture) {
   row.add("strokes", average.strokes.size()).add("direction", texture.direction).add("align", average.align);
   row.add("length_m", texture.signal.length_m()).add("mean_speed_mps", texture.source.mean_speed_mps);
   add_texture_values(row, texture);
-  row.add("spread_rms" + ending_of(texture.unit), schema::statistics_of(average.spread).rms());
+  row.add(schema::key_in("spread_rms", texture.unit), schema::statistics_of(average.spread).rms());
   row.add("file", stem + ".texture.json");
   std::vector<Report> shifts;
   for (const schema::AveragedStroke& stroke : average.strokes) shifts.push_back(shift_row(stroke));

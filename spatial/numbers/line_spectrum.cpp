@@ -146,10 +146,10 @@ void LineSpectrum::find_lines(const std::vector<double>& mean, double step) {
         parabolic_peak(level_of(mean[bin - 1]), level_of(mean[bin]), level_of(mean[bin + 1]));
     const double prominence = top - level_of(background_[i]);
     if (!(prominence >= needed_db_) || top < strongest - kLeakage_db) continue;
-    const double ratio = std::pow(10, prominence / 10) * looks_;
+    const double ratio = schema::power_of_db(prominence) * looks_;
     const double sigma = std::max(1.8 * 0.39 / (window_ * std::sqrt(ratio)), 0.03 * resolution_);
-    lines_.push_back({(static_cast<double>(bin) + offset) * step, sigma, std::pow(10, top / 10) * resolution_,
-                      prominence});
+    lines_.push_back({(static_cast<double>(bin) + offset) * step, sigma,
+                      schema::power_of_db(top) * resolution_, prominence});
   }
 }
 

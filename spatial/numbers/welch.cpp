@@ -4,23 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <numeric>
 
 #include "spatial/dsp/fourier/fft.hpp"
+#include "spatial/dsp/spectrum/window.hpp"
 
 namespace tacto::spatial {
-namespace {
-
-std::vector<double> hann(std::size_t length) {
-  std::vector<double> window(length);
-  for (std::size_t n = 0; n < length; ++n)
-    window[n] =
-        0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(length));
-  return window;
-}
-
-}  // namespace
 
 WelchSpectrum::WelchSpectrum(std::span<const double> values, double pitch, std::size_t window)
     : step_(1 / (static_cast<double>(window) * pitch)) {

@@ -31,17 +31,6 @@ std::string names_of(const schema::RecordingHeader& header) {
 }
 
 constexpr std::string_view kUsual = "tangential_force";
-constexpr std::array<std::string_view, 7> kTextureQuantities = {
-    kUsual, "tangential_force_x", "net_force", "acceleration", "displacement", "height", "signal"};
-
-std::vector<std::size_t> texture_channels(const schema::RecordingHeader& header) {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < header.channels.size(); ++i)
-    if (std::ranges::find(kTextureQuantities, header.channels[i].quantity) != kTextureQuantities.end())
-      found.push_back(i);
-  return found;
-}
-
 std::string list_of(const schema::RecordingHeader& header, const std::vector<std::size_t>& channels) {
   std::vector<std::string> words;
   for (const std::size_t i : channels)

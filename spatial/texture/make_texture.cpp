@@ -262,9 +262,7 @@ std::size_t finer_grid(double pitch_m, double highest_hz, double usual_mps) {
 }
 
 double rms_of(const schema::Texture& texture) {
-  double squares = 0;
-  for (const double value : texture.signal.values) squares += value * value;
-  return std::sqrt(squares / static_cast<double>(texture.signal.values.size()));
+  return schema::rms_of(texture.signal.values);
 }
 
 }  // namespace tacto::spatial

@@ -129,7 +129,7 @@ def check_scene(folder):
 def check_budgets(folder):
     fast = tacto.run_json("spatial", "C", "-o", "fast", "--quality", "fast", "--explain", cwd=folder)
     chosen = fast["chosen"][0]
-    assert "shipped" in chosen["by_table"] and chosen["promised_error_percent"] <= 1
+    assert "shipped" in chosen["by_table"] and chosen["guaranteed_error_percent"] <= 1
     taken = [row for row in chosen["tried"] if row["taken"]]
     assert len(taken) == 1 and taken[0]["method"] == chosen["method"]
     exact_enough = [row["cost_us_per_mm"] for row in chosen["tried"] if row["error_percent"] <= 1]
@@ -142,7 +142,7 @@ def check_budgets(folder):
     inside = (at > 3e-3) & (at < xe[-1] - 3e-3)
     read = np.interp(at[inside], xe, best)
     error = np.sqrt(np.mean((values[inside] - read) ** 2) / np.mean(read**2))
-    print(f"fast against exact: {100 * error:.3f} % of the RMS, promised {chosen['promised_error_percent']:.3f} %")
+    print(f"fast against exact: {100 * error:.3f} % of the RMS, promised {chosen['guaranteed_error_percent']:.3f} %")
     assert error < 0.01
     assert "smallest is" in tacto.run("spatial", "C", "-o", "no", "--max-error", "0.00001ppm", cwd=folder, code=5)[1]
     assert not (folder / "no.texture.json").exists()

@@ -44,6 +44,15 @@ def the_next_command_works():
     assert next_of("normal", "normal_force=f*1N", x) == "tactograph info normal"
 
 
+def a_unit_against_the_heading_is_warned_of():
+    pathlib.Path("heads.csv").write_text("force_n,position_mm\n" + "".join(f"{0.1 * (i % 7)},{i * 0.01}\n" for i in range(2000)))
+    force = ["--channel", "tangential_force=force_n"]
+    for scale, warned in (("", 0), ("*1mm", 0), ("*1000um", 0), ("*1um", 1)):
+        report = tacto.run_json("import", "heads.csv", "-o", f"head{scale[1:]}", *RATE, *force, "--channel", f"position=position_mm{scale}")
+        about = [one for one in report.get("warnings", []) if "'position_mm'" in one and "mm" in one]
+        assert len(about) == warned, (scale, report)
+
+
 def masked_outliers_leave_the_texture():
     """Two rows of 12,000 are wrong: with the mask, the longest texture equals that of the correct table there."""
     channels = ["--channel", "tangential_force=f*1N", "--channel", "position=x*1mm"]
@@ -84,5 +93,5 @@ def real_outliers_are_masked():
 
 
 if __name__ == "__main__":
-    for test in (the_next_command_works, masked_outliers_leave_the_texture, real_outliers_are_masked):
+    for test in (the_next_command_works, masked_outliers_leave_the_texture, a_unit_against_the_heading_is_warned_of, real_outliers_are_masked):
         tacto.in_folder(test)

@@ -120,6 +120,46 @@ TEST_F(MaskedImport, SaysHowManyAndWhere) {
   EXPECT_EQ(done->ranges[0].largest < 1.1, true);
 }
 
+// Missing, NaN and infinite values become gaps, as outliers do; without the mask they are refused.
+TEST_F(MaskedImport, RowsThatLackAValueBecomeGaps) {
+  auto text = fmt::format("t,f,v\n");
+  for (int i = 0; i < kRows; ++i) {
+    const auto known = fmt::format("{}", force(i));
+    const bool spike = i == 50;
+    text += fmt::format("{},{},{}\n", i,
+                        i == 0     ? ""
+                        : i == 300 ? "NaN"
+                        : spike    ? "4581.5"
+                                   : known,
+                        i == 301 ? "inf" : "40");
+  }
+  auto asked = masked(write("t.csv", text));
+  const auto done = import(asked);
+  ASSERT_TRUE(done) << schema::message(done.error());
+  EXPECT_EQ(done->masked_rows, 4U);
+  EXPECT_EQ(done->outliers, 4U);
+  expect_gaps(done->recording.header.gaps, {{0, 1, 1}, {49, 51, 1}, {298, 302, 2}});
+  for (const double value : stored(done->recording, 0)) ASSERT_LT(std::abs(value), 1.1);
+  expect_valid(done->recording);
+  asked.mask_outliers = false;
+  asked.replace = true;
+  const auto refused = import(asked);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, schema::ErrorKind::malformed);
+  EXPECT_NE(refused.error().where.find("line 2"), std::string::npos) << refused.error().where;
+  EXPECT_NE(refused.error().remedy.find("--mask-outliers"), std::string::npos);
+}
+
+TEST_F(MaskedImport, ARowWithoutATimeIsRefused) {
+  auto text = fmt::format("t,f,v\n");
+  for (int i = 0; i < kRows; ++i)
+    text += fmt::format("{},{},40\n", i == 7 ? "" : fmt::format("{}", i), force(i));
+  const auto refused = import(masked(write("t.csv", text)));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, schema::ErrorKind::malformed);
+  EXPECT_NE(refused.error().where.find("line 9, column 1 ('t')"), std::string::npos) << refused.error().where;
+}
+
 TEST_F(MaskedImport, TheEndsMayBeOutliers) {
   const auto recording = imported(masked(table({0, kRows - 1})));
   EXPECT_EQ(recording.header.frames, static_cast<std::uint64_t>(kRows - 5 - 2));

@@ -24,6 +24,18 @@ def report_of(verb, *arguments):
     return tacto.run_json(verb, *arguments, "--finger-path", "path.csv", *rest)
 
 
+def play_prints_the_power_that_its_band_keeps():
+    write_grating()
+    for seconds, enough in ((0.4, True), (8, False)):
+        write_path(f"time_s,position_mm\n0,4\n{seconds},20\n")
+        pathlib.Path("out.session").unlink(missing_ok=True)
+        played = tacto.run_json("play", "oak", "--finger-path", "path.csv", "-d", "sim:", "-o", "out")
+        told = tacto.run_json("session", "out")
+        assert played["power_kept_percent"] == told["power_kept_percent"] and played["mean_speed_mps"] == told["mean_speed_mps"], (played, told)
+        assert np.isclose(played["mean_speed_mps"], 0.016 / seconds, rtol=0.05), played
+        assert (played["power_kept_percent"] >= 90) == enough, played
+
+
 def a_gain_is_a_factor_or_a_displacement_for_force():
     write_grating()
     write_path("time_s,position_mm\n0,4\n0.5,20\n")
@@ -136,7 +148,7 @@ def a_finger_off_the_texture_is_reported():
     assert silent["off_texture_percent"] == 100 and not warned(silent) and "nothing was played" in silent["warnings"][0], silent
 
 
-TESTS = [a_gain_is_a_factor_or_a_displacement_for_force, a_path_has_units_and_is_repeated, ctrl_c_ends_a_playback_whole,
+TESTS = [play_prints_the_power_that_its_band_keeps, a_gain_is_a_factor_or_a_displacement_for_force, a_path_has_units_and_is_repeated, ctrl_c_ends_a_playback_whole,
          the_pace_is_reported, a_finger_off_the_texture_is_reported]
 
 if __name__ == "__main__":

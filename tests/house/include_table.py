@@ -68,7 +68,7 @@ MAY_INCLUDE = {
     "spatial/job":
         "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter spectrogram strokes "
         "texture}",
-    "spatial/numbers": "data-schema/{base texture} spatial/dsp/fourier",
+    "spatial/numbers": "data-schema/{base texture} spatial/dsp/{fourier spectrum}",
     "spatial/picture": "data-schema/{base files spectrogram texture} spatial/{numbers picture/draw spectrogram}",
     "spatial/picture/draw": "data-schema/base",
     "spatial/picture/engine": "spatial/picture/draw",
@@ -122,7 +122,7 @@ MAY_INCLUDE = {
         "player prepare/scene session stability} spatial/{cli picture}",
     "analysis/compare":
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
-        "dsp/fourier dsp/resample features numbers spectrogram strokes texture}",
+        "dsp/fourier dsp/resample dsp/spectrum features numbers spectrogram strokes texture}",
     "analysis/demo":
         "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
         "sim/bench sim/physics} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
@@ -131,7 +131,7 @@ MAY_INCLUDE = {
         "analysis/page data-schema/{base device report results scene} firmware-host/{core/scene sim/planar} "
         "playback/{prepare/scene stability}",
     "analysis/extremes":
-        "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/recording "
+        "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/{base recording} "
         "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram strokes}",
     "analysis/fidelity":
         "analysis/{compare page} data-schema/{base results texture transducer} firmware-host/{sim/bench "

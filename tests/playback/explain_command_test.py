@@ -56,7 +56,7 @@ def check_speed(folder):
         asked = 0.07 * 1e-3 / actuator_m_per_v(1000 * speed_mps) / 5  # of the limit of 5 V
         assert answer["tightest_limit"] == "drive" and answer["power_kept_percent"] > 99, answer
         # The ends of the path, where the force begins, ring by up to a tenth.
-        assert abs(answer["of_limit_percent"] / (100 * asked) - 1) < 0.12, (answer, asked)
+        assert abs(answer["limit_used_percent"] / (100 * asked) - 1) < 0.12, (answer, asked)
         assert answer["can_be_played"] == (not limited) == ("because" not in answer), answer
     # With the gain that it names the limit is not passed, with a hundredth more it is.
     for factor, fits in ((1, True), (1.01, False)):
@@ -142,13 +142,13 @@ def check_scene(folder):
 
 def check_choice(folder):
     fast, balanced = (made.report_of("explain", folder / "t", "--quality", quality, "--explain") for quality in ("fast", "balanced"))
-    assert fast["promised_error_percent"] <= 1 and balanced["promised_error_percent"] <= 0.1
+    assert fast["guaranteed_error_percent"] <= 1 and balanced["guaranteed_error_percent"] <= 0.1
     assert fast["tick_s"] <= balanced["tick_s"], (fast, balanced)
     said = "\n".join(each["reason"] for each in balanced["why"])
     assert "requested: 0.1 %" in said and "not included" in said and "at best" in said, said
     assert "the smallest is" in refused(UNSUITABLE, "no choice has", "explain", folder / "t", "--max-error", "1ppm")
     remedy = refused(UNSUITABLE, "use --max-error", "explain", folder / "t", "--max-error", "1ppm").split("--max-error ")[1].split()[0]
-    assert made.report_of("explain", folder / "t", "--max-error", remedy)["promised_error_percent"] <= float(remedy[:-1])
+    assert made.report_of("explain", folder / "t", "--max-error", remedy)["guaranteed_error_percent"] <= float(remedy[:-1])
     assert "the fastest needs" in refused(UNSUITABLE, "no choice keeps", "explain", folder / "t", "--max-error", "0.1%", "--max-tick", "1ns")
     refused(USAGE, "%", "explain", folder / "t", "--max-error", "0.1")
     refused(USAGE, "--quality", "explain", folder / "t", "--explain")
@@ -182,8 +182,8 @@ def check_render(folder):
 def check_play(folder):
     arguments = ["play", folder / "t", "-d", "sim:", "--finger-path", folder / "path.csv", "--gain", "0.2mm/N", "-o", folder / "s"]
     report = made.report_of(*arguments, "--max-error", "1%", "--explain")
-    assert report["promised_error_percent"] <= 1 and "why" in report and "chosen" in report, report
-    assert 20 * np.log10(report["promised_error_percent"] / 100) >= report["inverse_error_db"]
+    assert report["guaranteed_error_percent"] <= 1 and "why" in report and "chosen" in report, report
+    assert 20 * np.log10(report["guaranteed_error_percent"] / 100) >= report["inverse_error_db"]
 
 
 def check_where_it_was_identified(folder):

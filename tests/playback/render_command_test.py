@@ -123,7 +123,7 @@ def check_budget(folder):
     # The ends are reported, not judged.
     assert kept["engine"] == "reference" and kept["displacement_error_db"] > -95, kept
     timed = made.report_of(*base, "--max-tick", "1us")
-    assert timed["engine"] == "kernel" and "promised_error_percent" not in timed and timed["least_error_percent"] < 0.1, timed
+    assert timed["engine"] == "kernel" and "guaranteed_error_percent" not in timed and timed["least_error_percent"] < 0.1, timed
     assert made.report_of(*base, "--engine", "kernel", "--max-error", "5%", "--encoder-step", "10nm")["engine"] == "kernel"
     # Both steps are too coarse; the value for a tenth of them in the message was measured.
     for step, said in (("5um", "use --encoder-step 0.5um"), ("40um", "with a tenth of --encoder-step")):
@@ -131,7 +131,7 @@ def check_budget(folder):
     # A count of 1 nm is a small part of a sample: its rounding by the wire must not accumulate along the texture.
     for step in ("100nm", "10nm", "1nm", "0.3nm"):
         fine = made.report_of(*base, "--engine", "kernel", "--max-error", "0.1%", "--encoder-step", step)
-        assert fine["engine"] == "kernel" and fine["promised_error_percent"] <= 0.1, (step, fine)
+        assert fine["engine"] == "kernel" and fine["guaranteed_error_percent"] <= 0.1, (step, fine)
     expect_refusal(folder, UNSUITABLE, "2^29", **{"finger-path": folder / "through.csv", "engine": "kernel", "encoder-step": "0.08nm"})
     # With 8 samples per count (5 um over 0.62 um) the kernel reads up to 2^29 / 9 counts = 298.3 m, and is silent
     # beyond.

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "analysis/identify/measure/number_table.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/recording/recording.hpp"
 
 namespace tacto::analysis {
@@ -185,7 +186,7 @@ Result<BodeData> read_bode_table(const std::string& path, const TableUnits& unit
   data.table_in_degrees = *radians == kDegree;
   for (std::size_t row = 0; row < table->rows(); ++row) {
     const double value = table->at(row, amplitude->index);
-    const double size = unit->si * (unit->decibels ? std::pow(10, value / 20) : value);
+    const double size = unit->si * (unit->decibels ? schema::amplitude_of_db(value) : value);
     data.frequency_hz.push_back(*hertz * table->at(row, frequency->index));
     data.response.push_back(size * std::polar(1.0, *radians * table->at(row, phase->index)));
     if (noise && !unit->decibels) data.noise.push_back(unit->si * table->at(row, noise->index));

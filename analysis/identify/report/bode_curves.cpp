@@ -6,12 +6,13 @@
 
 #include "analysis/identify/fit/shared_errors.hpp"
 #include "analysis/identify/measure/angles.hpp"
+#include "data-schema/base/decibels.hpp"
 
 namespace tacto::analysis {
 namespace {
 
 double decibels(double part) {
-  return 20 * std::log10(part);
+  return schema::amplitude_db(part);
 }
 
 double reference_of(const ResponseFit& fit) {

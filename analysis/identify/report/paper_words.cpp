@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "analysis/identify/measure/angles.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "firmware-host/sim/physics/tray_physics.hpp"
 
 namespace tacto::analysis {
@@ -38,7 +39,7 @@ double sensor_at(const schema::Transducer& t, double hz) {
 }
 
 double actuator_db(const schema::Transducer& t, double hz) {
-  return 20 * std::log10(std::abs(schema::actuator_response(t, hz) / schema::actuator_response(t, 0)));
+  return schema::amplitude_db(std::abs(schema::actuator_response(t, hz) / schema::actuator_response(t, 0)));
 }
 
 // Peak of the mechanics' 1 / |s^2 m + s b + k|, in m/N: 1 / (b w) at the damped resonance.
@@ -55,7 +56,7 @@ double finger_db(const schema::Transducer& tray) {
   loaded.flexure_stiffness_n_per_m += stiffness;
   loaded.damping_n_s_per_m += stiffness / (kTurn * finger.corner_hz);
   loaded.mass_kg *= 1 + finger.mass_share;
-  return 20 * std::log10(mechanical_peak(loaded) / mechanical_peak(tray));
+  return schema::amplitude_db(mechanical_peak(loaded) / mechanical_peak(tray));
 }
 
 // R^2 of this program's one-mode fit to Table I's response with the reported lag.
@@ -104,7 +105,7 @@ std::vector<PaperFigure> other_figures(const schema::Transducer& paper, const sc
                           2 * found.converter_range_v / std::exp2(kConverterBits) / sensor_at(found, 100)),
            "16 bits over +-10 V"},
           {"reconstruction_filter_at_500hz_db", kReportedFilterDb,
-           20 * std::log10(std::abs(schema::butterworth3_response(kFilterHz, kFilterEndsHz))), kNothing,
+           schema::amplitude_db(std::abs(schema::butterworth3_response(kFilterHz, kFilterEndsHz))), kNothing,
            "a 3rd-order Butterworth of 600 Hz does not end at 500 Hz"},
           {"stretch_factors", kReportedStretches, static_cast<double>(std::size(kListedStretches)), kNothing,
            "the text says six, the list has eight: +-10, 30, 50, 70 %"}};

@@ -9,7 +9,7 @@ namespace tacto::core {
 
 /// The largest value of release_s + drive_v / slew_v_per_s in the limits. With the two ticks after a fault,
 /// the drive is then at zero within 20 ms at rates from 1 kHz.
-inline constexpr float kLongestReleaseS = 0.018F;
+inline constexpr float kLongestReleaseS = 0.018F, kLongestOnsetS = 10, kLongestFadeS = 10;
 
 /// The state of the drive that the main loop requests.
 enum class Aim : uint8_t { off, hold, play };

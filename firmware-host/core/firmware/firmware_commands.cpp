@@ -11,7 +11,6 @@ using wire::DriveSource;
 using wire::DriveState;
 using wire::MessageType;
 
-constexpr float kLongestOnsetS = 10, kLongestFadeS = 10;
 constexpr uint16_t kLeastWatchdogMs = 10, kMostWatchdogMs = 1000;
 constexpr uint32_t kTickBlockPart = 100000;  // mHz: a ticks message every 10 ms
 constexpr uint32_t kNotGreeted = 255;

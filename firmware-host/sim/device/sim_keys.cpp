@@ -2,6 +2,7 @@
 #include "firmware-host/sim/device/sim_keys.hpp"
 
 #include "firmware-host/core/wire/message_types.hpp"
+#include "firmware-host/sim/physics/surface.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -107,11 +108,9 @@ std::span<const NumberKey> sim_number_keys() {
 }
 
 std::span<const WordKey> sim_word_keys() {
+  static const std::string kSurfaceWords = surface_names() + ", or profile:NAME (a texture of heights); C";
   static const std::vector<WordKey> kWords = {
-      {"surface",
-       "A, B, C, D, E, flat, sine, triangle, square, or profile:NAME (a texture of heights); C",
-       {},
-       [](P& p, std::string_view v) { p.surface.name = v; }},
+      {"surface", kSurfaceWords, {}, [](P& p, std::string_view v) { p.surface.name = v; }},
       {"finger",
        "up or down; down",
        {"up", "down"},

@@ -119,14 +119,14 @@ Heights drilled_pits(std::size_t count, double pitch_m, std::uint64_t seed) {
 
 }  // namespace
 
-const std::array<PaperSurface, 5>& paper_surfaces() {
-  static constexpr std::array<PaperSurface, 5> kSurfaces = {{
+std::span<const PaperSurface> paper_surfaces() {
+  static constexpr PaperSurface kSurfaces[] = {
       {'A', "melted by a polishing disk", melted_surface},
       {'B', "milled ridges 1.5 mm apart, 0.1 mm high", milled_ridges},
       {'C', "milled grating of 3 mm period, 0.1 mm deep", milled_grating},
       {'D', "scratches of P40 sandpaper", sanded_scratches},
       {'E', "quincunx of conical pits 0.5 mm apart, 0.1 mm deep", drilled_pits},
-  }};
+  };
   return kSurfaces;
 }
 

@@ -3,9 +3,9 @@
 // and main dimension; the other properties (roughness, walls, spread) are our choice, noted at each constant.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +22,6 @@ struct PaperSurface {
 };
 
 /// A to E, in this order.
-const std::array<PaperSurface, 5>& paper_surfaces();
+std::span<const PaperSurface> paper_surfaces();
 
 }  // namespace tacto::firmware_host

@@ -15,4 +15,12 @@ std::vector<double> blackman(std::size_t length) {
   return window;
 }
 
+std::vector<double> hann(std::size_t length) {
+  std::vector<double> window(length);
+  for (std::size_t n = 0; n < length; ++n)
+    window[n] =
+        0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(length));
+  return window;
+}
+
 }  // namespace tacto::spatial

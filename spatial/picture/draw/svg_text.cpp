@@ -36,11 +36,17 @@ std::string svg_text(const PlacedText& placed) {
       placed.style.bold ? " font-weight=\"bold\"" : "", placed.width, escaped(placed.text));
 }
 
+// On a dark page the picture is inverted, with its hues kept; a raster is inverted back. In an <img>, too,
+// the page's colour scheme decides.
+constexpr std::string_view kDark =
+    "<style>@media (prefers-color-scheme: dark) { svg, image { filter: invert(1) hue-rotate(180deg); } "
+    "}</style>\n";
+
 std::string with_text_layer(std::string svg, std::string_view elements, bool visible) {
   const auto end = svg.rfind("</svg>");
   if (end == std::string::npos) return svg;
-  svg.insert(end, fmt::format("<g{} font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n{}</g>\n",
-                              visible ? "" : " fill-opacity=\"0\"", elements));
+  svg.insert(end, fmt::format("{}<g{} font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n{}</g>\n",
+                              visible ? kDark : "", visible ? "" : " fill-opacity=\"0\"", elements));
   return svg;
 }
 
