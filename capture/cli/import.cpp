@@ -187,9 +187,7 @@ schema::Result<cli::Report> run_height_map(const ImportRequest& request) {
   report.add("columns", map.columns).add("rows", map.rows).add("pitch_m", map.pitch_m);
   report.add("lowest_m", figures.lowest_m).add("highest_m", figures.highest_m);
   report.add("rms_slope", figures.rms_slope).add("files", std::vector{path});
-  return report.add("next",
-                    "name it in a layer of the type height_map of a scene, with kappa_n: newtons on a "
-                    "slope of 1");
+  return report.add("next", fmt::format("tactograph info {}", cli::shell_word(path)));
 }
 
 schema::Result<cli::Report> run_import(const ImportRequest& request) {

@@ -154,6 +154,15 @@ def a_large_map_is_played_and_replayed():
     assert np.abs(np.genfromtxt("white.csv", delimiter=",", names=True)["force_x_n"]).max() > 1e-3
 
 
+def a_map_beyond_the_memory_is_refused():
+    # White noise has levels of 8 times the map: 1500 x 1500 are 73 MB, sim:planar has 64 MB.
+    png("white.png", np.random.default_rng(3).integers(0, 65536, (1500, 1500)))
+    run("import", "white.png", "--pitch", "30um", "--height", "1um", "-o", "white")
+    write_scene("white", patch(width_m=0.04, height_m=0.04, layers=[{"type": "height_map", "file": "white", "kappa_n": 1}]))
+    _, err = run("play", "white.scene.json", "-d", "sim:planar", "--time", "1s", "-o", "x", code=UNSUITABLE)
+    assert "a pitch 1.0" in err and not list(pathlib.Path().glob("x*")), err
+
+
 def bad_input_is_refused_with_its_remedy():
     rows = smooth_noise()[:16, :16]
     png("grey.png", rows)
@@ -201,5 +210,5 @@ def bad_input_is_refused_with_its_remedy():
 
 if __name__ == "__main__":
     for test in (a_png_becomes_a_height_map, a_profile_becomes_a_map_of_one_row, forces_are_scipys_spline, explain_says_levels_speeds_and_memory,
-                 a_large_map_is_played_and_replayed, bad_input_is_refused_with_its_remedy):
+                 a_large_map_is_played_and_replayed, a_map_beyond_the_memory_is_refused, bad_input_is_refused_with_its_remedy):
         tacto.in_folder(test)
