@@ -124,6 +124,7 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   warn_of_newer(file, *scene);
   const double limit = playback::stiffness_limit_of(request->device, request->rate_hz, request->hand);
   TACTO_TRY(playback::set_filters(*scene, limit, file));
+  TACTO_TRY(playback::read_reliefs(*scene, file, request->rate_hz));
   auto designed = design_scene(*scene, file, *request);
   TACTO_TRY(designed);
   design = std::move(*designed);

@@ -62,6 +62,8 @@ Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file
       return add_session(path, file, progress);
     case FileKind::session_table:
       return add_session_table(path, file);
+    case FileKind::height_map:
+      return add_height_map(path, file);
     case FileKind::trade:
       return add_trade_table(path, file);
     case FileKind::device:

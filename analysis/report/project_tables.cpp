@@ -10,6 +10,7 @@
 #include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/calibration/calibration.hpp"
+#include "data-schema/height/height_map.hpp"
 #include "data-schema/results/trade_table.hpp"
 #include "data-schema/session/session_netcdf.hpp"
 #include "data-schema/texture/description.hpp"
@@ -168,6 +169,20 @@ Result<void> add_session_table(const std::string& path, ProjectFile& file) {
       {"ticks", fmt::format("{} at {}", table->times, for_people(table->rate_hz, Dimension::frequency))},
       {"transducer", table->transducer}};
   for (const std::string& texture : table->textures) file.figures.push_back({"texture", texture});
+  return {};
+}
+
+Result<void> add_height_map(const std::string& path, ProjectFile& file) {
+  const auto map = schema::read_height_map(path);
+  TACTO_TRY(map);
+  file.date = map->created;
+  file.origin = map->source;
+  const schema::HeightFigures figures = figures_of(*map);
+  file.figures = {
+      {"heights", fmt::format("{} x {}, {} apart", map->columns, map->rows,
+                              for_people(map->pitch_m, Dimension::length))},
+      {"from lowest to highest", for_people(figures.highest_m - figures.lowest_m, Dimension::length)},
+      {"RMS slope", fmt::format("{:.3g}", figures.rms_slope)}};
   return {};
 }
 

@@ -10,7 +10,9 @@
 #include <memory>
 
 #include "capture/cli/verbs.hpp"
+#include "capture/import/height_map_import.hpp"
 #include "capture/import/height_profile.hpp"
+#include "data-schema/height/height_map.hpp"
 #include "data-schema/report/progress.hpp"
 #include "data-schema/report/report.hpp"
 #include "data-schema/report/terminal.hpp"
@@ -31,11 +33,16 @@ double parsed_percent(const std::string& text) {
 }
 
 void declare_data(CLI::App& app, ImportRequest& request) {
-  app.add_option(
-         "FILE", request.file,
-         "CSV table, sound file that libsndfile reads (WAV, FLAC, OGG ...), or a measured profile (XML)")
+  app.add_option("FILE", request.file,
+                 "CSV table, sound file that libsndfile reads (WAV, FLAC, OGG ...), a measured profile "
+                 "(XML), or a height "
+                 "map (greyscale PNG with 16 bits)")
       ->required();
-  app.add_option("-o,--output", request.name, "Name of the recording: NAME.wav and NAME.json")->required();
+  app.add_option("-o,--output", request.name,
+                 "Name of the recording: NAME.wav and NAME.json; of a height map: NAME.height.nc, also from "
+                 "a profile if "
+                 "written in full")
+      ->required();
   app.add_option("--channel", request.channels,
                  "A channel, QUANTITY=COLUMN*SCALE+OFFSET and a unit (default: that of the column); repeat "
                  "for each. COLUMN: header name or number from 1; LABEL:QUANTITY for a second channel of a "
@@ -50,7 +57,12 @@ void declare_data(CLI::App& app, ImportRequest& request) {
                  "Compute the rate from a column of times, COLUMN*SCALE and a unit: t_ms*1ms");
   cli::add_quantity(
       app, "--pitch", request.pitch_m, Dimension::length,
-      "Distance between heights: makes a texture (so do a height and a position without a rate)");
+      "Distance between heights: makes a texture (so do a height and a position without a rate), or with a "
+      "PNG a height map");
+  cli::add_quantity(app, "--height", request.full_height_m, Dimension::length,
+                    "Of a PNG: height of white; black is 0");
+  app.add_flag("--allow-8bit", request.allow_8bit,
+               "Accept a PNG with fewer than 16 bits: its levels are steps");
   cli::add_quantity(app, "--speed", request.speed_mps, Dimension::speed,
                     "Speed of a nominal position, if none was measured");
   app.add_flag_callback(
@@ -154,7 +166,26 @@ schema::Result<cli::Report> run_profile(const ImportRequest& request) {
                                         cli::shell_word(stem + ".png")));
 }
 
+schema::Result<cli::Report> run_height_map(const ImportRequest& request) {
+  const auto imported = [&] {
+    cli::Progress progress("importing");
+    return import_height_map(request, [&](double fraction) { progress.update(fraction); });
+  }();
+  TACTO_TRY(imported);
+  const auto& [map, path] = *imported;
+  const schema::HeightFigures figures = figures_of(map);
+  cli::Report report;
+  report.add("source", request.file).add("quantity", "height");
+  report.add("columns", map.columns).add("rows", map.rows).add("pitch_m", map.pitch_m);
+  report.add("lowest_m", figures.lowest_m).add("highest_m", figures.highest_m);
+  report.add("rms_slope", figures.rms_slope).add("files", std::vector{path});
+  return report.add("next", fmt::format("tactograph info {}", cli::shell_word(path)));
+}
+
 schema::Result<cli::Report> run_import(const ImportRequest& request) {
+  if (is_height_map_request(request)) return run_height_map(request);
+  if (request.full_height_m || request.allow_8bit)
+    return schema::fail(schema::ErrorKind::usage, "--height and --allow-8bit are for a PNG", request.file);
   if (is_profile_request(request)) return run_profile(request);
   schema::Result<Imported> imported = [&] {
     cli::Progress progress("importing");
@@ -175,7 +206,8 @@ cli::Action declare_import(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kImportVerb{
-    "import", "Convert a file of another program to a recording, or a height profile to a texture",
+    "import",
+    "Convert a file of another program to a recording, a height profile to a texture, a PNG to a height map",
     "tactograph import trial.csv -o trial --rate 10kHz --channel tangential_force=lateral_V*0.444444N"
     " --channel position=encoder_count*0.5um\n"
     "  tactograph import trial.csv -o trial --rate 10kHz --channel normal_force=2*-0.31+1.6647N --speed "
@@ -184,7 +216,8 @@ const cli::Verb kImportVerb{
     "--mask-outliers\n"
     "  tactograph import tap.flac -o tap\n"
     "  tactograph import edm.xml -o edm\n"
-    "  tactograph import profile.csv -o profile --channel position=x*1mm --channel height=z*1um",
+    "  tactograph import profile.csv -o profile --channel position=x*1mm --channel height=z*1um\n"
+    "  tactograph import plate.png --pitch 50um --height 200um -o plate",
     declare_import};
 
 }  // namespace tacto::capture

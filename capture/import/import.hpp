@@ -21,11 +21,13 @@ struct ImportRequest {
   std::optional<double> rate_hz;      ///< of a table; of audio, if its header is wrong
   std::size_t skip_lines = 0;         ///< of a table: lines before its header or first row
   std::string time_column;            ///< instead of rate_hz, "time_s*1s"
-  std::optional<double> pitch_m;      ///< of a height profile, see height_profile.hpp
-  std::optional<double> speed_mps;    ///< results in a nominal position
-  bool integrate_speed = true;        ///< compute a position from a speed channel if none was measured
-  bool mask_outliers = false;         ///< rows with outliers are left out and become gaps
-  std::string recorded, calibrated;   ///< ISO dates, "2026-03-14"
+  std::optional<double> pitch_m;      ///< of a height profile or map, see height_profile.hpp
+  std::optional<double> full_height_m = std::nullopt;  ///< of a PNG: the height of white; black is 0
+  bool allow_8bit = false;                             ///< of a PNG: also fewer than 16 bits
+  std::optional<double> speed_mps;                     ///< results in a nominal position
+  bool integrate_speed = true;       ///< compute a position from a speed channel if none was measured
+  bool mask_outliers = false;        ///< rows with outliers are left out and become gaps
+  std::string recorded, calibrated;  ///< ISO dates, "2026-03-14"
   std::string subject, finger, surface, notes;
   std::optional<double> humidity_percent;
 };

@@ -6,6 +6,7 @@
 #include "data-schema/check/check_parts.hpp"
 #include "data-schema/device/device.hpp"
 #include "data-schema/device/hand.hpp"
+#include "data-schema/height/height_map.hpp"
 #include "data-schema/results/results.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/session/session_netcdf.hpp"
@@ -91,6 +92,10 @@ Result<Checked> check_file(const StoredFile& file, const Progress& progress) {
   if (file.kind == FileKind::session_table) {
     const auto table = read_session_table(file.path);
     return table ? Checked{} : judged(table.error());
+  }
+  if (file.kind == FileKind::height_map) {
+    const auto map = read_height_map(file.path);
+    return map ? Checked{{}, map->newer_version, {}} : judged(map.error());
   }
   if (file.kind != FileKind::spectrogram) return check_document(file, progress);
   auto checked = check_spectrogram(file.path);

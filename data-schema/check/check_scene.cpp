@@ -3,6 +3,7 @@
 
 #include "data-schema/check/check_parts.hpp"
 #include "data-schema/files/files.hpp"
+#include "data-schema/height/height_map.hpp"
 #include "data-schema/scene/atoms.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture.hpp"
@@ -24,13 +25,16 @@ void check_layer(const std::string& path, std::size_t index, const TextureLayer&
   check_played_texture(path, layer.texture, fmt::format("{}#/layers/{}/texture", path, index), findings);
 }
 
-// Looks for the files that a layer of a patch names; what is in a map is checked by its own reader.
+// Reads the files that a layer of a patch names; a map of forces is only looked for.
 class ForceLayerFiles {
  public:
   ForceLayerFiles(const std::string& path, std::string where, std::vector<Finding>& findings)
       : path_(path), where_(std::move(where)), findings_(findings) {}
 
-  void operator()(const HeightMapLayer& layer) { look_for(layer.file, ".height.nc"); }
+  void operator()(const HeightMapLayer& layer) {
+    const auto map = read_height_map(texture_in_scene(path_, layer.file));
+    if (!map) findings_.push_back({where_, message(map.error())});
+  }
   void operator()(const ForceMapLayer& layer) { look_for(layer.file, ".force.nc"); }
   void operator()(const TextureForceLayer& layer) {
     check_played_texture(path_, layer.file, where_, findings_);

@@ -24,6 +24,7 @@ Result<cli::Report> describe_calibration(const std::string& path);
 Result<cli::Report> describe_scene(const std::string& path);
 Result<cli::Report> describe_session(const std::string& path);
 Result<cli::Report> describe_session_table(const std::string& path);
+Result<cli::Report> describe_height_map(const std::string& path);
 Result<cli::Report> describe_results(const std::string& path);
 Result<cli::Report> describe_trade(const std::string& path);
 Result<cli::Report> describe_device(const std::string& path);

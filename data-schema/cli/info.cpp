@@ -39,6 +39,8 @@ Result<cli::Report> describe(const StoredFile& file) {
       return describe_hand(file.path);
     case FileKind::session_table:
       return describe_session_table(file.path);
+    case FileKind::height_map:
+      return describe_height_map(file.path);
   }
   return fail(ErrorKind::internal, "this kind of file cannot be described", file.path);
 }

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "data-schema/files/files.hpp"
+#include "data-schema/height/height_map.hpp"
 #include "data-schema/json/json_document.hpp"
 #include "data-schema/json/named_document.hpp"
 #include "data-schema/session/session_netcdf.hpp"
@@ -15,9 +16,9 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 14> kNames = {
-    "recording", "texture", "transducer", "spectrogram", "formants", "descriptions", "calibration",
-    "scene",     "session", "results",    "trade",       "device",   "hand",         "session_table"};
+constexpr std::array<std::string_view, 15> kNames = {
+    "recording", "texture", "transducer", "spectrogram", "formants", "descriptions",  "calibration", "scene",
+    "session",   "results", "trade",      "device",      "hand",     "session_table", "height_map"};
 
 struct Ending {
   FileKind kind;
@@ -29,6 +30,7 @@ constexpr Ending kEndings[] = {
     {FileKind::texture, ".texture.json"},
     {FileKind::transducer, ".transducer.json"},
     {FileKind::spectrogram, ".nc"},
+    {FileKind::height_map, ".height.nc"},
     {FileKind::formants, ".formants.json"},
     {FileKind::descriptions, ".descriptions.json"},
     {FileKind::calibration, ".calibration.json"},
@@ -56,6 +58,7 @@ Result<StoredFile> by_content(const std::string& path) {
 
 // A file that cannot be read is treated as a spectrogram: reading it reports the error.
 FileKind netcdf_kind(const std::string& path) {
+  if (is_height_map(path)) return FileKind::height_map;
   return is_session_netcdf(path) ? FileKind::session_table : FileKind::spectrogram;
 }
 

@@ -24,7 +24,8 @@ enum class FileKind {
   trade,
   device,
   hand,
-  session_table  ///< a session as netCDF
+  session_table,  ///< a session as netCDF
+  height_map
 };
 
 /// "recording", "texture", ... as in the files' own member `kind`.

@@ -39,6 +39,7 @@ struct HeightMapLayer {
   std::string file;  ///< stem or NAME.height.nc, from the scene's folder
   LayerNumber kappa_n;
   std::string extra_json;
+  double curvature_per_m = 0;  ///< not in the file: the largest of its surface in the patch, once it was read
 };
 
 enum class GrooveProfile { sine, triangle, square };

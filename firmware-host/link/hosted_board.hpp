@@ -14,15 +14,19 @@
 
 namespace tacto::firmware_host {
 
-/// Memory for a texture: 16 MB, allocated by the system only when it is written.
+/// Memory for a texture or a scene, allocated by the system only when it is written; default: 16 MB.
 class HostedProfile {
  public:
   /// One metre of texture on a 1 um grid, with all levels.
   static constexpr std::uint32_t kSamples = 1U << 22;
+  explicit HostedProfile(std::uint32_t samples = kSamples)
+      : count_(samples), samples_(std::make_unique_for_overwrite<float[]>(samples)) {}
   float* data() { return samples_.get(); }
+  std::uint32_t size() const { return count_; }
 
  private:
-  std::unique_ptr<float[]> samples_ = std::make_unique_for_overwrite<float[]>(kSamples);
+  std::uint32_t count_;
+  std::unique_ptr<float[]> samples_;
 };
 
 /// The board's description for the core; the arguments must outlive it.
@@ -35,7 +39,7 @@ inline core::Board board_of(const wire::Welcome& welcome, const std::vector<wire
   board.notes = notes.data();
   board.note_count = static_cast<std::uint8_t>(notes.size());
   board.profile_memory = profile.data();
-  board.profile_samples = HostedProfile::kSamples;
+  board.profile_samples = profile.size();
   return board;
 }
 

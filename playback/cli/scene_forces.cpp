@@ -182,6 +182,14 @@ void add_noise(Report& row, const schema::NoiseLayer& noise, double rate_hz) {
   row.add("zero_from_mps", core::kZeroPerTick * rate_hz * cell_m);
 }
 
+void add_height_map(Report& row, const Relief& relief, double rate_hz) {
+  row.add("columns", relief.columns).add("rows", relief.rows).add("levels", relief.levels.size());
+  if (!(relief.highest_per_m > 0)) return;
+  row.add("shortest_period_m", 1 / relief.highest_per_m);
+  if (relief.samples_per_period > 0) row.add("samples_per_period", relief.samples_per_period);
+  row.add("whole_to_mps", relief.whole_to_mps(rate_hz)).add("zero_from_mps", relief.zero_from_mps(rate_hz));
+}
+
 Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::size_t index) {
   const schema::ForceLayer& layer = patch.layers[index];
   Report row;
@@ -200,6 +208,9 @@ Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::si
         at_limit("force_limit_at_speed_mps", damper.damping_n_s_per_m.value);
       },
       [&](const schema::GroovesLayer& grooves) { add_grooves(row, grooves, double{on.setup.rate_hz}); },
+      [&](const schema::HeightMapLayer& map) {
+        add_height_map(row, *on.scene.reliefs.at(map.file), double{on.setup.rate_hz});
+      },
       [&](const schema::NoiseLayer& noise) { add_noise(row, noise, double{on.setup.rate_hz}); },
       [](const auto& /*other*/) {});
   return row;
@@ -212,11 +223,16 @@ std::vector<Report> rows_of_layers(const SceneOnDevice& on) {
   return rows;
 }
 
-void add_fit(Report& report, std::size_t bytes, std::optional<std::size_t> room, double tick_s,
+void add_fit(Report& report, const PreparedScene& scene, std::optional<std::size_t> room, double tick_s,
              double rate_hz) {
+  const std::size_t bytes = scene.bytes();
   const bool small = !room || bytes <= *room, fast = tick_s * rate_hz <= 1;
   report.add("fits", small && fast);
-  if (!small) report.add("because", fmt::format("the scene needs {} bytes, the device has {}", bytes, *room));
+  if (!small) {
+    const std::string remedy = scene.remedy_for(*room);
+    report.add("because", fmt::format("the scene needs {} bytes, the device has {}{}{}", bytes, *room,
+                                      remedy.empty() ? "" : ": ", remedy));
+  }
   if (!fast) report.add("because", "a tick takes longer than the period of the device");
 }
 
@@ -277,7 +293,7 @@ Result<Report> explain_forces(const std::string& scene, const std::string& devic
   const double rate = double{on->setup.rate_hz};
   Report report;
   report.add("scene", schema::scene_path(scene)).add("device", on->device.name).add("rate_hz", rate);
-  add_fit(report, on->scene.bytes(), device_bytes, tick_s, rate);
+  add_fit(report, on->scene, device_bytes, tick_s, rate);
   report.add("layers", rows_of_layers(*on));
   report.add("block_bytes", on->scene.bytes())
       .add("live_bytes", view.number_count * sizeof(float))

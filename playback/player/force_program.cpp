@@ -24,8 +24,6 @@ using schema::Result;
 
 namespace {
 
-constexpr double kFastestMps = 10;  // of a hand; faster is a jump of the encoder
-
 // The shortest decimal number that gives this value in single precision: 1e-5, not 9.99999975e-6.
 double decimal_of(float value) {
   return std::stod(fmt::format("{}", value));
@@ -52,7 +50,8 @@ Result<wire::ForceLimits> limits_for(const ForceRequest& request, const schema::
                             double{core::kLongestReleaseS}));
   limits.release_s = std::min(static_cast<float>(schema::kReleaseS), longest_s);
   limits.watchdog_ms = request.watchdog_ms;
-  limits.counts_per_tick = static_cast<std::uint32_t>(std::clamp(kFastestMps / finest_m / rate_hz, 1.0, 1e9));
+  limits.counts_per_tick =
+      static_cast<std::uint32_t>(std::clamp(kFastestHandMps / finest_m / rate_hz, 1.0, 1e9));
   return limits;
 }
 
@@ -114,6 +113,11 @@ Result<ForceProgram> make_force_program(const ForceRequest& request, const schem
   TACTO_TRY(prepared);
   const auto limits = limits_for(request, device, own, rate_hz);
   TACTO_TRY(limits);
+  if (prepared->bytes() > own.scene_bytes)
+    return fail(
+        ErrorKind::unsuitable,
+        fmt::format("the scene needs {} bytes, the device has {}", prepared->bytes(), own.scene_bytes), file,
+        prepared->remedy_for(own.scene_bytes));
   auto notes = limits_of_device(*prepared, device, *setup, hand);
   return ForceProgram{std::move(*prepared), *limits, header_of(file, own, rate_hz), std::move(notes)};
 }

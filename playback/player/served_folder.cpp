@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "data-schema/files/files.hpp"
+#include "data-schema/height/height_map.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture_wav.hpp"
 #include "playback/player/placed_textures.hpp"
@@ -43,6 +44,15 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
   if (!is_within(folder, path)) return false;
   const auto scene = schema::read_scene(path);
   if (!scene) return true;  // the error is that of the file
+  const auto in_folder = [&](const schema::ForceLayer& layer) {
+    return layer.visit(
+        [&](const schema::HeightMapLayer& map) {
+          return is_within(folder, schema::height_map_path(schema::texture_in_scene(path, map.file)));
+        },
+        [](const auto& /*cannot be played or names no file*/) { return true; });
+  };
+  for (const schema::Patch& patch : scene->patches)
+    if (!std::ranges::all_of(patch.layers, in_folder)) return false;
   return std::ranges::all_of(scene->layers, [&](const schema::Layer& layer) {
     return layer.visit([&](const schema::TextureLayer& texture) {
       return serves_texture(folder, schema::texture_in_scene(path, texture.texture));

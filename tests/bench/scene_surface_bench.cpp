@@ -6,6 +6,7 @@
 
 #include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/noise.hpp"
+#include "firmware-host/core/scene/relief.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
 
 namespace tacto::playback {
@@ -46,6 +47,38 @@ void SceneSquareGrooves(benchmark::State& state) {
   count_places(state);
 }
 BENCHMARK(SceneSquareGrooves);
+
+// Two levels of a map of 4096 x 4096, as the kernel mixes them; places along a line, and far from each other.
+void relief_of_two_levels(benchmark::State& state, std::int64_t step) {
+  constexpr std::uint32_t kFine = 4096, kCoarse = 2896;
+  std::vector<float> fine(std::size_t{kFine} * kFine), coarse(std::size_t{kCoarse} * kCoarse);
+  for (std::size_t i = 0; i < fine.size(); ++i) fine[i] = static_cast<float>(i * 7919 % 1000);
+  for (std::size_t i = 0; i < coarse.size(); ++i) coarse[i] = static_cast<float>(i * 7919 % 1000);
+  const core::ReliefLevel levels[2] = {{fine.data(), kFine, kFine}, {coarse.data(), kCoarse, kCoarse}};
+  std::uint64_t x = 1, y = 2;
+  constexpr std::uint64_t kWithin = (std::uint64_t{2800} << 32) - 1;
+  for (auto _ : state) {
+    float sum = 0;
+    for (int i = 0; i < kPlaces; ++i) {
+      x = (x + static_cast<std::uint64_t>(step)) % kWithin;
+      y = (y + static_cast<std::uint64_t>(step) * 3) % kWithin;
+      for (const core::ReliefLevel& level : levels) {
+        const core::ReliefSample at = relief_at(level, static_cast<core::Q32>(x), static_cast<core::Q32>(y));
+        sum += at.by_x + at.by_y;
+      }
+    }
+    benchmark::DoNotOptimize(sum);
+  }
+  count_places(state);
+}
+void SceneReliefTwoLevels(benchmark::State& state) {
+  relief_of_two_levels(state, std::int64_t{1} << 29);
+}
+BENCHMARK(SceneReliefTwoLevels);
+void SceneReliefTwoLevelsCold(benchmark::State& state) {
+  relief_of_two_levels(state, std::int64_t{1'234'567'890'123});
+}
+BENCHMARK(SceneReliefTwoLevelsCold);
 
 }  // namespace
 }  // namespace tacto::playback

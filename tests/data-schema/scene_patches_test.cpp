@@ -15,6 +15,7 @@
 #include "data-schema/check/check.hpp"
 #include "data-schema/files/embedded_files.hpp"
 #include "data-schema/files/files.hpp"
+#include "data-schema/height/height_map.hpp"
 #include "data-schema/scene/atoms.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture.hpp"
@@ -468,7 +469,10 @@ TEST(ScenePatches, TheCheckLooksForFilesAndReadsAtoms) {
   };
   const auto at = [](int i) { return fmt::format("#/patches/0/layers/{}/file", i); };
   EXPECT_EQ(places(), (std::vector{at(0), at(3), at(10), at(11)}));
-  put("relief.height.nc", "later");
+  HeightMap relief;
+  relief.columns = relief.rows = 2, relief.pitch_m = 1e-3;
+  relief.height_m = {0, 1e-4F, 0, 0};
+  ASSERT_TRUE(write_height_map(folder / "relief.height.nc", relief, Existing::keep));
   put("forces.force.nc", "later");
   put("atoms.csv", "x_m,y_m,z_m,sigma_m,epsilon_j,charge_c\n0,0,0,-1,1,0\n");
   Texture oak;

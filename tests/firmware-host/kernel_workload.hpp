@@ -117,23 +117,25 @@ class TextureWorkload {
   float samples_[kTextureSamples], taps_[kTextureTaps];
 };
 
-inline constexpr uint32_t kSceneFingerprint = 3351755191;
+inline constexpr uint32_t kSceneFingerprint = 2715716053;
 
-/// A scene of three overlapping patches with springs, dampers, grooves and noise, and a hand in the plane
-/// whose speed varies between rest and 60 counts per tick; all limits are reached.
+/// A scene of three overlapping patches with springs, dampers, grooves, noise and a height map, and a hand in
+/// the plane whose speed varies between rest and 60 counts per tick; all limits are reached.
 class SceneWorkload {
  public:
   SceneWorkload() noexcept {
-    block_.header.patches = 3, block_.header.layers = 6, block_.header.numbers = 12;
-    block_.header.table_words = (sizeof block_.grooves + sizeof block_.noise) / sizeof(uint32_t);
+    block_.header.patches = 3, block_.header.layers = 7, block_.header.numbers = 13;
+    block_.header.table_words =
+        (sizeof block_.grooves + sizeof block_.noise + sizeof block_.relief) / sizeof(uint32_t);
     block_.patches[0] = {0.01F, 0, 0.8F, 0.6F, 0.02F, 0.01F, 0, 1, 0};
     block_.patches[1] = {0, 0, 1, 0, 0.1F, 0.1F, 1, 2, 0};
-    block_.patches[2] = {0, 0.01F, 0.6F, -0.8F, 0.1F, 0.03F, 3, 3, 1};
-    const uint16_t kinds[6] = {1, 0, 1, 0, 2, 3}, firsts[6] = {0, 1, 4, 5, 8, 10};
-    for (int i = 0; i < 6; ++i) block_.layers[i] = {kinds[i], firsts[i], 0};
+    block_.patches[2] = {0, 0.01F, 0.6F, -0.8F, 0.1F, 0.03F, 3, 4, 1};
+    const uint16_t kinds[7] = {1, 0, 1, 0, 2, 3, 4}, firsts[7] = {0, 1, 4, 5, 8, 10, 12};
+    for (int i = 0; i < 7; ++i) block_.layers[i] = {kinds[i], firsts[i], 0};
     block_.layers[5].table = sizeof block_.grooves / sizeof(uint32_t);
-    const float numbers[12] = {3.3F, 400, 0.003F, -0.002F, 7.7F, 60, 0.01F, 0, 1e-4F, 2, 2e-4F, 1};
-    for (int i = 0; i < 12; ++i) block_.numbers[i] = numbers[i];
+    block_.layers[6].table = (sizeof block_.grooves + sizeof block_.noise) / sizeof(uint32_t);
+    const float numbers[13] = {3.3F, 400, 0.003F, -0.002F, 7.7F, 60, 0.01F, 0, 1e-4F, 2, 2e-4F, 1, 2};
+    for (int i = 0; i < 13; ++i) block_.numbers[i] = numbers[i];
     // 1 mm across the axis x of its patch: 0.006 and -0.008 periods per count.
     block_.grooves.table = {
         {-3, 1U << 31, {{0, 25769804, 3435973837U}, {-1, 4260607557U, 858993459}}}, 1000, 0, 9};
@@ -145,6 +147,23 @@ class SceneWorkload {
     block_.noise.table.periods_per_m = 500, block_.noise.table.octaves = 4;
     block_.noise.table.gradients = core::shuffled_noise(5);
     for (int i = 0; i < 4; ++i) block_.noise.amplitudes[i] = 0.25F / static_cast<float>(1 << i);
+    // 16 x 12 samples 0.5 mm apart, and 8 x 6 of the level that a faster hand feels.
+    block_.relief.table = {1000, 2};
+    block_.relief.levels[0] = {{{7, 1U << 31, {{0, 51539607, 0}, {-1, 4226247819U, 0}}},
+                                {5, 1U << 31, {{0, 68719477, 0}, {0, 51539607, 0}}}},
+                               {2000, 2000},
+                               16,
+                               12,
+                               0};
+    block_.relief.levels[1] = {{{3, 1U << 31, {{0, 25769804, 0}, {-1, 4260607557U, 0}}},
+                                {2, 1U << 31, {{0, 34359738, 0}, {0, 25769804, 0}}}},
+                               {1000, 1000},
+                               8,
+                               6,
+                               192};
+    WorkloadRandom heights{7};
+    for (float& coefficient : block_.relief.coefficients)
+      coefficient = static_cast<float>(heights()) * (1e-4F / 32768);
     block_.header.check = core::scene_check(&block_, sizeof block_);
     core::SceneView view;
     core::read_scene_block(&block_, sizeof block_, view);
@@ -178,8 +197,8 @@ class SceneWorkload {
   struct Block {
     core::SceneHeader header;
     core::ScenePatch patches[3];
-    core::SceneLayer layers[6];
-    float numbers[12];
+    core::SceneLayer layers[7];
+    float numbers[13];
     struct {
       core::GroovesTable table;
       float amplitudes[9];
@@ -188,11 +207,16 @@ class SceneWorkload {
       core::NoiseSurfaceTable table;
       float amplitudes[4];
     } noise;
+    struct {
+      core::ReliefTable table;
+      core::ReliefLevelTable levels[2];
+      float coefficients[16 * 12 + 8 * 6];
+    } relief;
   } block_;
   WorkloadRandom next_{1990};
   uint32_t flags_ = 0, ticks_ = 0;
   int32_t counts_[2] = {}, speed_[2] = {};
-  float live_[12];
+  float live_[13];
   core::SceneKernel kernel_;
 };
 

@@ -57,6 +57,17 @@ def noise_table(per_count, per_m, amplitudes):
     return rows + struct.pack("<fI", per_m, len(amplitudes)) + bytes(range(256)) + struct.pack(f"<{len(amplitudes)}f", *amplitudes)
 
 
+def relief_table(per_m, levels):
+    """A level: samples per count along x and y with 32 bits after the point, samples per metre, columns, rows."""
+    table, first, coefficients = struct.pack("<fI", per_m, len(levels)), 0, b""
+    for x, y, samples_per_m, columns, rows in levels:
+        along = struct.pack("<iIiIIiII", 1, 2**31, x >> 32, x & 0xFFFFFFFF, 0, y >> 32, y & 0xFFFFFFFF, 0)
+        table += along * 2 + struct.pack("<2f3I", samples_per_m, samples_per_m, columns, rows, first)
+        first += columns * rows
+        coefficients += struct.pack(f"<{columns * rows}f", *(10 * (-1) ** i / (1 + i % 3) for i in range(columns * rows)))
+    return table + coefficients
+
+
 def scene_block(patches):
     """With a check of zero; a patch is (x, y, cosine, sine, half sizes, adds, [(kind, numbers, table)]), the table if there is one."""
     layers = [layer for patch in patches for layer in patch[-1]]
@@ -120,7 +131,7 @@ DEVICES = {
 }
 
 
-SPRING, DAMPER, GROOVES, NOISE = 0, 1, 2, 3
+SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP = 0, 1, 2, 3, 4
 SCENES = {
     "spring": scene((3, -2, 5, 0), [(0, 0, 1, 0, 0.1, 0.1, 0, [(SPRING, (100, 0, 0))])]),
     "ice_on_soup": scene((90, 1, -70, 40), [(0, 0, 0.6, 0.8, 0.01, 0.01, 0, [(DAMPER, (0.1,))]),
@@ -130,6 +141,8 @@ SCENES = {
                                                                       (GROOVES, (1, 1000), grooves_table((2**40, 7), (1e6, 0), (2,) * 64)), (DAMPER, (1,))])]),
     "noise": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [(NOISE, (1e-4, 2), noise_table(2**26, 900, (0.5, 0.25, 0.125))),
                                                                  (NOISE, (1, 1000), noise_table(2**50, 1e6, (2,) * 16))])]),
+    "height_map": scene((3, -2, 50, 7), [(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(HEIGHT_MAP, (2,), relief_table(1000, ((2**25, -2**24, 1e3, 6, 4), (2**24, -2**23, 500, 3, 2))))]),
+                                         (0, 0, 1, 0, 1000, 1000, 1, [(HEIGHT_MAP, (1000,), relief_table(0, ((2**40, 7, 1e8, 2, 1),)))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,))])]),
 }
 

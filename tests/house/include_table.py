@@ -7,17 +7,18 @@ MAY_INCLUDE = {
     "data-schema/base": "",
     "data-schema/calibration": "data-schema/{base files json}",
     "data-schema/check":
-        "data-schema/{base device files json kinds recording results scene session spectrogram texture transducer "
+        "data-schema/{base device files height json kinds recording results scene session spectrogram texture transducer "
         "wav}",
     "data-schema/cli":
-        "data-schema/{base calibration check command device files kinds recording report results scene session spectrogram "
+        "data-schema/{base calibration check command device files height kinds recording report results scene session spectrogram "
         "texture transducer}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
     "data-schema/device": "data-schema/{base json}",
     "data-schema/files": "data-schema/base",
+    "data-schema/height": "data-schema/{base files spectrogram}",
     "data-schema/json": "data-schema/{base files}",
-    "data-schema/kinds": "data-schema/{base files json session}",
+    "data-schema/kinds": "data-schema/{base files height json session}",
     "data-schema/netcdf": "",
     "data-schema/recording": "data-schema/{base files json transducer wav}",
     "data-schema/report": "data-schema/{base scene}",
@@ -48,10 +49,10 @@ MAY_INCLUDE = {
     "firmware-host/usb": "data-schema/base firmware-host/{core/firmware link}",
     "capture/calibrate": "capture/record data-schema/{base calibration recording transducer} firmware-host/link",
     "capture/cli":
-        "capture/{calibrate doctor import record} data-schema/{base cli command files recording report} "
+        "capture/{calibrate doctor import record} data-schema/{base cli command files height recording report} "
         "firmware-host/{. sim/device}",
     "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. link}",
-    "capture/import": "capture/{calibrate record table} data-schema/{base calibration files recording texture}",
+    "capture/import": "capture/{calibrate record table} data-schema/{base calibration files height recording texture}",
     "capture/record":
         "capture/table data-schema/{base calibration files kinds recording} firmware-host/link spatial/strokes",
     "capture/table": "data-schema/{base files recording wav}",
@@ -93,20 +94,20 @@ MAY_INCLUDE = {
         "data-schema/{base files transducer wav} firmware-host/{core/kernel core/wire} spatial/{dsp/filter "
         "dsp/fourier dsp/resample}",
     "playback/player":
-        "data-schema/{base device files scene session texture} firmware-host/{. core/firmware core/kernel core/wire "
+        "data-schema/{base device files height scene session texture} firmware-host/{. core/firmware core/kernel core/wire "
         "link sim/device sim/planar} playback/{choose host-loop model prepare prepare/scene render session} "
         "spatial/dsp/resample",
     "playback/prepare":
         "data-schema/{base texture transducer} firmware-host/{core/kernel core/wire link} playback/model "
         "spatial/{dsp/filter dsp/fourier}",
-    "playback/prepare/relief": "data-schema/scene firmware-host/core/scene",
+    "playback/prepare/relief": "data-schema/{base height scene} firmware-host/core/scene spatial/dsp/fourier",
     "playback/prepare/scene":
-        "data-schema/{device scene} firmware-host/core/scene playback/{prepare/relief stability}",
+        "data-schema/{device height scene} firmware-host/core/scene playback/{prepare/relief stability}",
     "playback/render":
         "data-schema/{base device recording scene texture transducer} firmware-host/{core/kernel core/scene sim/planar} "
         "playback/{choose model prepare prepare/scene render/reference} spatial/{dsp/filter features}",
     "playback/render/reference":
-        "data-schema/{base device} firmware-host/core/scene playback/{model prepare prepare/relief prepare/scene} "
+        "data-schema/{base device} firmware-host/core/{kernel scene} playback/{model prepare prepare/relief prepare/scene} "
         "spatial/{dsp/filter dsp/fourier}",
     "playback/session":
         "data-schema/{base control files session wav} firmware-host/{core/firmware core/kernel core/wire link} "
@@ -151,7 +152,7 @@ MAY_INCLUDE = {
     "analysis/page": "data-schema/{base results} spatial/picture",
     "analysis/psychometrics": "data-schema/base",
     "analysis/report":
-        "analysis/{identify/measure page} data-schema/{base calibration check device files kinds recording results "
+        "analysis/{identify/measure page} data-schema/{base calibration check device files height kinds recording results "
         "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
         "texture}",
     "analysis/trade":

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <complex>
 #include <cstring>
+#include <functional>
 #include <numbers>
 #include <random>
 
+#include "data-schema/height/height_map.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
@@ -18,6 +20,7 @@
 #include "playback/render/reference/exact_scene.hpp"
 #include "playback/stability/free_limit.hpp"
 #include "playback/stability/sampled_spring.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -61,6 +64,19 @@ schema::ForceLayer noise(double period_m, int octaves, double roughness, double 
                          double kappa_n) {
   return schema::NoiseLayer{
       {period_m}, {static_cast<double>(octaves)}, {roughness}, {seed}, {depth_m}, {kappa_n}, ""};
+}
+
+// Written to a file, which the layer names.
+schema::ForceLayer height_map(const std::string& name, std::size_t columns, std::size_t rows, double pitch_m,
+                              double kappa_n, const std::function<double(double, double)>& height_m) {
+  schema::HeightMap map;
+  map.columns = columns, map.rows = rows, map.pitch_m = pitch_m;
+  for (std::size_t j = 0; j < rows; ++j)
+    for (std::size_t i = 0; i < columns; ++i)
+      map.height_m.push_back(static_cast<float>(height_m(static_cast<double>(i), static_cast<double>(j))));
+  const std::string path = schema::height_map_path(testing::TempDir() + name);
+  EXPECT_TRUE(schema::write_height_map(path, map, schema::Existing::replace));
+  return schema::HeightMapLayer{path, {kappa_n}, "", 0};
 }
 
 Patch patch(const std::string& name, std::vector<schema::ForceLayer> layers) {
@@ -346,6 +362,10 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
       const double cell_m = draw(1e-3, 1e-2), depth_m = draw(0, 1e-3), kappa_n = draw(0, 1);
       patches.back().layers.push_back(noise(cell_m, 1 + i, 0.5, i, depth_m, kappa_n));
       scale += kappa_n * depth_m / cell_m * 2;  // the slope of an octave is within 4 per cell
+      const double pitch_m = draw(5e-4, 5e-3), white_m = draw(0, 3e-5);
+      patches.back().layers.push_back(height_map("map" + std::to_string(i), 40, 30, pitch_m, kappa_n,
+                                                 [&](double, double) { return draw(-white_m, white_m); }));
+      scale += kappa_n * white_m / pitch_m * 6;  // coefficients of white heights are within 3 of them
       patches.back().x_m = draw(-0.05, 0.05);
       patches.back().angle_deg = draw(-360, 360);
       patches.back().order = draw(-1, 1);
@@ -369,6 +389,40 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
   }
   std::printf("  scene kernel: within %.2g of the sum of the forces of all layers\n", worst);
   EXPECT_LT(worst, 3e-7);
+}
+
+// Square grooves of 0.5 mm as a height map, at 1 kHz and steady speeds: all that is no harmonic below half
+// the rate is an image of the spline or was folded by the rate. The harmonic m n falls into bin m n of 512.
+// At its ends the map continues evenly as the same grooves.
+TEST(SceneKernel, AHeightMapAtSteadySpeedHasOnlyHarmonics) {
+  constexpr std::size_t kTicks = 512;
+  const double period_m = 5e-4, top_m = 5e-5;
+  Patch wide = patch("a", {height_map("square", 52 * 280, 1, period_m / 52, 1, [&](double x, double) {
+                       return std::fmod(x + 13, 52) < 26 ? top_m : -top_m;
+                     })});
+  OnDevice on(unlimited(1e-9), {wide});
+  const double first_n = 4 / std::numbers::pi * top_m * 2 * std::numbers::pi / period_m;  // of its slope
+  const double whole = std::pow(first_n * kTicks / 2, 2);  // its power in a bin
+  spatial::RealFft fft(kTicks);
+  for (const std::size_t m : {11U, 21U, 31U, 51U, 77U, 103U, 151U, 205U, 301U, 511U}) {
+    const double step_m = period_m * static_cast<double>(m) / kTicks;
+    on.kernel.set(on.scene.view(), *force_setup_of(on.device, 1000), on.live.data());
+    std::vector<double> force(kTicks);
+    for (int tick = -50; tick < static_cast<int>(kTicks); ++tick) {
+      const core::ForceOutput output = on.at(step_m * (tick - 230.3), 0);
+      if (tick >= 0) force[static_cast<std::size_t>(tick)] = double{output.force_n[0]};
+    }
+    std::vector<std::complex<double>> spectrum(fft.bins());
+    fft.forward(force, spectrum);
+    double harmonics = 0, others = 0;
+    for (std::size_t bin = 0; bin < spectrum.size(); ++bin)
+      (bin % m == 0 && bin > 0 ? harmonics : others) += std::norm(spectrum[bin]);
+    const double others_db = 10 * std::log10(others / std::max(harmonics, whole));
+    std::printf("  square grooves at %.3g mm/s: %.1f dB is no harmonic\n", 1e6 * step_m, others_db);
+    EXPECT_LT(others_db, -65) << m;
+    // The first harmonic is whole up to 0.8 x 0.354 of the rate.
+    if (100 * m < 28 * kTicks) EXPECT_GT(harmonics, 0.98 * whole) << m;
+  }
 }
 
 TEST(SceneKernel, TheLimitsOfTheReferenceAreTheKernels) {
@@ -509,6 +563,32 @@ PreparedScene block_of_all() {
   return prepared({patch("a", {spring(5, 0.01), grooves(schema::GrooveProfile::square, 1e-3, 1e-4, 1),
                                damper(2), noise(1e-3, 3, 0.5, 1, 1e-4, 1)}),
                    patch("b", {damper(1)})});
+}
+
+// Coefficients and sizes of a height map.
+TEST(SceneBlock, AHarmfulHeightMapIsRefused) {
+  const PreparedScene scene = prepared(
+      {patch("a", {height_map("small", 6, 4, 1e-3, 1, [](double x, double y) { return 1e-4 * x * y; })})});
+  const auto bytes = static_cast<std::uint32_t>(scene.bytes());
+  const core::SceneView view = scene.view();
+  const std::size_t table = static_cast<std::size_t>(view.tables - scene.words.data());
+  const auto fault = [&](std::size_t word, std::uint32_t value) {
+    auto words = scene.words;
+    words[table + word] = value;
+    words[3] = core::scene_check(words.data(), bytes);
+    core::SceneView read;
+    return core::read_scene_block(words.data(), bytes, read);
+  };
+  EXPECT_EQ(fault(1, 0), core::SceneFault::structure);  // levels
+  EXPECT_EQ(fault(1, 0xFFFFFFFF), core::SceneFault::structure);
+  EXPECT_EQ(fault(2 + 18, 7), core::SceneFault::structure);  // columns
+  EXPECT_EQ(fault(2 + 18, 0x80000000), core::SceneFault::structure);
+  EXPECT_EQ(fault(2 + 19, 0), core::SceneFault::structure);                     // rows
+  EXPECT_EQ(fault(2 + 20, 1), core::SceneFault::structure);                     // first coefficient
+  EXPECT_EQ(fault(2 + 16, 0x7F800000), core::SceneFault::value);                // samples per metre
+  EXPECT_EQ(fault(0, 0x7FC00000), core::SceneFault::value);                     // highest frequency
+  EXPECT_EQ(fault(view.table_words - 1, 0x41300000), core::SceneFault::value);  // a coefficient of 11 m
+  EXPECT_EQ(fault(view.table_words - 1, 0x3F800000), core::SceneFault::none);
 }
 
 TEST(SceneBlock, ACutOrChangedBlockIsRefused) {

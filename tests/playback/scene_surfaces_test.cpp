@@ -15,7 +15,9 @@
 #include "firmware-host/core/scene/turn.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/relief_coefficients.hpp"
+#include "playback/prepare/relief/relief_levels.hpp"
 #include "playback/render/reference/exact_noise.hpp"
+#include "spatial/dsp/fourier/cosine_transform.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::playback {
@@ -274,12 +276,70 @@ TEST(SceneRelief, BeyondTheEdgeTheSurfaceIsLevelAcrossIt) {
   EXPECT_NEAR(inside.by_y, 1, 1e-5);
 }
 
-TEST(SceneRelief, TwoLevelsMixValueAndSlope) {
-  const core::ReliefSample fine{1, 2, 3}, coarse{2, 8, 4};
-  const core::ReliefSample mixed = core::mixed_relief(fine, coarse, 2, 0.5F);
-  EXPECT_FLOAT_EQ(mixed.value, 1.5F);
-  EXPECT_FLOAT_EQ(mixed.by_x, 3);
-  EXPECT_FLOAT_EQ(mixed.by_y, 2.5F);
+// White noise has frequencies up to the corner of the spectrum; half octaves go down from there to the lowest
+// cosine. What is above a level's highest frequency is gone, what is below 0.8 of it is whole.
+TEST(SceneRelief, LevelsPassHalfAnOctaveLessEach) {
+  schema::HeightMap map;
+  map.columns = 96, map.rows = 80, map.pitch_m = 1e-4;
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  for (std::size_t i = 0; i < map.columns * map.rows; ++i)
+    map.height_m.push_back(static_cast<float>(1e-5 * normal(random)));
+  const auto relief = relief_levels(map, 4000, 10, "map");
+  ASSERT_TRUE(relief);
+  EXPECT_NEAR(relief->highest_per_m, std::numbers::sqrt2 / 2 / map.pitch_m, 0.02 / map.pitch_m);
+  ASSERT_GT(relief->levels.size(), 10U);
+  for (const std::size_t n : {1U, 4U, 9U}) {
+    const ReliefLevel& level = relief->levels[n];
+    const double highest = relief->highest_per_m * map.pitch_m * std::exp2(-0.5 * static_cast<double>(n));
+    EXPECT_EQ(level.columns, std::ceil(96 * 12 * highest)) << n;
+    // Heights of the level at its own samples, and their cosines beside those of the map.
+    std::vector<double> heights(level.columns * level.rows), whole(map.height_m.begin(), map.height_m.end());
+    const core::ReliefLevel in_core{level.coefficients.data(), static_cast<std::uint32_t>(level.columns),
+                                    static_cast<std::uint32_t>(level.rows)};
+    for (std::size_t i = 0; i < heights.size(); ++i)
+      heights[i] = double{core::relief_at(in_core, q32(static_cast<double>(i % level.columns)),
+                                          q32(static_cast<double>(i / level.columns)))
+                              .value};
+    spatial::to_cosines(heights, {level.columns, level.rows});
+    spatial::to_cosines(whole, {map.columns, map.rows});
+    const double scale = static_cast<double>(whole.size()) / static_cast<double>(heights.size());
+    double stopped = 0, changed = 0, all = 0;
+    for (std::size_t l = 0; l < level.rows; ++l)
+      for (std::size_t k = 0; k < level.columns; ++k) {
+        if (k + l == 0) continue;
+        const bool in_map = k < map.columns && l < map.rows;
+        const double of_level = scale * heights[l * level.columns + k],
+                     of_map = in_map ? whole[l * map.columns + k] : 0;
+        const double part = std::hypot(static_cast<double>(k) / 192, static_cast<double>(l) / 160) / highest;
+        all = std::max(all, std::abs(of_map));
+        if (part > 1) stopped = std::max(stopped, std::abs(of_level));
+        if (part < 0.8) changed = std::max(changed, std::abs(of_level - of_map));
+      }
+    EXPECT_LT(stopped, 1e-5 * all) << n;  // the rounding of 7680 heights to single precision
+    EXPECT_LT(changed, 1e-5 * all) << n;
+  }
+}
+
+// A sine of period 16 samples, its curvature k^2 A; a saddle's eigenvalues are +-2 where its axes are
+// diagonal.
+TEST(SceneRelief, TheLargestCurvatureIsTheEigenvalueOfTheHessian) {
+  schema::HeightMap map;
+  map.columns = 64, map.rows = 48, map.pitch_m = 1e-3;
+  const auto largest = [&](const std::function<double(double, double)>& height) {
+    map.height_m.clear();
+    for (std::size_t j = 0; j < map.rows; ++j)
+      for (std::size_t i = 0; i < map.columns; ++i)
+        map.height_m.push_back(static_cast<float>(height(static_cast<double>(i), static_cast<double>(j))));
+    return relief_levels(map, 1000, 10, "map")->curvature_per_m(0.04, 0.03) * 1e-6;  // per squared sample
+  };
+  const double k = kTurnRad / 16;
+  // At a crest the curvature of the spline is 1 + k^2 / 12 times that of the sine: 1.3 %.
+  EXPECT_NEAR(largest([&](double x, double) { return 1e-3 * std::cos(k * (x - 24)); }), 1e-3 * k * k,
+              2e-2 * 1e-3 * k * k);
+  EXPECT_NEAR(
+      largest([&](double x, double y) { return 1e-3 * std::cos(k * (x - 24)) * std::sin(k * (y + 0.5)); }),
+      1e-3 * k * k, 3e-2 * 1e-3 * k * k);
 }
 
 }  // namespace

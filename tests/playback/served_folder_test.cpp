@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "data-schema/height/height_map.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
@@ -49,6 +50,25 @@ TEST_F(ServedFolder, WhatIsInItIsServed) {
   for (const char* file :
        {"oak", "oak.texture.json", "oak.texture.wav", "deeper/elm", "./oak", "bench", "bench.scene.json"})
     EXPECT_TRUE(served(file)) << refusal(file);
+}
+
+TEST_F(ServedFolder, TheHeightMapsOfAScene) {
+  schema::HeightMap map;
+  map.columns = map.rows = 2, map.pitch_m = 1e-3;
+  map.height_m = {0, 1e-4F, 0, 0};
+  for (const char* stem : {"served/deeper/plate", "other/plate"})
+    ASSERT_TRUE(
+        schema::write_height_map(schema::height_map_path(folder_ / stem), map, schema::Existing::keep));
+  for (const char* file : {"deeper/plate", "../other/plate", "absent"}) {
+    schema::Patch patch;
+    patch.name = "a";
+    patch.width_m = patch.height_m = 0.1;
+    patch.layers = {schema::HeightMapLayer{file, {1}, "", 0}};
+    schema::Scene scene;
+    scene.patches = {patch};
+    ASSERT_TRUE(schema::write_scene(folder_ / "served/relief", scene));
+    EXPECT_EQ(served("relief"), std::string(file) == "deeper/plate") << file;
+  }
 }
 
 TEST_F(ServedFolder, WhatIsElsewhereAndWhatIsMissingHaveOneError) {

@@ -15,17 +15,22 @@ class SceneUpload {
   /// `memory` holds `words` numbers of 4 bytes.
   SceneUpload(float* memory, uint32_t words) noexcept : memory_(memory), words_(words) {}
 
-  /// Half of the memory is enough for the numbers.
-  uint32_t most_bytes() const noexcept { return words_ / 2 * 4; }
+  uint32_t most_bytes() const noexcept { return (words_ - live_words()) * 4; }
   Reply part(const wire::ScenePart& message) noexcept;
   void forget() noexcept { here_ = 0, complete_ = false; }
 
   bool complete() const noexcept { return complete_; }
   uint32_t here() const noexcept { return here_; }
   const SceneView& view() const noexcept { return view_; }
-  float* live() const noexcept { return memory_ + (words_ - words_ / 2); }
+  float* live() const noexcept { return memory_ + (words_ - live_words()); }
 
  private:
+  // Numbers of all layers; in a small memory a block of half of it cannot have more.
+  uint32_t live_words() const noexcept {
+    constexpr uint32_t kMost = kMostSceneLayers * kMostLayerNumbers;
+    return words_ / 2 < kMost ? words_ / 2 : kMost;
+  }
+
   float* memory_;
   uint32_t words_;
   uint32_t bytes_ = 0, here_ = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware-host/core/scene/relief.hpp"
 
+#include <stddef.h>
+
 namespace tacto::core {
 namespace {
 
@@ -31,29 +33,28 @@ uint32_t held_within(int64_t index, uint32_t count) noexcept {
 ReliefSample relief_at(const ReliefLevel& level, Q32 x_place, Q32 y_place) noexcept {
   const LatticePlace x = lattice_place(x_place), y = lattice_place(y_place);
   const SplineWeights along_x(x.part), along_y(y.part);
-  ReliefSample sample;
+  uint32_t columns[4];
+  const float* rows[4];
+  for (int i = 0; i < 4; ++i) {
+    columns[i] = held_within(static_cast<int64_t>(x.cell) - 1 + i, level.columns);
+    rows[i] =
+        level.coefficients +
+        static_cast<size_t>(held_within(static_cast<int64_t>(y.cell) - 1 + i, level.rows)) * level.columns;
+  }
+  const float near = rows[1][columns[1]];
+  ReliefSample sample{near, 0, 0};
   for (int j = 0; j < 4; ++j) {
-    const uint32_t row = held_within(static_cast<int64_t>(y.cell) - 1 + j, level.rows);
-    const float* c = level.coefficients + static_cast<uint64_t>(row) * level.columns;
     float value = 0, slope = 0;
     for (int i = 0; i < 4; ++i) {
-      const float coefficient = c[held_within(static_cast<int64_t>(x.cell) - 1 + i, level.columns)];
-      value += along_x.value[i] * coefficient;
-      slope += along_x.slope[i] * coefficient;
+      const float above = rows[j][columns[i]] - near;
+      value += along_x.value[i] * above;
+      slope += along_x.slope[i] * above;
     }
     sample.value += along_y.value[j] * value;
     sample.by_x += along_y.value[j] * slope;
     sample.by_y += along_y.slope[j] * value;
   }
   return sample;
-}
-
-ReliefSample mixed_relief(const ReliefSample& fine, const ReliefSample& coarse, float ratio,
-                          float fade) noexcept {
-  const float per_sample = 1 / ratio;
-  return {fine.value + fade * (coarse.value - fine.value),
-          fine.by_x + fade * (coarse.by_x * per_sample - fine.by_x),
-          fine.by_y + fade * (coarse.by_y * per_sample - fine.by_y)};
 }
 
 }  // namespace tacto::core

@@ -14,19 +14,19 @@ struct ReliefLevel {
   uint32_t columns = 0, rows = 0;
 };
 
+/// The finest of a pyramid's levels is used alone up to this frequency of its shortest period: the next one
+/// is reached half an octave later, at half the rate.
+inline constexpr float kWholeReliefPerTick = 0.35355339F;  ///< cycles: sqrt(1/2) / 2
+
 struct ReliefSample {
   float value = 0;
   float by_x = 0, by_y = 0;  ///< derivatives, per sample
 };
 
-/// At a place in units of samples; (0, 0) is the first one. Because the force is the gradient of one surface,
-/// the work along a closed path is zero. Preconditions: coefficients set, at least one row and column. Safe
-/// in the tick.
+/// At a place in units of samples; (0, 0) is the first one. Sums are of differences from the coefficient
+/// nearest to the place, so that a slope does not lose the digits of the height. Because the force is the
+/// gradient of one surface, the work along a closed path is zero. Preconditions: coefficients set, at least
+/// one row and column. Safe in the tick.
 ReliefSample relief_at(const ReliefLevel& level, Q32 x, Q32 y) noexcept;
-
-/// Between two levels: `fade` 0 is the finer one, 1 the coarser one, whose samples lie `ratio` times as far
-/// apart.
-ReliefSample mixed_relief(const ReliefSample& finer, const ReliefSample& coarser, float ratio,
-                          float fade) noexcept;
 
 }  // namespace tacto::core

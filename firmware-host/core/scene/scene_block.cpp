@@ -19,6 +19,9 @@ constexpr float kUnitRounding = 1e-5F;  // rounding of cosine^2 + sine^2
 constexpr float kDeepest_m = 1, kMostKappa_n = 1000;
 constexpr float kMostPeriods_per_m = 1.001e6F;
 constexpr float kLargestAmplitude = 2;  // of a harmonic; 4 / pi of a square wave
+// Of a height map within 1 m: 3 along each axis if its signs alternate.
+constexpr float kLargestCoefficient_m = 10;
+constexpr float kMostSamples_per_m = 1.001e8F;
 
 bool sound(const ScenePatch& patch) noexcept {
   const float square = patch.cosine * patch.cosine + patch.sine * patch.sine;
@@ -37,6 +40,8 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
              within(number[kSpringCentreY], -kFarthest_m, kFarthest_m);
     case SceneLayerKind::damper:
       return within(number[kDamperDamping], 0, kMostDamping_n_s_per_m);
+    case SceneLayerKind::height_map:
+      return within(number[kHeightMapKappa], 0, kMostKappa_n);
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
       break;
@@ -74,6 +79,32 @@ SceneFault check_surface(const SceneView& view, const SceneLayer& layer, uint32_
   return sound(table) ? SceneFault::none : SceneFault::value;
 }
 
+SceneFault check_relief(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                        uint32_t& words) noexcept {
+  constexpr uint32_t kHead = sizeof(ReliefTable) / sizeof(uint32_t),
+                     kLevel = sizeof(ReliefLevelTable) / sizeof(uint32_t);
+  if (room < kHead) return SceneFault::structure;
+  const auto& table = table_of<ReliefTable>(view, layer);
+  if (table.levels == 0 || table.levels > kMostReliefLevels || table.levels * kLevel > room - kHead)
+    return SceneFault::structure;
+  uint64_t coefficients = 0;
+  for (uint32_t i = 0; i < table.levels; ++i) {
+    const ReliefLevelTable& level = levels_of(table)[i];
+    const uint64_t own = static_cast<uint64_t>(level.columns) * level.rows;
+    if (own == 0 || own > room || level.first != coefficients) return SceneFault::structure;
+    coefficients += own;
+    for (const float samples_per_m : level.samples_per_m)
+      if (!within(samples_per_m, 0, kMostSamples_per_m)) return SceneFault::value;
+  }
+  const uint32_t head = kHead + table.levels * kLevel;
+  if (coefficients > room - head) return SceneFault::structure;
+  words = head + static_cast<uint32_t>(coefficients);
+  const float* const first = coefficients_of(table, levels_of(table)[0]);
+  for (uint64_t i = 0; i < coefficients; ++i)
+    if (!within(first[i], -kLargestCoefficient_m, kLargestCoefficient_m)) return SceneFault::value;
+  return within(table.highest_per_m, 0, kMostSamples_per_m) ? SceneFault::none : SceneFault::value;
+}
+
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,
                        uint32_t& words) noexcept {
   switch (static_cast<SceneLayerKind>(layer.kind)) {
@@ -81,6 +112,8 @@ SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t 
       return check_surface(view, layer, &GroovesTable::harmonics, kMostHarmonics, room, words);
     case SceneLayerKind::noise:
       return check_surface(view, layer, &NoiseSurfaceTable::octaves, kMostOctaves, room, words);
+    case SceneLayerKind::height_map:
+      return check_relief(view, layer, room, words);
     case SceneLayerKind::spring:
     case SceneLayerKind::damper:
       break;

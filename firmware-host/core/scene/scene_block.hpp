@@ -15,13 +15,14 @@ inline constexpr uint32_t kMostSceneLayers = 256;
 inline constexpr uint32_t kMostLayerNumbers = 4;
 
 /// The kinds of layers that the kernel has. A number is never reused.
-enum class SceneLayerKind : uint16_t { spring = 0, damper = 1, grooves = 2, noise = 3 };
-inline constexpr uint16_t kSceneLayerKinds = 4;
+enum class SceneLayerKind : uint16_t { spring = 0, damper = 1, grooves = 2, noise = 3, height_map = 4 };
+inline constexpr uint16_t kSceneLayerKinds = 5;
 
 /// The places of a layer's numbers, from its first one.
 enum SpringNumber : uint32_t { kSpringStiffness = 0, kSpringCentreX = 1, kSpringCentreY = 2 };
 enum DamperNumber : uint32_t { kDamperDamping = 0 };
 enum SurfaceNumber : uint32_t { kSurfaceDepth = 0, kSurfaceKappa = 1 };
+enum HeightMapNumber : uint32_t { kHeightMapKappa = 0 };
 
 /// How many numbers a layer of a kind has.
 constexpr uint32_t numbers_of(SceneLayerKind kind) noexcept {
@@ -29,6 +30,7 @@ constexpr uint32_t numbers_of(SceneLayerKind kind) noexcept {
     case SceneLayerKind::spring:
       return 3;
     case SceneLayerKind::damper:
+    case SceneLayerKind::height_map:
       return 1;
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
@@ -96,6 +98,33 @@ struct NoiseSurfaceTable {
   NoiseTable gradients;
 };
 static_assert(sizeof(NoiseSurfaceTable) == 328);
+
+inline constexpr uint32_t kMostReliefLevels = 32;
+
+/// The levels of a height map, from the finest on: this, the levels, then the coefficients of all levels,
+/// f32, one level after the other, row by row.
+struct ReliefTable {
+  float highest_per_m =
+      0;  ///< spatial frequency, of the first level; half an octave less of each further one
+  uint32_t levels = 0;
+};
+static_assert(sizeof(ReliefTable) == 8);
+
+struct ReliefLevelTable {
+  SceneRow along[2];            ///< along the axes x and y of the patch, in samples
+  float samples_per_m[2] = {};  ///< along these axes
+  uint32_t columns = 0, rows = 0;
+  uint32_t first = 0;  ///< of its coefficients, among those of all levels
+};
+static_assert(sizeof(ReliefLevelTable) == 84);
+
+inline const ReliefLevelTable* levels_of(const ReliefTable& table) noexcept {
+  return reinterpret_cast<const ReliefLevelTable*>(&table + 1);
+}
+
+inline const float* coefficients_of(const ReliefTable& table, const ReliefLevelTable& level) noexcept {
+  return reinterpret_cast<const float*>(levels_of(table) + table.levels) + level.first;
+}
 
 /// The numbers behind a table: amplitudes.
 template <class Table>

@@ -2,7 +2,9 @@
 #include "firmware-host/core/scene/scene_kernel.hpp"
 
 #include "firmware-host/core/kernel/finite.hpp"
+#include "firmware-host/core/kernel/level_of_detail.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
+#include "firmware-host/core/scene/relief.hpp"
 
 namespace tacto::core {
 
@@ -68,6 +70,27 @@ PlaneVector SceneKernel::noise_force(const SceneLayer& layer, const Hand& hand) 
   return {force * at.by_x, force * at.by_y};
 }
 
+// A level is left when its highest frequency reaches half the rate.
+PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand) const noexcept {
+  const auto& table = table_of<ReliefTable>(scene_, layer);
+  const PlaneVector v = hand.speed_mps;
+  const float cycles_per_tick = __builtin_sqrtf(v.x * v.x + v.y * v.y) * table.highest_per_m / setup_.rate_hz;
+  const Detail detail = detail_at(cycles_per_tick * (1 / kWholeReliefPerTick));
+  const float weights[2] = {1 - detail.fade, detail.fade};
+  PlaneVector slope;
+  for (uint32_t i = 0; i < 2; ++i) {
+    if (weights[i] == 0 || detail.coarser + i >= table.levels) continue;
+    const ReliefLevelTable& level = levels_of(table)[detail.coarser + i];
+    const ReliefSample at =
+        relief_at({coefficients_of(table, level), level.columns, level.rows},
+                  place_on(level.along[0], hand.counts), place_on(level.along[1], hand.counts));
+    slope.x += weights[i] * level.samples_per_m[0] * at.by_x;
+    slope.y += weights[i] * level.samples_per_m[1] * at.by_y;
+  }
+  const float kappa = live_[layer.first_number + kHeightMapKappa];
+  return {-kappa * slope.x, -kappa * slope.y};
+}
+
 PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand,
                                   PlaneVector place) const noexcept {
   const PlaneVector speed = into_patch(patch, hand.speed_mps);
@@ -89,6 +112,9 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand,
         break;
       case SceneLayerKind::noise:
         force = noise_force(layer, hand);
+        break;
+      case SceneLayerKind::height_map:
+        force = relief_force(layer, hand);
         break;
     }
     sum.x += force.x;

@@ -24,7 +24,8 @@ struct ForceOutput {
 ///   spring: -stiffness (place - centre);  damper: -damping speed;  surface: -kappa grad h.
 /// place = counts x metres_per_count, on a surface in whole counts (place_on()); speed by EdgeSpeed, only in
 /// a scene with a layer that depends on it. Of a surface, frequencies above half the rate at this speed are
-/// not played (held_by_rate(); of an octave of noise up to kNoiseCycles). Without the axis x or y the hand
+/// not played (held_by_rate(); of an octave of noise up to kNoiseCycles; of a height map one of its levels or
+/// two, mixed). Without the axis x or y the hand
 /// stays at 0 along it; an axis z gets no force. Single precision, no contraction, of libm only the square
 /// root: the same bits on host and device. Against double precision (ExactScene) at places up to 0.1 m:
 /// within 3e-7 of the sum of the absolute forces of all layers. No function allocates, locks, throws or makes
@@ -53,6 +54,7 @@ class SceneKernel {
   PlaneVector force_in(const ScenePatch& patch, const Hand& hand, PlaneVector place) const noexcept;
   PlaneVector groove_force(const SceneLayer& layer, const Hand& hand, PlaneVector speed) const noexcept;
   PlaneVector noise_force(const SceneLayer& layer, const Hand& hand) const noexcept;
+  PlaneVector relief_force(const SceneLayer& layer, const Hand& hand) const noexcept;
 
   struct Ramp {
     uint32_t number = 0;  // in the scene's numbers

@@ -21,6 +21,9 @@ namespace tacto::firmware_host {
 /// Places of all axes, in the device's order, at a time since the ticks began.
 using PlaneScript = std::function<std::vector<double>(double time_s)>;
 
+/// Memory for a scene: 64 MB. A height map of 1024 x 1024 with all levels needs half of it.
+inline constexpr std::uint32_t kPlanarWords = 1U << 24;
+
 class PlanarBoard final : public EmulatedBoard {
  public:
   /// Without a hand the axes move along the script.
@@ -49,7 +52,7 @@ class PlanarBoard final : public EmulatedBoard {
   PlaneScript script_;
   wire::Axes axes_;
   std::vector<wire::Note> notes_;
-  HostedProfile memory_;
+  HostedProfile memory_{kPlanarWords};
   std::optional<PlanarBody> body_;
   std::vector<double> force_n_;
   std::int32_t counts_[wire::kMaxAxes] = {};

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "data-schema/height/height_map.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
 #include "playback/stability/free_limit.hpp"
@@ -34,11 +35,10 @@ struct KindInBlock {
 
 // Named one by one: a new kind of layer does not compile until it is here or has data.
 template <class L>
-concept NotPlayedYet =
-    std::same_as<L, schema::HeightMapLayer> || std::same_as<L, schema::TextureForceLayer> ||
-    std::same_as<L, schema::MassLayer> || std::same_as<L, schema::BodyLayer> ||
-    std::same_as<L, schema::LassoLayer> || std::same_as<L, schema::MoverLayer> ||
-    std::same_as<L, schema::ForceMapLayer> || std::same_as<L, schema::FieldLayer>;
+concept NotPlayedYet = std::same_as<L, schema::TextureForceLayer> || std::same_as<L, schema::MassLayer> ||
+                       std::same_as<L, schema::BodyLayer> || std::same_as<L, schema::LassoLayer> ||
+                       std::same_as<L, schema::MoverLayer> || std::same_as<L, schema::ForceMapLayer> ||
+                       std::same_as<L, schema::FieldLayer>;
 
 template <class T>
 void append(Words& words, const T* parts, std::size_t count) {
@@ -70,13 +70,13 @@ core::SceneStride stride_of(double periods_per_count) {
   return {whole, part, rest};
 }
 
-// A place on a surface in periods: 0 at the centre of the patch; it grows along `angle_deg` from the axis x
-// of the plane.
-core::SceneRow row_of(const schema::Patch& patch, double angle_deg, double period_m,
-                      const PlaneSteps& steps) {
+// A place on a surface in periods: `at_centre` at the centre of the patch; it grows along `angle_deg` from
+// the axis x of the plane.
+core::SceneRow row_of(const schema::Patch& patch, double angle_deg, double period_m, const PlaneSteps& steps,
+                      double at_centre = 0) {
   const double angle_rad = angle_deg * std::numbers::pi / 180;
   const double x_per_m = std::cos(angle_rad) / period_m, y_per_m = std::sin(angle_rad) / period_m;
-  const Fixed at_zero = fixed(-(patch.x_m * x_per_m + patch.y_m * y_per_m));
+  const Fixed at_zero = fixed(at_centre - (patch.x_m * x_per_m + patch.y_m * y_per_m));
   return {at_zero.whole, at_zero.part, {stride_of(steps.x_m * x_per_m), stride_of(steps.y_m * y_per_m)}};
 }
 
@@ -108,10 +108,39 @@ Words table_of(const schema::NoiseLayer& noise, const schema::Patch& patch, cons
   return words;
 }
 
-Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneSteps& steps) {
-  return layer.visit([&](const schema::GroovesLayer& grooves) { return table_of(grooves, patch, steps); },
-                     [&](const schema::NoiseLayer& noise) { return table_of(noise, patch, steps); },
-                     [](const auto& /*without a table*/) { return Words(); });
+// The centre of the map is the centre of the patch.
+Words table_of(const Relief& relief, const schema::Patch& patch, const PlaneSteps& steps) {
+  const core::ReliefTable table{static_cast<float>(relief.highest_per_m),
+                                static_cast<std::uint32_t>(relief.levels.size())};
+  Words words;
+  append(words, &table, 1);
+  std::uint32_t first = 0;
+  for (const ReliefLevel& level : relief.levels) {
+    core::ReliefLevelTable row;
+    const std::size_t places[2] = {level.columns, level.rows}, of_map[2] = {relief.columns, relief.rows};
+    for (int i = 0; i < 2; ++i) {
+      const auto count = static_cast<double>(places[i]);
+      const double pitch_m = relief.pitch_m * static_cast<double>(of_map[i]) / count;
+      row.along[i] = row_of(patch, patch.angle_deg + 90 * i, pitch_m, steps, (count - 1) / 2);
+      row.samples_per_m[i] = static_cast<float>(1 / pitch_m);
+    }
+    row.columns = static_cast<std::uint32_t>(level.columns);
+    row.rows = static_cast<std::uint32_t>(level.rows);
+    row.first = first;
+    first += row.columns * row.rows;
+    append(words, &row, 1);
+  }
+  for (const ReliefLevel& level : relief.levels) append(words, level.coefficients);
+  return words;
+}
+
+Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneSteps& steps,
+               const Reliefs& reliefs) {
+  return layer.visit(
+      [&](const schema::HeightMapLayer& map) { return table_of(*reliefs.at(map.file), patch, steps); },
+      [&](const schema::GroovesLayer& grooves) { return table_of(grooves, patch, steps); },
+      [&](const schema::NoiseLayer& noise) { return table_of(noise, patch, steps); },
+      [](const auto& /*without a table*/) { return Words(); });
 }
 
 std::optional<KindInBlock> kind_of(const ForceLayer& layer) {
@@ -129,6 +158,9 @@ std::optional<KindInBlock> kind_of(const ForceLayer& layer) {
       [](const schema::NoiseLayer& /*noise*/) -> Kind {
         return {{SceneLayerKind::noise, {"depth_m", "kappa_n"}}};
       },
+      [](const schema::HeightMapLayer& /*map*/) -> Kind {
+        return {{SceneLayerKind::height_map, {"kappa_n"}}};
+      },
       [](const NotPlayedYet auto& /*layer*/) -> Kind { return std::nullopt; });
 }
 
@@ -139,7 +171,7 @@ Result<void> check_types(const schema::Scene& scene, const std::string& where) {
         return fail(ErrorKind::unsuitable,
                     fmt::format("layers of the type {} cannot be played yet", type_of(layer)),
                     fmt::format("{}#/patches/{}/layers/{}/type", where, i, j),
-                    "the types that can be played are spring, damper, grooves and noise");
+                    "the types that can be played are spring, damper, grooves, noise and height_map");
   return {};
 }
 
@@ -165,7 +197,7 @@ core::ScenePatch patch_data(const schema::Patch& patch) {
   return data;
 }
 
-Words block_of(const std::vector<schema::Patch>& from, const PlaneSteps& steps) {
+Words block_of(const std::vector<schema::Patch>& from, const PlaneSteps& steps, const Reliefs& reliefs) {
   std::vector<core::ScenePatch> patches;
   std::vector<core::SceneLayer> layers;
   std::vector<float> numbers;
@@ -180,7 +212,7 @@ Words block_of(const std::vector<schema::Patch>& from, const PlaneSteps& steps) 
                         static_cast<std::uint32_t>(tables.size())});
       const auto of_layer = numbers_in(layer, kind.members);
       numbers.insert(numbers.end(), of_layer.begin(), of_layer.end());
-      append(tables, table_of(layer, patch, steps));
+      append(tables, table_of(layer, patch, steps, reliefs));
     }
   }
   core::SceneHeader header;
@@ -209,8 +241,8 @@ core::SceneView PreparedScene::view() const {
 }
 
 PreparedScene PreparedScene::with(std::vector<schema::Patch> others) const {
-  PreparedScene scene{std::move(others), {}, steps, stiffness_limit_n_per_m};
-  scene.words = block_of(scene.patches, steps);
+  PreparedScene scene{std::move(others), {}, steps, stiffness_limit_n_per_m, reliefs};
+  scene.words = block_of(scene.patches, steps, reliefs);
   return scene;
 }
 
@@ -221,7 +253,42 @@ std::vector<std::string_view> numbers_in_block(const ForceLayer& layer) {
 
 std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLayer& layer) const {
   return sizeof(core::SceneLayer) + numbers_in_block(layer).size() * sizeof(float) +
-         table_of(layer, patch, steps).size() * sizeof(std::uint32_t);
+         table_of(layer, patch, steps, reliefs).size() * sizeof(std::uint32_t);
+}
+
+std::string PreparedScene::remedy_for(std::size_t room) const {
+  std::size_t maps = 0;
+  for (const schema::Patch& patch : patches)
+    for (const ForceLayer& layer : patch.layers)
+      if (layer.visit([](const schema::HeightMapLayer& /*map*/) { return true; },
+                      [](const auto& /*other*/) { return false; }))
+        maps += layer_bytes(patch, layer);
+  const std::size_t others = bytes() - maps;
+  if (maps == 0 || others >= room) return {};
+  const double factor = std::sqrt(static_cast<double>(maps) / static_cast<double>(room - others));
+  return fmt::format("give its height maps a pitch {:.2f} times as large", std::ceil(100 * factor) / 100);
+}
+
+Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, double rate_hz) {
+  Reliefs reliefs;
+  const auto read = [&](const schema::Patch& patch, schema::HeightMapLayer& layer) -> Result<void> {
+    auto& relief = reliefs[layer.file];
+    if (!relief) {
+      const std::string file = schema::texture_in_scene(where, layer.file);
+      const auto map = schema::read_height_map(file);
+      TACTO_TRY(map);
+      auto levels = relief_levels(*map, rate_hz, kFastestHandMps, schema::height_map_path(file));
+      TACTO_TRY(levels);
+      relief = std::make_shared<const Relief>(std::move(*levels));
+    }
+    layer.curvature_per_m = relief->curvature_per_m(patch.width_m, patch.height_m);
+    return {};
+  };
+  for (schema::Patch& patch : scene.patches)
+    for (ForceLayer& layer : patch.layers)
+      TACTO_TRY(layer.visit([&](schema::HeightMapLayer& map) { return read(patch, map); },
+                            [](auto& /*other*/) { return Result<void>(); }));
+  return reliefs;
 }
 
 double stiffness_limit_of(const schema::Device& device, double rate_hz,
@@ -271,6 +338,9 @@ Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& wher
     if (axis.name == "y") base.steps.y_m = axis.encoder_step_m;
   }
   TACTO_TRY(set_filters(scene, base.stiffness_limit_n_per_m, where));
+  auto reliefs = read_reliefs(scene, where, rate_hz);
+  TACTO_TRY(reliefs);
+  base.reliefs = std::move(*reliefs);
   std::ranges::reverse(scene.patches);
   std::ranges::stable_sort(scene.patches, std::ranges::greater(), &schema::Patch::order);
   return base.with(std::move(scene.patches));

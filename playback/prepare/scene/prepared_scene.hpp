@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +15,7 @@
 #include "data-schema/device/hand.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
+#include "playback/prepare/relief/relief_levels.hpp"
 
 namespace tacto::playback {
 
@@ -21,18 +24,27 @@ struct PlaneSteps {
   double x_m = 1, y_m = 1;
 };
 
+/// A hand that is faster is a jump of the encoder.
+inline constexpr double kFastestHandMps = 10;
+
+/// The height maps of a scene, by the names in their layers.
+using Reliefs = std::map<std::string, std::shared_ptr<const Relief>>;
+
 /// The block for one device, and the patches from which it was made, both from the topmost patch on.
 struct PreparedScene {
   std::vector<schema::Patch> patches;  ///< filter_m of grooves is always a number
   std::vector<std::uint32_t> words;    ///< the block (core::SceneHeader), little-endian
   PlaneSteps steps;
   double stiffness_limit_n_per_m = 0;  ///< stiffness_limit_of()
+  Reliefs reliefs = {};
 
   std::size_t bytes() const { return words.size() * sizeof(std::uint32_t); }
   /// Points into this object.
   core::SceneView view() const;
   /// Other patches for the same device, each of them once part of such a scene.
   PreparedScene with(std::vector<schema::Patch> others) const;
+  /// What makes a scene with height maps small enough for this many bytes, in words; empty if nothing does.
+  std::string remedy_for(std::size_t room) const;
   /// The bytes of a layer in the block.
   std::size_t layer_bytes(const schema::Patch& patch, const schema::ForceLayer& layer) const;
 };
@@ -51,10 +63,15 @@ double stiffness_limit_of(const schema::Device& device, double rate_hz,
 /// scene's file. Errors: unsuitable: the limit is 0, by JSON pointer.
 schema::Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::string& where);
 
+/// Reads the height maps of all layers, and sets their curvature. `where` is the scene's file. Errors: as
+/// read_height_map, relief_levels.
+schema::Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, double rate_hz);
+
 /// Builds what the scene names and nothing else. Equal orders: the later patch is above. `where` is the
 /// scene's file. Preconditions: a scene as read_scene() gives it; the device has this rate, and an axis x or
 /// y. Errors: unsuitable, if it has no patches; by JSON pointer, for a type of layer that cannot be played
-/// yet (with those that can), and for the filter of grooves on a device without viscous friction.
+/// yet (with those that can), and for the filter of grooves on a device without viscous friction; as
+/// read_reliefs.
 schema::Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& where,
                                             const schema::Device& device, double rate_hz,
                                             const std::optional<schema::Hand>& hand = std::nullopt);

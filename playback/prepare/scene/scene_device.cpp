@@ -160,6 +160,24 @@ void note_patch(const PreparedScene& alone, const Device& device, const core::Fo
                     patch.name, percent_of(static_cast<std::size_t>(high), places.size())));
 }
 
+void note_maps(const PreparedScene& scene, const schema::Patch& patch, std::vector<std::string>& notes) {
+  for (const schema::ForceLayer& layer : patch.layers)
+    layer.visit(
+        [&](const schema::HeightMapLayer& map) {
+          const Relief& relief = *scene.reliefs.at(map.file);
+          const double width_m = static_cast<double>(relief.columns) * relief.pitch_m,
+                       height_m = static_cast<double>(relief.rows) * relief.pitch_m;
+          const bool wide = patch.width_m > width_m, high = relief.rows > 1 && patch.height_m > height_m;
+          if (wide || high)
+            notes.push_back(
+                fmt::format("patch '{}' is larger than its height map '{}' of {:.4g} m x {:.4g} m: beyond "
+                            "the edges of the "
+                            "map its outermost heights continue",
+                            patch.name, map.file, width_m, height_m));
+        },
+        [](const auto& /*other*/) {});
+}
+
 // "spring 0 of patch 'floor'": the layer with the largest share of what acts at a place.
 std::string largest_share(const std::vector<schema::Patch>& patches, const std::vector<std::size_t>& acting) {
   std::pair<double, double> most{-1, -1};
@@ -230,6 +248,7 @@ double local_stiffness_n_per_m(const schema::ForceLayer& layer) {
         return largest_value(grooves.kappa_n) * largest_value(grooves.depth_m) *
                largest_curvature(amplitudes) / (period_m * period_m);
       },
+      [](const schema::HeightMapLayer& map) { return largest_value(map.kappa_n) * map.curvature_per_m; },
       [](const schema::NoiseLayer& noise) {
         double curvature = 0, cells_per_m = 1 / noise.period_m.value;
         for (const double amplitude : octave_amplitudes(noise)) {
@@ -251,7 +270,10 @@ std::vector<std::string> limits_of_device(const PreparedScene& scene, const Devi
           fmt::format("the device has no axis {0}: the hand stays at {0} = 0, and forces along {0} "
                       "are left out",
                       name));
-  for (const schema::Patch& patch : scene.patches) note_patch(scene.with({patch}), device, setup, notes);
+  for (const schema::Patch& patch : scene.patches) {
+    note_patch(scene.with({patch}), device, setup, notes);
+    note_maps(scene, patch, notes);
+  }
   note_instability(scene, device, double{setup.rate_hz}, hand, notes);
   return notes;
 }

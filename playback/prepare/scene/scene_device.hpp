@@ -17,14 +17,14 @@ namespace tacto::playback {
 schema::Result<core::ForceSetup> force_setup_of(const schema::Device& device, std::optional<double> rate_hz);
 
 /// The largest stiffness of a layer for a small motion, with the upper ends of its sliders: of a spring, and
-/// kappa times the largest curvature of grooves, of noise
+/// kappa times the largest curvature of grooves, of a height map that was read (read_reliefs()), of noise
 /// the sum of those of its octaves. 0 for other types.
 double local_stiffness_n_per_m(const schema::ForceLayer& layer);
 
 /// Warnings, one line each: an axis x or y that the device does not have; patches beyond its travel, with the
 /// share of their area; patches whose force on a hand at rest exceeds a peak force, with the share of the
-/// places in which it does; where layers that act together are beyond stiffness_limit_of(), that of them
-/// which is the farthest. Shares are those of a grid of 101 x 101 places.
+/// places in which it does; patches larger than their height map; where layers that act together are beyond
+/// stiffness_limit_of(), that of them which is the farthest. Shares are those of a grid of 101 x 101 places.
 /// Precondition: the scene was prepared for this device and hand; `setup` by force_setup_of().
 std::vector<std::string> limits_of_device(const PreparedScene& scene, const schema::Device& device,
                                           const core::ForceSetup& setup,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware-host/core/kernel/level_of_detail.hpp"
 #include "firmware-host/core/scene/edge_speed.hpp"
 #include "firmware-host/core/scene/force_limiter.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
@@ -26,7 +27,62 @@ double held_by_rate(double cycles_per_tick) {
   return 1 - s * s * (3 - 2 * s);
 }
 
+// The cubic B-spline and its derivative, at a distance in samples.
+double spline(double x) {
+  const double a = std::abs(x);
+  return a >= 2 ? 0 : a >= 1 ? std::pow(2 - a, 3) / 6 : 2.0 / 3 - a * a + a * a * a / 2;
+}
+double spline_slope(double x) {
+  const double a = std::abs(x), way = x < 0 ? -1 : 1;
+  return a >= 2 ? 0 : a >= 1 ? -way * (2 - a) * (2 - a) / 2 : way * (1.5 * a * a - 2 * a);
+}
+
+// The slope of a level's surface along its columns and rows at a place in samples.
+std::pair<double, double> slope_of(const ReliefLevel& level, double x, double y) {
+  const auto held = [](double at, std::size_t count) {
+    return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
+  };
+  double by_x = 0, by_y = 0;
+  for (double j = std::floor(y) - 1; j <= std::floor(y) + 2; ++j)
+    for (double i = std::floor(x) - 1; i <= std::floor(x) + 2; ++i) {
+      const double c =
+          double{level.coefficients[held(j, level.rows) * level.columns + held(i, level.columns)]};
+      by_x += c * spline_slope(x - i) * spline(y - j);
+      by_y += c * spline(x - i) * spline_slope(y - j);
+    }
+  return {by_x, by_y};
+}
+
 }  // namespace
+
+// The levels are half octaves apart; the highest frequency of a level reaches half the rate when it is left.
+ExactScene::Vector ExactScene::relief_force(const schema::HeightMapLayer& map, double angle_rad,
+                                            Vector from_centre, Vector speed) const {
+  const Relief& relief = *scene_.reliefs.at(map.file);
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  const double per_tick = std::hypot(speed.x, speed.y) * relief.highest_per_m / rate_hz_;
+  const core::Detail detail = core::detail_at(static_cast<float>(per_tick * 2 * std::numbers::sqrt2));
+  double u = 0, v = 0;
+  for (std::size_t n = 0; n < relief.levels.size(); ++n) {
+    const double above = static_cast<double>(n) - detail.coarser - double{detail.fade};
+    const double weight = std::max(0.0, 1 - std::abs(above));
+    if (weight == 0) continue;
+    const ReliefLevel& level = relief.levels[n];
+    const auto place = [&](double x, std::size_t of_map, std::size_t of_level) {
+      const auto all = static_cast<double>(of_map), count = static_cast<double>(of_level);
+      return (x / relief.pitch_m + all / 2) * count / all - 0.5;
+    };
+    const auto [by_column, by_row] =
+        slope_of(level, place(c * from_centre.x + s * from_centre.y, relief.columns, level.columns),
+                 place(c * from_centre.y - s * from_centre.x, relief.rows, level.rows));
+    u += weight * by_column * static_cast<double>(level.columns) /
+         (static_cast<double>(relief.columns) * relief.pitch_m);
+    v += weight * by_row * static_cast<double>(level.rows) /
+         (static_cast<double>(relief.rows) * relief.pitch_m);
+  }
+  const double force = -map.kappa_n.value;
+  return {force * (c * u - s * v), force * (s * u + c * v)};
+}
 
 // -kappa times the derivative of the series, along the direction of the grooves.
 ExactScene::Vector ExactScene::groove_force(const schema::GroovesLayer& grooves, double angle_rad,
@@ -151,6 +207,10 @@ ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vec
           },
           [&](const schema::NoiseLayer& noise) {
             const Vector slope = noise_force(noise, angle, {place.x - patch.x_m, place.y - patch.y_m}, speed);
+            sum.x += slope.x, sum.y += slope.y;
+          },
+          [&](const schema::HeightMapLayer& map) {
+            const Vector slope = relief_force(map, angle, {place.x - patch.x_m, place.y - patch.y_m}, speed);
             sum.x += slope.x, sum.y += slope.y;
           },
           [](const auto& /*not prepared*/) {});

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/prepare/relief/relief_levels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "firmware-host/core/scene/relief.hpp"
+#include "firmware-host/core/scene/scene_block.hpp"
+#include "playback/prepare/relief/relief_coefficients.hpp"
+#include "spatial/dsp/fourier/cosine_transform.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using spatial::GridSize;
+
+constexpr double kLeastPower = 1e-6;  // -60 dB; cubic splines of 12 samples a period have images of -61 dB
+constexpr double kSamplesPerPeriod = 12, kPassed = 0.8;  // of a level's highest frequency
+constexpr std::size_t kEnoughCoefficients = std::size_t{1} << 23, kMostCoefficients = std::size_t{1} << 29;
+
+std::vector<double> above_mean(const schema::HeightMap& map) {
+  std::vector<double> heights(map.height_m.begin(), map.height_m.end());
+  double sum = 0;
+  for (const double height : heights) sum += height;
+  for (double& height : heights) height -= sum / static_cast<double>(heights.size());
+  return heights;
+}
+
+// Of a cosine of the grid, in cycles per sample.
+double frequency_of(std::size_t k, std::size_t l, GridSize size) {
+  return std::hypot(0.5 * static_cast<double>(k) / static_cast<double>(size.columns),
+                    0.5 * static_cast<double>(l) / static_cast<double>(size.rows));
+}
+
+// sin^4 falls so smoothly to the edges that the tilt of a map does not seem to have high frequencies.
+double taper(std::size_t i, std::size_t count) {
+  if (count == 1) return 1;
+  const double s = std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(count));
+  return s * s * s * s;
+}
+
+// In cycles per sample.
+double highest_frequency(std::vector<double> heights, GridSize size) {
+  constexpr std::size_t kBins = 4096;
+  for (std::size_t j = 0; j < size.rows; ++j)
+    for (std::size_t i = 0; i < size.columns; ++i)
+      heights[j * size.columns + i] *= taper(i, size.columns) * taper(j, size.rows);
+  to_cosines(heights, size);
+  std::vector<double> power(kBins);
+  double all = 0;
+  for (std::size_t at = 0; at < heights.size(); ++at) {
+    const double frequency = frequency_of(at % size.columns, at / size.columns, size);
+    // Cosines along one axis alone count double here, which does not matter.
+    const double of_slope = heights[at] * heights[at] * frequency * frequency;
+    power[std::min(static_cast<std::size_t>(frequency * std::numbers::sqrt2 * kBins), kBins - 1)] += of_slope;
+    all += of_slope;
+  }
+  std::size_t bins = kBins;
+  for (double above = 0; bins > 0; --bins)
+    if ((above += power[bins - 1]) > kLeastPower * all) break;
+  return static_cast<double>(bins) / kBins / std::numbers::sqrt2;
+}
+
+// Along one axis; at most `finer` times those of the map.
+std::size_t places_needed(std::size_t places, double highest, double finer) {
+  if (places == 1) return 1;
+  const double density = std::min(kSamplesPerPeriod * highest, finer);
+  return static_cast<std::size_t>(std::ceil(static_cast<double>(places) * density));
+}
+
+struct LevelPlan {
+  GridSize size;
+  double highest = 0;  // cycles per sample of the map
+};
+
+// The levels after the first.
+std::vector<LevelPlan> planned_levels(GridSize map, double highest, double fastest_by_whole, double finer) {
+  const double lowest = 0.5 / static_cast<double>(std::max(map.columns, map.rows));  // of the cosines
+  std::vector<LevelPlan> plans;
+  for (unsigned n = 1; n < core::kMostReliefLevels && highest > 0; ++n) {
+    const double of_level = highest * std::exp2(-0.5 * n);
+    if (of_level < lowest || std::exp2(0.5 * (n - 1)) >= fastest_by_whole) break;
+    plans.push_back(
+        {{places_needed(map.columns, of_level, finer), places_needed(map.rows, of_level, finer)}, of_level});
+  }
+  return plans;
+}
+
+std::size_t coefficients_of(const std::vector<LevelPlan>& plans) {
+  std::size_t sum = 0;
+  for (const LevelPlan& plan : plans) sum += plan.size.columns * plan.size.rows;
+  return sum;
+}
+
+double passed(double part) {
+  return 0.5 + 0.5 * std::cos(std::numbers::pi * std::clamp((part - kPassed) / (1 - kPassed), 0.0, 1.0));
+}
+
+// Of the B-spline in the middle of its three coefficients, for cosine k.
+double spline_response(std::size_t k, std::size_t places) {
+  return (2 + std::cos(std::numbers::pi * static_cast<double>(k) / static_cast<double>(places))) / 3;
+}
+
+// Of the map, whose cosines are given.
+ReliefLevel level_of(const std::vector<double>& cosines, GridSize map, const LevelPlan& plan) {
+  const GridSize size = plan.size;
+  std::vector<double> level(size.columns * size.rows);
+  const double scale = static_cast<double>(level.size()) / static_cast<double>(cosines.size());
+  for (std::size_t l = 0; l < std::min(size.rows, map.rows); ++l)
+    for (std::size_t k = 0; k < std::min(size.columns, map.columns); ++k)
+      level[l * size.columns + k] = scale * passed(frequency_of(k, l, map) / plan.highest) *
+                                    cosines[l * map.columns + k] /
+                                    (spline_response(k, size.columns) * spline_response(l, size.rows));
+  from_cosines(level, size);
+  return {size.columns, size.rows, {level.begin(), level.end()}};
+}
+
+// Weights of the four coefficients around a place at the beginning of a cell, and in its middle.
+struct Weights {
+  double at, value[4], slope[4], curvature[4];
+};
+constexpr Weights kAtKnot = {0, {1.0 / 6, 4.0 / 6, 1.0 / 6, 0}, {-0.5, 0, 0.5, 0}, {1, -2, 1, 0}};
+constexpr Weights kBetween = {
+    0.5, {1.0 / 48, 23.0 / 48, 23.0 / 48, 1.0 / 48}, {-0.125, -0.625, 0.625, 0.125}, {0.5, -0.5, -0.5, 0.5}};
+
+double weighted(const double (&weights)[4], const std::vector<double>& values, std::size_t i) {
+  const std::size_t last = values.size() - 1;
+  return weights[0] * values[i > 0 ? i - 1 : 0] + weights[1] * values[i] +
+         weights[2] * values[std::min(i + 1, last)] + weights[3] * values[std::min(i + 2, last)];
+}
+
+}  // namespace
+
+// At the samples and halfway between them.
+double Relief::curvature_per_m(double width_m, double height_m) const {
+  const ReliefLevel& level = levels.front();
+  const auto reached = [&](double at, std::size_t count, double length_m) {
+    const double from_centre = std::abs(at - 0.5 * static_cast<double>(count - 1));
+    return from_centre <= 0.5 * length_m / pitch_m + 0.5;
+  };
+  double largest = 0;
+  std::vector<double> value(columns), slope(columns), curvature(columns);
+  for (std::size_t j = 0; j < rows; ++j)
+    for (const Weights& y : {kAtKnot, kBetween}) {
+      if (!reached(static_cast<double>(j) + y.at, rows, height_m)) continue;
+      for (std::size_t i = 0; i < columns; ++i) {
+        double sums[3] = {};
+        for (std::size_t m = 0; m < 4; ++m) {
+          const std::size_t row = std::min(j + m > 0 ? j + m - 1 : 0, rows - 1);
+          const double c = double{level.coefficients[row * columns + i]};
+          sums[0] += y.value[m] * c, sums[1] += y.slope[m] * c, sums[2] += y.curvature[m] * c;
+        }
+        value[i] = sums[0], slope[i] = sums[1], curvature[i] = sums[2];
+      }
+      for (const Weights& x : {kAtKnot, kBetween})
+        for (std::size_t i = 0; i < columns; ++i) {
+          if (!reached(static_cast<double>(i) + x.at, columns, width_m)) continue;
+          const double xx = weighted(x.curvature, value, i), yy = weighted(x.value, curvature, i),
+                       xy = weighted(x.slope, slope, i);
+          largest = std::max(largest, std::abs(0.5 * (xx + yy)) + std::hypot(0.5 * (xx - yy), xy));
+        }
+    }
+  return largest / (pitch_m * pitch_m);
+}
+
+double Relief::whole_to_mps(double rate_hz) const {
+  return double{core::kWholeReliefPerTick} * rate_hz / highest_per_m;
+}
+
+double Relief::zero_from_mps(double rate_hz) const {
+  return whole_to_mps(rate_hz) * std::exp2(0.5 * static_cast<double>(levels.size()));
+}
+
+schema::Result<Relief> relief_levels(const schema::HeightMap& map, double rate_hz, double fastest_mps,
+                                     const std::string& where) {
+  std::vector<double> heights = above_mean(map);
+  const GridSize whole{map.columns, map.rows};
+  const double highest = highest_frequency(heights, whole);
+  Relief relief{map.columns, map.rows, map.pitch_m, highest / map.pitch_m, 0, {}};
+  relief.levels.push_back({map.columns, map.rows, relief_coefficients(heights, map.columns, map.rows)});
+  const double fastest = fastest_mps / relief.whole_to_mps(rate_hz);
+  double finer = std::max(1.0, kSamplesPerPeriod * highest);
+  std::vector<LevelPlan> plans = planned_levels(whole, highest, fastest, finer);
+  while (finer > 1 && heights.size() + coefficients_of(plans) > kEnoughCoefficients) {
+    finer = std::max(1.0, finer / std::numbers::sqrt2);
+    plans = planned_levels(whole, highest, fastest, finer);
+  }
+  if (const std::size_t all = heights.size() + coefficients_of(plans); all > kMostCoefficients)
+    return schema::fail(
+        schema::ErrorKind::unsuitable,
+        fmt::format("this height map has {} coefficients in {} levels", all, plans.size() + 1), where,
+        fmt::format("give it a pitch {:.2g} times as large",
+                    std::sqrt(static_cast<double>(all) / static_cast<double>(kMostCoefficients))));
+  if (plans.empty()) return relief;
+  relief.samples_per_period = std::min(kSamplesPerPeriod, finer / plans.front().highest);
+  to_cosines(heights, whole);
+  for (const LevelPlan& plan : plans) relief.levels.push_back(level_of(heights, whole, plan));
+  return relief;
+}
+
+}  // namespace tacto::playback

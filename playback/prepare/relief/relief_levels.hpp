@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A height map as levels of B-spline coefficients, which the kernel reads by the speed of the hand.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "data-schema/base/error.hpp"
+#include "data-schema/height/height_map.hpp"
+
+namespace tacto::playback {
+
+struct ReliefLevel {
+  std::size_t columns = 0, rows = 0;
+  std::vector<float> coefficients;  ///< row by row
+};
+
+/// All levels cover columns x rows pitches of the map: place u (in samples, from its first one) of a level of
+/// n columns is (x / pitch + columns / 2) n / columns - 1/2 at x from the centre of the map.
+struct Relief {
+  std::size_t columns = 0, rows = 0;  ///< of the map
+  double pitch_m = 0;
+  double highest_per_m = 0;  ///< above this spatial frequency lies less than 1e-6 of the power of the slope
+  double samples_per_period = 0;  ///< least, of the levels after the first, to their shortest period; 0: none
+  std::vector<ReliefLevel> levels;
+
+  /// The largest eigenvalue, absolute, of the Hessian of the first level in a patch of this size, at the
+  /// centre of the map.
+  double curvature_per_m(double width_m, double height_m) const;
+  /// Up to this speed the first level is played, and from this speed on nothing.
+  double whole_to_mps(double rate_hz) const;
+  double zero_from_mps(double rate_hz) const;
+};
+
+/// The first level is the surface through all heights (relief_coefficients()), less their mean. Each further
+/// one has frequencies up to half an octave less (highest_per_m 2^(-n/2)), by a discrete cosine transform,
+/// falling by a raised cosine from 0.8 of them on, on a grid of 12 samples to its shortest period. If all
+/// levels then have more than 2^23 coefficients, the grids finer than the map are coarsened, at most to that
+/// of the map. Levels are made until the fastest hand needs no further one. `where`: the map's file. Errors:
+/// unsuitable: levels of more than 2 GB.
+schema::Result<Relief> relief_levels(const schema::HeightMap& map, double rate_hz, double fastest_mps,
+                                     const std::string& where);
+
+}  // namespace tacto::playback

@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Height maps on the command line: a PNG or a profile is imported, described, played, and its forces are those of SciPy's splines."""
+import pathlib
+import struct
+import zlib
+
+import netCDF4
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+import tacto
+from plane_render_test import MALFORMED, NOT_FOUND, STEP_M, UNSUITABLE, USAGE, counted, patch, write_path, write_scene
+from tacto import run, run_json
+
+PITCH_M, WHITE_M, SIZE = 2e-4, 2e-4, 256
+
+
+def png(name, rows, bits=16, colour=0):
+    """Greyscale rows (colour type 0), the first row at the top; only the header if rows is a (width, height)."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    empty = isinstance(rows, tuple)
+    width, height = rows if empty else (rows.shape[1] // (3 if colour == 2 else 1), rows.shape[0])
+    data = b"" if empty else b"".join(b"\0" + row.astype(">u2" if bits == 16 else "u1").tobytes() for row in rows)
+    pathlib.Path(name).write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, colour, 0, 0, 0)) +
+                                   chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
+
+
+def smooth_noise(periods=12, seed=31):
+    """Noise with at least `periods` samples to a period, from 0 to 65535, that ends smoothly nowhere."""
+    random = np.random.default_rng(seed)
+    spectrum = np.fft.fft2(random.standard_normal((2 * SIZE, 2 * SIZE)))
+    f = np.fft.fftfreq(2 * SIZE)
+    spectrum[np.hypot(*np.meshgrid(f, f)) > 1 / periods] = 0
+    field = np.fft.ifft2(spectrum).real[:SIZE, :SIZE]
+    return np.round((field - field.min()) / np.ptp(field) * 65535).astype(np.uint16)
+
+
+def import_noise():
+    rows = smooth_noise()
+    png("plate.png", rows)
+    run("import", "plate.png", "--pitch", "200um", "--height", "200um", "-o", "plate", "--surface", "made of noise")
+    return rows
+
+
+def a_png_becomes_a_height_map():
+    rows = import_noise()
+    with netCDF4.Dataset("plate.height.nc") as file:
+        height, x, y = file["height"][:], file["x"][:], file["y"][:]
+        assert file["height"].dimensions == ("y", "x") and file["height"].units == "m"
+    # 24 bits hold a sample of 16 bits times the height of white to 2^-24 of it.
+    expected = rows[::-1] * (WHITE_M / 65535)
+    assert np.abs(height - expected).max() < 2**-23 * WHITE_M and np.allclose(x, y) and np.allclose(np.diff(x), PITCH_M)
+    said = run_json("info", "plate")
+    slopes = np.diff(expected, axis=1), np.diff(expected, axis=0)
+    assert (said["kind"], said["columns"], said["rows"], said["surface"]) == ("height_map", SIZE, SIZE, "made of noise") and abs(said["pitch_m"] - PITCH_M) < 1e-15, said
+    assert abs(said["rms_slope"] / (np.sqrt(np.mean(slopes[0]**2) + np.mean(slopes[1]**2)) / PITCH_M) - 1) < 1e-4, said
+    assert abs(said["highest_m"] - WHITE_M) < 1e-10 and said["lowest_m"] == 0 and "plate.png" in said["source"], said
+    assert run_json("validate", "plate.height.nc")["valid"] is True
+    # Eight bits on request: the same heights in 255 steps.
+    png("steps.png", rows // 257, bits=8)
+    run("import", "steps.png", "--pitch", "200um", "--height", "200um", "-o", "steps", "--allow-8bit")
+    with netCDF4.Dataset("steps.height.nc") as file:
+        assert np.abs(file["height"][:] - (rows // 257)[::-1] * (WHITE_M / 255)).max() < 2**-23 * WHITE_M
+
+
+def a_profile_becomes_a_map_of_one_row():
+    x = np.arange(200) * 1e-4
+    np.savetxt("profile.csv", np.column_stack([x * 1e3, 50 * np.sin(2 * np.pi * x / 2e-3)]), delimiter=",", header="x,z", comments="")
+    run("import", "profile.csv", "--channel", "position=x*1mm", "--channel", "height=z*1um", "-o", "profile.height.nc")
+    said = run_json("info", "profile.height.nc")
+    assert (said["columns"], said["rows"]) == (200, 1) and abs(said["pitch_m"] - 1e-4) < 1e-12 and abs(said["highest_m"] - 50e-6) < 1e-10, said
+    write_scene("line", patch(layers=[{"type": "height_map", "file": "profile", "kappa_n": 2}], angle_deg=90, width_m=0.019))
+    t = np.linspace(0, 1, 21)
+    write_path("path.csv", {"time_s": t, "x_m": 0.001 * np.ones(21), "y_m": 0.004 * np.sin(2 * np.pi * t)})
+    run("render", "line.scene.json", "--finger-path", "path.csv", "--device", "sandpaper-1990", "-o", "line.csv")
+    table = np.genfromtxt("line.csv", delimiter=",", names=True)
+    # The map's x axis is the plane's y axis; 20 samples a period: 0.036 % (16 samples) times (16 / 20)^3 of the steepest slope.
+    slope = 50e-6 * 2 * np.pi / 2e-3
+    expected = -2 * slope * np.cos(2 * np.pi * (counted(table["y_m"]) + 99.5e-4) / 2e-3)
+    assert np.abs(table["force_y_n"] - expected).max() < 6e-4 * 2 * slope and np.abs(table["force_x_n"]).max() < 1e-7, np.abs(table["force_y_n"] - expected).max() / slope
+
+
+def forces_are_scipys_spline():
+    import_noise()
+    write_scene("bench", patch(x_m=0.01, y_m=-0.005, width_m=0.05, height_m=0.05, layers=[{"type": "height_map", "file": "plate", "kappa_n": 1.5}]))
+    t = np.linspace(0, 2, 81)
+    # 44 mm/s: the shortest periods of 2.4 mm pass 20 times a second.
+    write_path("circle.csv", {"time_s": t, "x_m": 0.01 + 0.014 * np.cos(np.pi * t), "y_m": -0.005 + 0.014 * np.sin(np.pi * t)})
+    report = run_json("render", "bench.scene.json", "--finger-path", "circle.csv", "--device", "sandpaper-1990", "-o", "forces.csv")
+    table = np.genfromtxt("forces.csv", delimiter=",", names=True)
+    with netCDF4.Dataset("plate.height.nc") as file:
+        places = np.arange(SIZE) - (SIZE - 1) / 2
+        spline = RectBivariateSpline(places, places, np.float64(file["height"][:]), s=0)
+    u, v = (counted(table["x_m"]) - 0.01) / PITCH_M, (counted(table["y_m"]) + 0.005) / PITCH_M
+    assert max(np.abs(u).max(), np.abs(v).max()) < SIZE / 2 - 12
+    exact = -1.5 / PITCH_M * np.array([spline.ev(v, u, dy=1), spline.ev(v, u, dx=1)])
+    difference = np.array([table["force_x_n"], table["force_y_n"]]) - exact
+    relative = np.sqrt(np.mean(difference**2) / np.mean(exact**2))
+    print(f"  a circle over a height map: within {relative:.2g} of the RMS of SciPy's gradient")
+    assert relative < 1e-6 and report["largest_rounding_n"] < 1e-6 * np.abs(exact).max(), (relative, report)
+
+
+def explain_says_levels_speeds_and_memory():
+    import_noise()
+    write_scene("bench", patch(width_m=0.046, height_m=0.044, layers=[{"type": "height_map", "file": "plate", "kappa_n": 1.5}]))
+    said = run_json("explain", "bench.scene.json", "--device", "sandpaper-1990")
+    row = said["layers"][0]
+    assert (row["type"], row["columns"], row["rows"]) == ("height_map", SIZE, SIZE) and row["samples_per_period"] == 12, row
+    # The taper of the spectrum broadens it by a few of 512 bins.
+    assert 0.85 * 12 * PITCH_M < row["shortest_period_m"] <= 12 * PITCH_M, row
+    assert abs(row["whole_to_mps"] / (np.sqrt(0.5) / 2 * 4000 * row["shortest_period_m"]) - 1) < 1e-6, row
+    assert abs(row["zero_from_mps"] / (row["whole_to_mps"] * 2 ** (row["levels"] / 2)) - 1) < 1e-6 and row["zero_from_mps"] >= 10, row
+    # Levels half an octave apart: each half as many coefficients, together as many as the map.
+    assert 4 * SIZE**2 < row["bytes"] < 2.3 * 4 * SIZE**2, row
+    # In numbers of 4 bytes: a quarter of what the map needs.
+    small = run_json("explain", "bench.scene.json", "--device", "sandpaper-1990", "--device-memory", str(row["bytes"] // 16))
+    assert small["fits"] is False and "2.0" in small["because"], small
+    # The stiffness that `design` counts too: kappa times the largest curvature.
+    with netCDF4.Dataset("plate.height.nc") as file:
+        places = np.arange(SIZE)
+        spline = RectBivariateSpline(places, places, np.float64(file["height"][:]), s=0)
+    fine = np.arange(0, SIZE - 0.75, 0.5)
+    yy, xx, xy = (spline(fine, fine, dx=a, dy=b) for a, b in ((2, 0), (0, 2), (1, 1)))
+    largest = 1.5 / PITCH_M**2 * (np.abs(xx + yy) / 2 + np.hypot((xx - yy) / 2, xy))
+    # The places that the patch shows, and half a sample more; 12 samples from the edges SciPy's spline is the same.
+    shown = [np.abs(fine - (SIZE - 1) / 2) <= length / 2 / PITCH_M + 0.5 for length in (0.044, 0.046)]
+    inside = largest[np.ix_(*shown)].max()
+    assert abs(row["stiffness_n_per_m"] / inside - 1) < 1e-5, (row, inside)
+    design = run_json("design", "bench", "--device", "sandpaper-1990")
+    assert abs(design["layers"][0]["stiffness_n_per_m"] / row["stiffness_n_per_m"] - 1) < 1e-9, design
+    write_scene("wide", patch(layers=[{"type": "height_map", "file": "plate", "kappa_n": 1.5}]))
+    _, err = run("explain", "wide.scene.json", "--device", "sandpaper-1990")
+    assert "larger than its height map" in err, err
+    write_scene("strong", patch(width_m=0.05, height_m=0.05, layers=[{"type": "height_map", "file": "plate", "kappa_n": 900}]))
+    _, err = run("explain", "strong.scene.json", "--device", "sandpaper-1990")
+    assert "exceeds the peak force" in err and "%" in err, err
+
+
+def a_large_map_is_played_and_replayed():
+    # White noise, 1024 x 1024: no level can be coarser before the sixth.
+    png("white.png", np.random.default_rng(2).integers(0, 65536, (1024, 1024)))
+    run("import", "white.png", "--pitch", "50um", "--height", "1um", "-o", "white")
+    write_scene("white", patch(width_m=0.05, height_m=0.05, layers=[{"type": "height_map", "file": "white", "kappa_n": {"value": 1, "slider": {"from": 0, "to": 2}}}]))
+    t = np.linspace(0, 1, 41)
+    write_path("path.csv", {"time_s": t, "x_m": 0.02 * np.sin(9 * t), "y_m": 0.02 * np.sin(5 * t)})
+    pathlib.Path("script.csv").write_text("time_s,command\n0.3,set a.height_map.kappa_n 2 over 10ms\n")
+    report = run_json("play", "white.scene.json", "-d", "sim:planar", "-o", "white", "--finger-path", "path.csv", "--script", "script.csv")
+    assert report["lost_ticks"] == 0, report
+    again = run_json("replay", "white")
+    assert again["same_to_the_bit"] is True and again["ticks_compared"] == report["ticks"], again
+    run("session", "white", "-o", "white.csv")
+    assert np.abs(np.genfromtxt("white.csv", delimiter=",", names=True)["force_x_n"]).max() > 1e-3
+
+
+def a_map_beyond_the_memory_is_refused():
+    # White noise has levels of 8 times the map: 1500 x 1500 are 73 MB, sim:planar has 64 MB.
+    png("white.png", np.random.default_rng(3).integers(0, 65536, (1500, 1500)))
+    run("import", "white.png", "--pitch", "30um", "--height", "1um", "-o", "white")
+    write_scene("white", patch(width_m=0.04, height_m=0.04, layers=[{"type": "height_map", "file": "white", "kappa_n": 1}]))
+    _, err = run("play", "white.scene.json", "-d", "sim:planar", "--time", "1s", "-o", "x", code=UNSUITABLE)
+    assert "a pitch 1.0" in err and not list(pathlib.Path().glob("x*")), err
+
+
+def bad_input_is_refused_with_its_remedy():
+    rows = smooth_noise()[:16, :16]
+    png("grey.png", rows)
+
+    def refused(code, word, *arguments):
+        _, err = run("import", *arguments, "-o", "x", code=code)
+        assert word in err and err.strip().count("\n") == 0 and not list(pathlib.Path().glob("x*")), (word, err)
+
+    scale = ("--pitch", "50um", "--height", "200um")
+    refused(USAGE, "--height", "grey.png", "--pitch", "50um")
+    refused(USAGE, "--pitch", "grey.png", "--height", "200um")
+    refused(USAGE, "--channel", "grey.png", *scale, "--channel", "height=1*1um")
+    refused(USAGE, "--height", "grey.png", "--pitch", "50um", "--height", "0um")
+    refused(UNSUITABLE, "pitch", "grey.png", "--pitch", "0um", "--height", "200um")
+    png("eight.png", rows // 257, bits=8)
+    refused(UNSUITABLE, "--allow-8bit", "eight.png", *scale)
+    png("colour.png", np.repeat(rows, 3, axis=1), colour=2)
+    refused(UNSUITABLE, "greyscale", "colour.png", *scale)
+    png("huge.png", (1 << 15, 1 << 14))
+    refused(UNSUITABLE, "resample", "huge.png", *scale)
+    pathlib.Path("cut.png").write_bytes(pathlib.Path("grey.png").read_bytes()[:200])
+    refused(MALFORMED, "PNG", "cut.png", *scale)
+    pathlib.Path("a.csv").write_text("x,z\n0,1\n1,2\n")
+    refused(USAGE, "PNG", "a.csv", "--height", "200um", "--rate", "1kHz", "--channel", "signal=z*1")
+    run("import", "grey.png", *scale, "-o", "grey")
+    _, err = run("import", "grey.png", *scale, "-o", "grey", code=USAGE)
+    assert "--force" in err, err
+    write_scene("bench", patch(layers=[{"type": "height_map", "file": "grey", "kappa_n": 1}]))
+    assert run_json("validate", "bench.scene.json")["valid"] is True
+    with netCDF4.Dataset("grey.height.nc", "a") as file:
+        file["height"][3, 5] = np.nan
+    for verb in (("explain", "bench.scene.json", "--device", "sandpaper-1990"), ("info", "grey.height.nc"), ("design", "bench", "--device", "sandpaper-1990")):
+        _, err = run(*verb, code=UNSUITABLE)
+        assert "column 5, row 3" in err, err
+    assert run_json("validate", "bench.scene.json", code=MALFORMED)["valid"] is False
+    with netCDF4.Dataset("grey.height.nc", "a") as file:
+        file["height"][3, 5] = 0
+        file.delncattr("pitch_m")
+    _, err = run("render", "bench.scene.json", "--device", "sandpaper-1990", "--finger-path", "no.csv", "-o", "x.csv", code=UNSUITABLE)
+    assert "pitch" in err, err
+    pathlib.Path("grey.height.nc").unlink()
+    _, err = run("play", "bench.scene.json", "-d", "sim:planar", "-o", "x", code=NOT_FOUND)
+    assert "grey.height.nc" in err and "import" in err, err
+
+
+if __name__ == "__main__":
+    for test in (a_png_becomes_a_height_map, a_profile_becomes_a_map_of_one_row, forces_are_scipys_spline, explain_says_levels_speeds_and_memory,
+                 a_large_map_is_played_and_replayed, a_map_beyond_the_memory_is_refused, bad_input_is_refused_with_its_remedy):
+        tacto.in_folder(test)
