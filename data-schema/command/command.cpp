@@ -343,6 +343,7 @@ int run_command(std::span<const VerbGroup> groups, int argc, const char* const* 
   std::vector<std::string> programs;
   manual->add_option("FOLDER", manual_folder, "The folder, such as /usr/share/man")->required();
   manual->add_option("PROGRAM", programs, "Other programs of tactograph, whose --help becomes a page, too");
+  hide_empty_defaults(*manual);
   manual->footer("Example:\n  tactograph man-pages /usr/local/share/man /usr/bin/tactographd");
   try {
     app.parse(argc, argv);
