@@ -32,7 +32,8 @@ const cli::VerbGroup kGroups[] = {
       &analysis::kDemoVerb}},
 };
 
-constexpr std::array<const cli::HelpTopic*, 1> kTopics = {&firmware_host::kSimTopic};
+constexpr std::array<const cli::HelpTopic*, 2> kTopics = {&firmware_host::kDevicesTopic,
+                                                          &firmware_host::kSimTopic};
 
 }  // namespace
 

@@ -2,19 +2,36 @@
 # Debian packages from the install tree: tactograph (commands, manual pages, completion, udev rules, systemd unit),
 # tactograph-dev (the Apache-licensed core and schemas), python3-tactograph. `./bootstrap package` makes them.
 
-# The installed program generates manual pages and completion from its table of verbs.
+# The program generates manual pages and completion from its table of verbs, and pages from the help of the others.
 install(CODE [[
   set(share "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share")
-  file(MAKE_DIRECTORY "${share}/man/man1" "${share}/bash-completion/completions")]] COMPONENT tactograph)
-install(CODE "set(program \"$<TARGET_FILE:tactograph>\")" COMPONENT tactograph)
+  file(MAKE_DIRECTORY "${share}/bash-completion/completions")]] COMPONENT tactograph)
+install(CODE "set(program \"$<TARGET_FILE:tactograph>\")
+              set(others \"$<TARGET_FILE:tactographd>;$<TARGET_FILE:tactograph_gadget>\")" COMPONENT tactograph)
 install(CODE [[
-  execute_process(COMMAND "${program}" man-pages "${share}/man/man1" COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND "${program}" man-pages "${share}/man" ${others} COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND "${program}" completion OUTPUT_FILE "${share}/bash-completion/completions/tactograph"
                   COMMAND_ERROR_IS_FATAL ANY)
-  file(GLOB pages "${share}/man/man1/tactograph*.1")
+  file(GLOB pages "${share}/man/man?/tactograph*.?")
   execute_process(COMMAND gzip -9nf ${pages} COMMAND_ERROR_IS_FATAL ANY)]] COMPONENT tactograph)
 file(GLOB presets CONFIGURE_DEPENDS data-schema/presets/*.json)
 install(FILES ${presets} DESTINATION share/tactograph/presets COMPONENT tactograph)
+
+# All documents, and what they show or link to, in the folders of the sources, so that their links work.
+foreach(folder . analysis capture data-schema firmware-host playback spatial tests)
+  set(depth GLOB_RECURSE)
+  if(folder STREQUAL .)
+    set(depth GLOB)
+  endif()
+  file(${depth} documents RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS ${folder}/*.md)
+  foreach(document IN LISTS documents)
+    get_filename_component(place ${document} DIRECTORY)
+    install(FILES ${document} DESTINATION share/doc/tactograph/${place} COMPONENT tactograph)
+  endforeach()
+endforeach()
+install(FILES firmware-host/rig.svg DESTINATION share/doc/tactograph/firmware-host COMPONENT tactograph)
+install(DIRECTORY analysis/pictures DESTINATION share/doc/tactograph/analysis COMPONENT tactograph)
+install(DIRECTORY data-schema/octave DESTINATION share/doc/tactograph/data-schema COMPONENT tactograph)
 
 file(GLOB schemas CONFIGURE_DEPENDS data-schema/schemas/*.json)
 install(FILES ${schemas} DESTINATION share/tactograph/schemas COMPONENT tactograph-dev)
@@ -22,7 +39,8 @@ install(DIRECTORY firmware-host/core DESTINATION share/tactograph/src/firmware-h
         FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cpp" PATTERN "*.h" PATTERN "*.md")
 
 install(DIRECTORY data-schema/python/tactograph DESTINATION lib/python3/dist-packages COMPONENT python3-tactograph
-        FILES_MATCHING PATTERN "*.py")
+        FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
+install(FILES data-schema/python/README.md DESTINATION share/doc/python3-tactograph COMPONENT python3-tactograph)
 
 # The documentation that every Debian package contains.
 foreach(component tactograph tactograph-dev python3-tactograph)
@@ -71,8 +89,10 @@ set(CPACK_DEBIAN_PYTHON3-TACTOGRAPH_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON3-TACTOGRAPH_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PYTHON3-TACTOGRAPH_PACKAGE_DEPENDS
     "python3, python3-numpy, python3-xarray, python3-soundfile, python3-netcdf4")
+set(CPACK_DEBIAN_PYTHON3-TACTOGRAPH_PACKAGE_SUGGESTS "python3-matplotlib")
 set(CPACK_COMPONENT_PYTHON3-TACTOGRAPH_DESCRIPTION
 "Reads recordings, textures, playback sessions and spatial spectrograms of
-tactograph into xarray datasets with units, masks and gaps.")
+tactograph into xarray datasets with units, masks and gaps, and controls
+the daemon tactographd.")
 
 include(CPack)

@@ -340,12 +340,15 @@ int run_command(std::span<const VerbGroup> groups, int argc, const char* const* 
   completion->footer("Example:\n  tactograph completion > /etc/bash_completion.d/tactograph");
   CLI::App* manual = app.add_subcommand("man-pages", "Write the manual pages into a folder");
   std::string manual_folder;
-  manual->add_option("folder", manual_folder, "An existing folder, such as /usr/share/man/man1")->required();
-  manual->footer("Example:\n  tactograph man-pages /usr/share/man/man1");
+  std::vector<std::string> programs;
+  manual->add_option("FOLDER", manual_folder, "The folder, such as /usr/share/man")->required();
+  manual->add_option("PROGRAM", programs, "Other programs of tactograph, whose --help becomes a page, too");
+  hide_empty_defaults(*manual);
+  manual->footer("Example:\n  tactograph man-pages /usr/local/share/man /usr/bin/tactographd");
   try {
     app.parse(argc, argv);
     if (help->parsed()) return print_help(app, word, topics, json);
-    if (manual->parsed()) return print_written(write_man_pages(manual_folder, verbs), json);
+    if (manual->parsed()) return print_written(write_man_pages(manual_folder, app, topics, programs), json);
     if (completion->parsed()) return print_text(bash_completion(verbs, topics));
     for (const auto& entry : entries)
       if (entry->app->parsed()) return act(*entry);

@@ -15,7 +15,10 @@ struct HelpTopic {
   std::string (*text)();
 };
 
-/// The topics of every command (units, exit-codes) and those given, as lines "name  summary".
+/// The topics given, and those of every command (words, files, units, exit-codes).
+std::vector<const HelpTopic*> all_topics(std::span<const HelpTopic* const> topics);
+
+/// All topics, as lines "name  summary".
 std::string topics_text(std::span<const HelpTopic* const> topics);
 
 /// Names of all topics.

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Manual pages in section 1, made from the table of verbs, for `man tactograph-spatial`.
+// Manual pages, made from what --help and `tactograph help` print: `man tactograph-spatial`, `man
+// tactographd`.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <span>
 #include <string>
 
-#include "data-schema/command/verb.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/command/help.hpp"
 
 namespace tacto::cli {
 
-/// A page's file name (`tactograph-spatial.1`) and its text in roff (man macros).
-struct ManPage {
-  std::string file, text;
-};
-
-/// One page for the command and one for each verb.
-std::vector<ManPage> man_pages(std::span<const Verb* const> verbs);
-
-/// Writes them into an existing folder, replacing pages of the same names. Errors: cannot_write.
-schema::Result<void> write_man_pages(const std::string& folder, std::span<const Verb* const> verbs);
+/// Writes the pages into `folder`: man1 for the command and each of its verbs, man7 for each topic, man8 for
+/// each of the other `programs` (paths), from what they print with --help. Makes the folders, and replaces
+/// pages of the same names. `app` has all verbs with their options. Errors: cannot_write; not_found for a
+/// program without help.
+schema::Result<void> write_man_pages(const std::string& folder, const CLI::App& app,
+                                     std::span<const HelpTopic* const> topics,
+                                     const std::vector<std::string>& programs);
 
 }  // namespace tacto::cli

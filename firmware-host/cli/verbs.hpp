@@ -8,6 +8,6 @@
 namespace tacto::firmware_host {
 
 extern const cli::Verb kScanVerb;
-extern const cli::HelpTopic kSimTopic;
+extern const cli::HelpTopic kDevicesTopic, kSimTopic;
 
 }  // namespace tacto::firmware_host

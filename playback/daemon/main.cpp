@@ -31,10 +31,11 @@ using playback::ServiceManager;
 constexpr int kIdleMs = 100, kLoadingMs = 5;
 constexpr double kStepS = 2e-3;
 constexpr const char* kHelp =
-    "tactographd --config FILE\n\nPlays textures on a device, controlled by `tactograph ctl` or any client "
-    "of its socket.\nFILE is JSON: device, transducer, socket, sessions ... (defined by "
-    "data-schema/schemas/daemon.schema.json).\nFor the emulated device: "
-    R"({"kind": "daemon", "version": "1.0", "device": "sim:", "socket": "control"})"
+    "tactographd: plays textures on a device, controlled by `tactograph ctl` or any client of its socket\n\n"
+    "usage: tactographd --config FILE\n\n"
+    "FILE is JSON: device, transducer, socket, sessions ... (defined by "
+    "data-schema/schemas/daemon.schema.json).\nFor the emulated device:\n"
+    R"(  {"kind": "daemon", "version": "1.0", "device": "sim:", "socket": "control"})"
     "\nSIGTERM, SIGHUP (the terminal was closed) and Ctrl-C ramp the "
     "drive to zero and end the daemon.\nMessages go to stderr; systemd stores them in its journal.\n";
 

@@ -23,7 +23,7 @@ apt-get install -y -q --no-install-recommends /root/*.deb man-db systemd
 id -nG tactograph | grep -qw plugdev; test -s /etc/tactograph/tactographd.json
 cd /tmp
 tactograph demo; test -s demo/index.html
-man tactograph-spatial | grep -q -- --band
+man tactograph-spatial | grep -q -- --band; man tactographd | grep -q -- --config; man tactograph-files | grep -q recording
 grep -q "tactograph spatial" /usr/share/man/man1/tactograph-spatial.1.gz || zcat /usr/share/man/man1/tactograph-spatial.1.gz | grep -q "tactograph spatial"
 /usr/bin/python3 -c 'import tactograph; print(tactograph.read_recording("demo/C", check=True).tangential_force.attrs["units"])' | grep -qx N
 bash -c '. /usr/share/bash-completion/completions/tactograph && complete -p tactograph' | grep -q tactograph

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one error of this package."""
+"""The error of the readers."""
 
 
 class FileProblem(ValueError):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactograph help sim
+// tactograph help devices, tactograph help sim
 #include "firmware-host/cli/verbs.hpp"
 #include "firmware-host/sim/device/sim_parameters.hpp"
 
@@ -20,8 +20,22 @@ std::string sim_text() {
          "  hand=    a preset or NAME.hand.json; default: none, the device moves along the path\n";
 }
 
+std::string devices_text() {
+  return "The devices, as option -d takes them:\n"
+         "  usb:                    the only board on USB\n"
+         "  usb:serial=XYZ          a board by its serial number\n"
+         "  usb:port=1-2            a board by its port\n"
+         "  sim:KEY=VALUE,...       the emulated device; the keys: tactograph help sim\n"
+         "  sim:planar,KEY=VALUE    the emulated force device, for scenes with force patches\n"
+         "  replay:NAME             a recording as a device, as fast as possible\n"
+         "  replay:NAME,paced=1     the same in real time\n"
+         "tactograph scan lists the devices that answer.\n";
+}
+
 }  // namespace
 
+const cli::HelpTopic kDevicesTopic{"devices", "how devices are named: USB, emulated, a recording",
+                                   devices_text};
 const cli::HelpTopic kSimTopic{"sim", "the emulated device and its keys", sim_text};
 
 }  // namespace tacto::firmware_host
