@@ -67,6 +67,21 @@ constexpr const char* kDesignNotes =
     "period and "
     "delay are those of the limit that is judged.</p>\n";
 
+// A proof for more hands than the one that is judged has its own, smaller margin.
+std::string margin_words(const JudgedLayer& layer, const DesignRequest& request) {
+  std::string words =
+      fmt::format("margin {:.3g} with {} ({})", layer.margin, holder_name(request.judged, request),
+                  is_proof(request.judged) ? "proved" : "computed");
+  for (const Holder holder : {Holder::slower, Holder::any}) {
+    if (holder == request.judged || request.judged == Holder::lumped) continue;
+    if (holder == Holder::slower && !request.speed_mps) continue;
+    if (layer.loop.carries(holder, layer.total))
+      words += fmt::format(", {:.3g} with {} (proved)", layer.loop.margin(holder, layer.total),
+                           holder_name(holder, request));
+  }
+  return words;
+}
+
 // The answer in one sentence.
 std::string design_verdict(const Design& design) {
   const auto unknown = std::ranges::find_if(design.layers, [](const JudgedLayer& layer) {
@@ -79,8 +94,8 @@ std::string design_verdict(const Design& design) {
   const JudgedLayer& layer = design.layers[*design.first];
   const std::string where = fmt::format("{} along {}", layer_name(layer), layer.loop.axis.name);
   if (layer.verdict == Stability::stable)
-    return fmt::format("stable: {} is nearest to its limit, margin {:.3g} ({}){}", where, layer.margin,
-                       layer.because, rest);
+    return fmt::format("stable: {} is nearest to its limit, {}{}", where, margin_words(layer, design.request),
+                       rest);
   const Holder judged = design.request.judged;
   const Holder holder = layer.verdict == Stability::unstable && is_proof(judged) ? Holder::nothing : judged;
   const double limit = layer.loop.limit(holder, layer.total.damping_n_s_per_m);

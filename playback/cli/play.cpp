@@ -87,6 +87,11 @@ void add_played(Report& report, const PlayOutcome& outcome) {
       .add("gated_ticks", ticks.gated())
       .add("blind_ticks", ticks.blind());
   add_removed(report, outcome.limits);
+  if (ticks.limited() > 0)
+    cli::warn(
+        fmt::format("the drive was limited in {} of {} ticks and is weaker there than the texture: choose a "
+                    "smaller --gain",
+                    ticks.limited(), outcome.recorder.ticks));
   report.add("drive_peak_v", ticks.drive_peak_v());
   report.add("passes_to_hz", outcome.passes_to_hz).add("delay_left_s", outcome.delay_left_s);
   if (const auto& looped = outcome.looped)

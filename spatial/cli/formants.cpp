@@ -65,6 +65,10 @@ Report row_of(const schema::FormantTable& table, const schema::Formant& formant)
   return row;
 }
 
+// The background of a line is the median of cells between 3.5 and 16 times 1 / window away. Where lines of 3
+// times 1 / window on each side repeat more closely than this, they are most of these cells.
+constexpr double kWindowOverPeriod = 10;
+
 Report report_of(const schema::FormantFile& file, const std::string& path) {
   std::vector<Report> rows;
   for (const auto& table : file.tables)
@@ -73,6 +77,10 @@ Report report_of(const schema::FormantFile& file, const std::string& path) {
   Report report;
   report.add("textures", file.tables.size()).add("found", rows.size());
   report.add("formants", std::move(rows));
+  report.add("periods",
+             fmt::format("the lines of a grating are found up to a period of {}; for longer ones give a "
+                         "--window of ten periods (closer lines hide each other)",
+                         schema::length_for_people(first.window_m / kWindowOverPeriod)));
   report.add("level_reference", first.level_reference).add("window_m", first.window_m);
   report.add("resolution_per_m", first.resolution_per_m);
   if (!path.empty()) report.add("file", path);

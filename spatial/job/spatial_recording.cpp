@@ -24,6 +24,8 @@ using cli::Report;
 using schema::ErrorKind;
 using schema::Result;
 
+constexpr double kSameSpeed = 0.05;  // for strokes that begin or end some frames apart
+
 // The state of one recording's processing.
 class Run {
  public:
@@ -53,6 +55,7 @@ class Run {
   Result<void> check_names(const std::vector<std::string>& stems);
   void warn(const std::string& text) { warnings_.push_back({"", text}); }
   Result<void> leave_out_short(const TextureMaker& maker, std::vector<StrokeJob>& jobs);
+  void warn_of_recording(const TouchRecord& record);
   void warn_of_jumps(const TouchRecord& record);
   void warn_of(const std::string& what, const schema::Texture& texture);
 
@@ -96,6 +99,28 @@ Result<void> Run::leave_out_short(const TextureMaker& maker, std::vector<StrokeJ
                       "no stroke is long enough for a texture: each lasts less than one period of the band's "
                       "lowest frequency",
                       maker.record().where(), "use a higher --low, or --band off");
+}
+
+// What the recording says of the channel, such as outliers; and a scale of the position that was changed
+// later.
+void Run::warn_of_recording(const TouchRecord& record) {
+  const schema::RecordingHeader& header = record.header();
+  for (const std::string& warning : header.warnings)
+    if (warning.starts_with(record.channel().name + ": "))
+      warn(fmt::format("{}: {}", record.where(), warning));
+  for (const schema::StrokeFigures& stored : header.strokes)
+    for (const Stroke& stroke : record.strokes()) {
+      const bool together = stroke.frames.begin < stored.first_frame + stored.frames / 2 &&
+                            stored.first_frame + stored.frames / 2 < stroke.frames.end;
+      const double speed_mps = record.mean_speed_mps(stroke);
+      if (!together || std::abs(speed_mps / stored.mean_speed_mps - 1) < kSameSpeed) continue;
+      warn(
+          fmt::format("{}: a stroke has a mean speed of {}, but of {} when it was recorded: the scale of the "
+                      "position or the rate was changed",
+                      record.where(), schema::for_people(speed_mps, schema::Dimension::speed),
+                      schema::for_people(stored.mean_speed_mps, schema::Dimension::speed)));
+      return;
+    }
 }
 
 // Positions after a jump do not match those before it on the bench.
@@ -256,6 +281,7 @@ Result<TouchRecord> Run::opened(const std::string& name, const TextureOptions& t
   auto record = TouchRecord::open(*recording, target.channel);
   if (!record) return record;
   if (const std::string note = channel_note(target, *record); !note.empty()) warn(note);
+  warn_of_recording(*record);
   return record;
 }
 

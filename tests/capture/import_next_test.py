@@ -66,6 +66,8 @@ def masked_outliers_leave_the_texture():
     tacto.run("validate", "masked")
     assert tacto.run_json("info", "masked")["missing_frames"] == 2
     tacto.run("spatial", "sound", "-o", "sound")
+    repeated = tacto.run_json("spatial", "spoilt", "-o", "spoilt").get("warnings", [])
+    assert any("tangential_force: 2 of 12000 samples" in one for one in repeated), repeated
     strokes = tacto.run_json("spatial", "masked", "-o", "masked")["textures"]
     longest = max(strokes, key=lambda row: row["length_m"])
     place, values, side = tacto.texture(str(pathlib.Path(longest["file"])).removesuffix(".texture.json"))

@@ -31,6 +31,18 @@ def strokes_everywhere(name, reported=None):
     return found
 
 
+def a_changed_scale_is_warned_of():
+    """The sidecar has no checksum, but it has the strokes as they were recorded."""
+    tacto.run("record", "-d", "sim:seed=1", "--time", "2s", "-o", "scaled")
+    side = json.loads(pathlib.Path("scaled.json").read_text())
+    position = next(channel for channel in side["channels"] if channel["name"] == "position")
+    for scale, warned in ((1.04e-6, 0), (2e-6, 1), (0.5e-6, 1)):
+        position["scale"] = scale
+        pathlib.Path("scaled.json").write_text(json.dumps(side))
+        warnings = tacto.run_json("spatial", "scaled", "--force", "-o", "scaled").get("warnings", [])
+        assert len([one for one in warnings if "mean speed" in one]) == warned, (scale, warnings)
+
+
 def recordings_have_the_same_strokes_everywhere():
     for name, device, arguments, count in (
             ("whole", "sim:seed=1", ("--time", "2s"), 2), ("cut", "sim:seed=1", ("--time", "1.4s"), 2), ("begun", "sim:seed=1", ("--time", "0.15s"), 0),
@@ -129,7 +141,7 @@ def columns_of_a_table_are_told_apart():
         assert header.count(column) == 1, header
 
 
-TESTS = [recordings_have_the_same_strokes_everywhere, the_rule_is_kept, a_batch_warns_once, columns_of_a_table_are_told_apart]
+TESTS = [a_changed_scale_is_warned_of, recordings_have_the_same_strokes_everywhere, the_rule_is_kept, a_batch_warns_once, columns_of_a_table_are_told_apart]
 
 if __name__ == "__main__":
     for test in TESTS:

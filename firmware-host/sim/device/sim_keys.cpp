@@ -20,7 +20,10 @@ constexpr NumberKey kNumbers[] = {
      [](P& p, double v) { p.strokes.wander = v; }},
     {"strokes", "number of strokes, alternately forth and back, 2; when recorded, until the recording ends",
      Dimension::none, 0, 1e6, true, [](P& p, double v) { p.strokes.strokes = static_cast<int>(v); }},
-    {"seed", "of all random numbers except the ridges, 1", Dimension::none, 0, kLargestSeed, true,
+    {"seed",
+     "of the surface, the finger's way and the noise: another seed is another sample; for strokes of one "
+     "sample use strokes, or surface=profile:NAME; 1",
+     Dimension::none, 0, kLargestSeed, true,
      [](P& p, double v) { p.seed = p.surface.seed = static_cast<std::uint64_t>(v); }},
     {"person", "seed of the finger's ridges, 1", Dimension::none, 0, kLargestSeed, true,
      [](P& p, double v) { p.person = static_cast<std::uint64_t>(v); }},
