@@ -211,10 +211,11 @@ DesignRow needs_row(const JudgedLayer& layer, const DesignRequest& request) {
       {"y_m", layer.y_m},
       {"greatest_period_s", above(0, loop.greatest_period_s(request.judged, layer.total))},
       {"largest_delay_s", above(-1, loop.largest_delay_s(request.judged, layer.total))},
-      {"any_hand_needs_n_s_per_m", playback::passive_damping_needed(loop.timing(), stiffness, damping)},
-      {"passive_below_mps",
+      {"damping_for_any_hand_n_s_per_m", playback::passive_damping_needed(loop.timing(), stiffness, damping)},
+      {"any_hand_below_mps",
        playback::largest_passive_speed_mps(loop.axis, loop.timing(), stiffness, damping)},
-      {"friction_stops_below_m", playback::friction_basin_m(loop.axis, loop.timing(), stiffness, damping)}};
+      {"friction_stops_swings_below_m",
+       playback::friction_basin_m(loop.axis, loop.timing(), stiffness, damping)}};
 }
 
 cli::Report report_of(const DesignRow& row) {

@@ -182,8 +182,8 @@ def massies_wall():
     for step, speed in ((1e-11, 57.14e-3), (30e-6, 27.14e-3), (60e-6, 0)):
         write_device(0.075, 0, coulomb=0.1, step=step)
         row = only(design(code=UNSTABLE))
-        close(row["any_hand_needs_n_s_per_m"], 1.75, 1e-9)
-        assert abs(row["passive_below_mps"] - speed) < 1e-5, (step, row)
+        close(row["damping_for_any_hand_n_s_per_m"], 1.75, 1e-9)
+        assert abs(row["any_hand_below_mps"] - speed) < 1e-5, (step, row)
         if speed:
             for factor, code in ((0.99, 0), (1.01, UNSTABLE)):
                 design("--speed", f"{factor * speed}m/s", code=code)
@@ -217,7 +217,7 @@ def a_delay_of_half_a_tick_needs_more_than_the_mean():
     for delay in (0.25, 0.5, 1.75):
         write_device(0.1, 1.0, coulomb=1, step=1e-10, delay=delay * 1e-3)
         write_scene(patch(spring(1)))
-        needed = only(design("--hand", "any"))["any_hand_needs_n_s_per_m"] / 1e-3  # of K T
+        needed = only(design("--hand", "any"))["damping_for_any_hand_n_s_per_m"] / 1e-3  # of K T
         time = (np.arange(ticks * steps) + 0.5) / steps
         sampled = np.floor(time - delay)
         form = ((time[None, :] < time[:, None]) & (time[None, :] > sampled[:, None])) / steps + np.eye(len(time)) / (2 * steps)

@@ -167,7 +167,8 @@ void note_maps(const PreparedScene& scene, const schema::Patch& patch, std::vect
           const Relief& relief = *scene.reliefs.at(map.file);
           const double width_m = static_cast<double>(relief.columns) * relief.pitch_m,
                        height_m = static_cast<double>(relief.rows) * relief.pitch_m;
-          const bool wide = patch.width_m > width_m, high = relief.rows > 1 && patch.height_m > height_m;
+          const bool wide = patch.width_m > (1 + 1e-9) * width_m,
+                     high = relief.rows > 1 && patch.height_m > (1 + 1e-9) * height_m;
           if (wide || high)
             notes.push_back(
                 fmt::format("patch '{}' is larger than its height map '{}' of {:.4g} m x {:.4g} m: beyond "
