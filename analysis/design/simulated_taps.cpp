@@ -72,7 +72,8 @@ void judge(SimulatedTap& tap, const std::vector<double>& force_n, std::size_t in
   const bool swings = crossings(std::span(tap.path_m).first(std::max<std::size_t>(inside, 1))) >= kSwings;
   const bool grows = swings && rms[3] > 1 && rms[3] > kTapGrows * rms[2] && rms[2] > kTapGrows * rms[1];
   if (!grows) of = quarters_of(tap.path_m, force_n, tap.path_m.size(), step_m);
-  tap.rms_counts = rms[3];
+  constexpr double kRounding = 1e-9;  // of the positions, in counts
+  tap.rms_counts = rms[3] < kRounding ? 0 : rms[3];
   tap.rms_n = of.rms_n;
   if (grows)
     tap.end = TapEnd::grows;

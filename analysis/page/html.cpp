@@ -20,7 +20,7 @@ p.answer { font-size: 1.2rem; font-weight: 600; margin: .8rem 0; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .8rem 0; }
 th, td { padding: .35rem .6rem; text-align: right; vertical-align: top; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; vertical-align: bottom; } td:first-child, th:first-child { text-align: left; }
-table.pairs th, table.pairs td { text-align: left; } table.c9 { font-size: .9rem; } td.long { overflow-wrap: anywhere; } td.word { white-space: nowrap; } td.text { text-align: left; }
+table.pairs th, table.pairs td { text-align: left; } table.c9 { font-size: .9rem; display: block; overflow-x: auto; } td.long { overflow-wrap: anywhere; } td.word { white-space: nowrap; } td.text { text-align: left; }
 .picture { overflow-x: auto; } .picture img { min-width: 40rem; }
 img { width: 100%; height: auto; margin: .6rem 0; border-radius: .3rem; } p.note { color: var(--soft); font-size: .9rem; }
 details { margin: .8rem 0; border: 1px solid var(--line); border-radius: .3rem; padding: 0 .8rem; }

@@ -58,7 +58,9 @@ std::string number_for_people(std::string_view key, double value) {
   if (!std::isfinite(value)) return "unknown";
   if (!suffix) return fmt::format("{:.4g}", value);
   if (suffix->dimension) return schema::for_people(value, *suffix->dimension);
-  return fmt::format("{:.4g} {}", value, suffix->unit);
+  const bool whole = std::abs(value) >= 1e4 && std::abs(value) < 1e6;  // 11000, not 1.1e+04
+  return whole ? fmt::format("{:.0f} {}", value, suffix->unit)
+               : fmt::format("{:.4g} {}", value, suffix->unit);
 }
 
 std::string label_of(std::string_view key) {
