@@ -25,7 +25,7 @@ using DesignRow = std::vector<std::pair<std::string, std::variant<double, std::s
 
 DesignRow layer_row(const JudgedLayer& layer, const DesignRequest& request);
 
-/// The tables of the verb and of the page, without what is nothing.
+/// The tables of the verb and of the page, without empty columns.
 struct DesignTables {
   std::vector<cli::Report> layers, needs, remedies;
 };

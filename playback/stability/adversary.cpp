@@ -81,7 +81,7 @@ class Adversary {
     return way_m;
   }
 
-  // Splits the way of a tick at the change of the force, within the speed.
+  // Divides the path of a tick at the change of the force, within the speed.
   void add(double way_m, double split) {
     path_.before_m.push_back(way_m * split);
     path_.after_m.push_back(way_m - way_m * split);

@@ -101,8 +101,8 @@ Result<void> Run::leave_out_short(const TextureMaker& maker, std::vector<StrokeJ
                       maker.record().where(), "use a higher --low, or --band off");
 }
 
-// What the recording says of the channel, such as outliers; and a scale of the position that was changed
-// later.
+// Warnings that the recording stores for the channel, such as outliers; and a scale of the position that was
+// changed later.
 void Run::warn_of_recording(const TouchRecord& record) {
   const schema::RecordingHeader& header = record.header();
   for (const std::string& warning : header.warnings)

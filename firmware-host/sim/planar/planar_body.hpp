@@ -21,7 +21,7 @@ class PlanarBody {
 
   /// At rest at these places, without forces. One number per axis, here and below.
   void rest_at(const std::vector<double>& place_m);
-  /// In motion, without forces of the device; a constant force of the outside pushes from now on.
+  /// In motion, without forces of the device; from now on a constant external force acts on it.
   void start_at(const std::vector<double>& place_m, const std::vector<double>& speed_mps,
                 const std::vector<double>& push_n);
   /// Moves over one period, in which the hand's places move evenly, after a tick with these forces (N, on the
