@@ -224,6 +224,23 @@ TEST(Record, StopsAndMarksWhenAsked) {
   EXPECT_EQ(recorded->recording.header.ended, "");
 }
 
+// The keys m and q may be read together: the mark is asked for when the recording ends already.
+TEST(Record, KeepsAMarkThatComesTogetherWithTheEnd) {
+  const TemporaryFolder folder;
+  CountingDevice device(1U << 30);
+  RecordRequest asked = request(folder / "oak", 1);
+  asked.time_s.reset();
+  int blocks = 0;
+  bool ended = false;
+  RecordHooks hooks;
+  hooks.stop = [&] { return ended = blocks == 10; };
+  hooks.new_marks = [&] { return ++blocks, ended ? 1U : 0U; };
+  const auto recorded = record(device, asked, hooks);
+  ASSERT_TRUE(recorded);
+  ASSERT_EQ(recorded->recording.header.marks.size(), 1U);
+  EXPECT_EQ(recorded->recording.header.marks[0].frame, recorded->recording.header.frames);
+}
+
 TEST(Record, EndsAfterTheStrokesThatWereAskedFor) {
   const TemporaryFolder folder;
   const auto device = firmware_host::open_device("sim:surface=flat,strokes=6");

@@ -149,6 +149,18 @@ def bit_of_a_force_changed(name, tick):
     raise AssertionError(tick)
 
 
+def what_the_device_refuses_or_makes_unstable():
+    """The free device's limit is 9365 N/m; the wire carries an onset of at most 10 s."""
+    write_path("still.csv", {"time_s": [0, 0.2], "x_m": [0, 0], "y_m": [0, 0]})
+    for stiffness, warned in ((9000, 0), (9800, 1)):
+        write_scene("wall", patch(name="floor", x_m=-0.05, width_m=0.02, layers=[spring(20)]), patch(name="wall", width_m=0.02, layers=[spring(stiffness)]))
+        report = play("wall.scene.json", "sim:planar", f"wall{stiffness}", "--finger-path", "still.csv")
+        about = [one for one in report.get("warnings", []) if "tactograph design" in one]
+        assert len(about) == warned and all("'wall'" in one and f"{stiffness} N/m" in one for one in about), report
+    run("play", "wall.scene.json", "-d", "sim:planar", "-o", "late", "--finger-path", "still.csv", "--onset", "20s", code=USAGE)
+    assert not pathlib.Path("late.session").exists()
+
+
 def sliders_move_the_force_and_are_replayed():
     rng = np.random.default_rng(3110)
     write_sliders()
@@ -224,5 +236,5 @@ def a_wrong_script_plays_nothing():
 
 
 if __name__ == "__main__":
-    for test in (sliders_move_the_force_and_are_replayed, a_hand_under_sliders_is_replayed, a_wrong_script_plays_nothing, a_played_scene_has_the_forces_of_render, surfaces_replay_to_the_bit, a_hand_on_sim_planar_is_scipys_loop, wrong_uses_are_refused, a_jump_of_the_encoder_ends_in_a_fault):
+    for test in (what_the_device_refuses_or_makes_unstable, sliders_move_the_force_and_are_replayed, a_hand_under_sliders_is_replayed, a_wrong_script_plays_nothing, a_played_scene_has_the_forces_of_render, surfaces_replay_to_the_bit, a_hand_on_sim_planar_is_scipys_loop, wrong_uses_are_refused, a_jump_of_the_encoder_ends_in_a_fault):
         tacto.in_folder(test)
