@@ -79,6 +79,19 @@ TEST(Compare, AShiftIsNotUpsideDown) {
   EXPECT_EQ(said(moved(0)), "");
 }
 
+// Two surfaces with a part in common, as gratings with the same lines have, are not one that is shifted.
+TEST(Compare, ASmallCommonPartIsNoShift) {
+  const RandomSurface common(3, 300, 1100), first(4, 300, 1100), second(5, 300, 1100);
+  for (const double own : {0.3, 1.1}) {  // coherence 0.84, 0.20
+    const auto a = made_texture(50e-6, 8000, [&](double x) { return common(x) + own * first(x); });
+    const auto b = made_texture(50e-6, 8000, [&](double x) { return common(x + 1e-3) + own * second(x); });
+    const auto found = compare(a, b, no_formants());
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(found->point_by_point) << *found->coherence;
+    EXPECT_EQ(found->notes.empty(), own > 1) << *found->coherence;
+  }
+}
+
 // Independent noise n of power r times A's: error r, coherence 1 / (1 + r), residual r / (1 + r).
 TEST(Compare, NoiseOfKnownPowerIsErrorAndLostCoherence) {
   const auto a = white_texture(1, 200000), n = white_texture(2, 200000);

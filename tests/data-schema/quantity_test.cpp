@@ -104,5 +104,27 @@ TEST(Quantity, WritesForPeopleWhatItReadsBack) {
   }
 }
 
+// The key of a report ends in the unit of its value, and the ending gives that unit again.
+TEST(Quantity, AnEndingOfAKeyIsItsUnit) {
+  for (const auto& [symbol, key] : {std::pair{"N", "rms_n"},
+                                    {"m", "rms_m"},
+                                    {"V", "rms_v"},
+                                    {"m/s", "rms_mps"},
+                                    {"m/s^2", "rms_mps2"},
+                                    {"Hz", "rms_hz"},
+                                    {"s", "rms_s"}}) {
+    EXPECT_EQ(key_in("rms", symbol), key);
+    const auto unit = unit_with_ending(std::string_view(key).substr(3));
+    ASSERT_TRUE(unit) << key;
+    EXPECT_EQ(unit->symbol, symbol);
+    EXPECT_EQ(unit->si, 1);
+  }
+  EXPECT_EQ(unit_with_ending("_khz")->si, 1e3);
+  EXPECT_EQ(unit_with_ending("_mn")->si, 1e-3);
+  EXPECT_EQ(unit_with_ending("_m_per_n")->dimension, Dimension::compliance);
+  for (const char* none : {"1", "counts", ""}) EXPECT_EQ(key_in("rms", none), "rms");
+  EXPECT_FALSE(unit_with_ending("_1"));
+}
+
 }  // namespace
 }  // namespace tacto::schema
