@@ -21,7 +21,7 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .
 th, td { padding: .35rem .6rem; text-align: right; vertical-align: top; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; vertical-align: bottom; } td:first-child, th:first-child { text-align: left; }
 table.pairs th, table.pairs td { text-align: left; } table.c9 { font-size: .9rem; display: block; overflow-x: auto; } td.long { overflow-wrap: anywhere; } td.word { white-space: nowrap; } td.text { text-align: left; }
-.picture { overflow-x: auto; } .picture img { min-width: 40rem; }
+.picture { overflow-x: auto; } .picture img { min-width: 40rem; } .small img { min-width: 0; }
 img { width: 100%; height: auto; margin: .6rem 0; border-radius: .3rem; } p.note { color: var(--soft); font-size: .9rem; }
 details { margin: .8rem 0; border: 1px solid var(--line); border-radius: .3rem; padding: 0 .8rem; }
 summary { cursor: pointer; padding: .5rem 0; font-weight: 600; }

@@ -217,7 +217,8 @@ std::string answers_table(const TradeHalf& half) {
 // Two columns if the screen is wide enough.
 schema::Result<std::string> knob_pictures(const TradeHalf& half, const Trade& trade) {
   std::string html =
-      "<div style=\"display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,24rem),1fr));"
+      "<div class=\"small\" "
+      "style=\"display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,24rem),1fr));"
       "gap:.5rem 1.5rem\">\n";
   for (const spatial::LineFigure& figure : knob_figures(half, trade)) {
     const auto svg = spatial::to_page_svg(figure);
