@@ -103,19 +103,17 @@ void add_played(Report& report, const PlayOutcome& outcome) {
   cli::add_choices(report, outcome.choices);
 }
 
-// The verb `session` judges the strokes, and says why it cannot; here only what the band removed is of
-// interest.
-void add_power(Report& report, const std::string& session) {
-  const auto strokes = report_strokes(session);
-  if (!strokes || !strokes->power_kept_percent) return;
-  report.add("mean_speed_mps", strokes->mean_speed_mps)
-      .add("power_kept_percent", *strokes->power_kept_percent);
-  if (*strokes->power_kept_percent < kLeastPowerPercent)
+// If the speed cannot be read, the verb `session` says why.
+void add_power(Report& report, const std::string& session, const spatial::Band& band) {
+  const auto speed = stroke_speed(session);
+  if (!speed || !speed->power_kept_percent) return;
+  report.add("mean_speed_mps", speed->mean_mps).add("power_kept_percent", *speed->power_kept_percent);
+  if (*speed->power_kept_percent < kLeastPowerPercent)
     cli::warn(fmt::format("at {} the band of {} to {} keeps {:.3g} % of the texture's power",
-                          schema::for_people(strokes->mean_speed_mps, Dimension::speed),
-                          schema::for_people(strokes->low_hz, Dimension::frequency),
-                          schema::for_people(strokes->high_hz, Dimension::frequency),
-                          *strokes->power_kept_percent));
+                          schema::for_people(speed->mean_mps, Dimension::speed),
+                          schema::for_people(band.low_hz, Dimension::frequency),
+                          schema::for_people(band.high_hz, Dimension::frequency),
+                          *speed->power_kept_percent));
 }
 
 Report add_end(Report report, const PlayOutcome& outcome) {
@@ -140,7 +138,7 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, const cli::
   if (!outcome.real_time) pace.add_to(report, outcome.status.ticks.span_s());
   report.add("off_texture_percent", 100 * outcome.status.ticks.off_textures());
   add_loop(report, outcome.loop_period_m, outcome.loop_seam_m);
-  add_power(report, o.session);
+  add_power(report, o.session, {o.prepare.band.low_hz, outcome.passes_to_hz});
   add_played(report, outcome);
   if (outcome.decision) add_decision(report, *outcome.decision, explain);
   cli::warn_grouped(outcome.notes);

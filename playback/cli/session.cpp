@@ -229,8 +229,9 @@ Result<Report> run_session(const SessionVerbOptions& o) {
   add_removed(report, strokes->limits);
   if (strokes->limits) report.add("energy_limited_ticks", strokes->limits->energy_limited());
   report.add("stroke_count", strokes->stroke_count);
-  if (strokes->mean_speed_mps > 0) report.add("mean_speed_mps", strokes->mean_speed_mps);
-  if (strokes->power_kept_percent) report.add("power_kept_percent", *strokes->power_kept_percent);
+  const StrokeSpeed& speed = strokes->speed;
+  if (speed.mean_mps > 0) report.add("mean_speed_mps", speed.mean_mps);
+  if (speed.power_kept_percent) report.add("power_kept_percent", *speed.power_kept_percent);
   std::vector<Report> rows;
   for (const PlayedStroke& stroke : strokes->strokes) rows.push_back(stroke_row(stroke));
   report.add("strokes", std::move(rows));

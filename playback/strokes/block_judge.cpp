@@ -9,11 +9,11 @@ namespace {
 
 constexpr double kMostBlockRows = 1 << 19;  // at any rate
 
+}  // namespace
+
 std::size_t rows_in(double seconds, double rate_hz) {
   return static_cast<std::size_t>(std::clamp(std::ceil(seconds * rate_hz), 1.0, kMostBlockRows));
 }
-
-}  // namespace
 
 // Rows beyond a stop that is longer than the rows around a block have no influence on it.
 BlockJudge::BlockJudge(const SessionOverview& overview, const JudgedBlocks& blocks,

@@ -19,6 +19,9 @@ namespace tacto::playback {
 /// Whether the stroke of the last row is complete.
 enum class LastStroke { whole, cut };
 
+/// At least 1, at most 2^19.
+std::size_t rows_in(double seconds, double rate_hz);
+
 class BlockJudge {
  public:
   /// The overview must outlive this.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "playback/strokes/block_judge.hpp"
 #include "playback/strokes/judged_rows.hpp"
 #include "playback/strokes/stroke_finder.hpp"
 
@@ -16,11 +17,10 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-constexpr double kAroundS = 5;  // s, as in JudgedBlocks
 constexpr std::uint64_t kMostStrokeRows = std::uint64_t{1} << 22;
 
 std::uint64_t rows_around(const schema::SessionHeader& header) {
-  return static_cast<std::uint64_t>(std::clamp(kAroundS * header.rate_hz, 1.0, 524288.0));
+  return rows_in(JudgedBlocks{}.around_s, header.rate_hz);
 }
 
 double way_of(const StrokeSums& stroke) {

@@ -10,6 +10,7 @@
 
 #include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
+#include "data-schema/base/stroke_rule.hpp"
 #include "playback/session/session_limits.hpp"
 #include "playback/strokes/block_judge.hpp"
 #include "playback/strokes/session_target.hpp"
@@ -169,22 +170,30 @@ void keep_stroke(const PlayedStroke& stroke, const StrokeListener& listener, Str
   if (listener.stroke) listener.stroke(stroke);
 }
 
-void add_power(StrokeReport& report, const SessionOverview& overview) {
-  double length_m = 0, time_s = 0;
-  for (const PlayedStroke& stroke : report.strokes) {
-    length_m += std::abs(stroke.to_m - stroke.from_m);
-    time_s += stroke.to_s - stroke.from_s;
+class SpeedOfStrokes {
+ public:
+  void add(const StrokeSums& stroke) {
+    length_m_ += std::abs(stroke.last.row.position_m - stroke.first.row.position_m);
+    time_s_ += stroke.last.row.time_s - stroke.first.row.time_s;
   }
-  if (!(time_s > 0)) return;
-  report.mean_speed_mps = length_m / time_s;
-  const bool changed =
-      std::ranges::any_of(overview.steps, [](const SteeringStep& step) { return step.turn.has_value(); });
-  if (overview.header.textures.size() != 1 || changed) return;
-  const auto texture = same_texture(overview.header.textures.front());
-  if (texture)
-    report.power_kept_percent =
-        spatial::band_kept_percent(*texture, report.mean_speed_mps, {report.low_hz, report.high_hz});
-}
+
+  StrokeSpeed of(const SessionOverview& overview) const {
+    StrokeSpeed speed;
+    if (!(time_s_ > 0)) return speed;
+    speed.mean_mps = length_m_ / time_s_;
+    const bool changed =
+        std::ranges::any_of(overview.steps, [](const SteeringStep& step) { return step.turn.has_value(); });
+    const schema::SessionHeader& header = overview.header;
+    if (header.textures.size() != 1 || changed) return speed;
+    if (const auto texture = same_texture(header.textures.front()))
+      speed.power_kept_percent =
+          spatial::band_kept_percent(*texture, speed.mean_mps, {header.low_hz, header.high_hz});
+    return speed;
+  }
+
+ private:
+  double length_m_ = 0, time_s_ = 0;
+};
 
 }  // namespace
 
@@ -197,9 +206,11 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
   if (end == 0) return report;
   LimitTally whole;
   std::uint64_t unwanted = 0, unmeasured = 0;
+  SpeedOfStrokes speed;
   BlockJudge judge(*overview, blocks, [&](const StrokeSums& sums) {
     unwanted += target_is_zero(sums);
     unmeasured += !sums.measured_known;
+    speed.add(sums);
     keep_stroke(stroke_of(sums), listener, report);
   });
   const auto each = [&](const schema::SessionTick& tick, std::optional<float> unlimited_v) {
@@ -218,8 +229,25 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
     report.notes.push_back(note_of_unmeasured(unmeasured, report.stroke_count));
   if (*unknown) report.notes.push_back(schema::message(**unknown));
   if (!*unknown) report.limits = whole;
-  add_power(report, *overview);
+  report.speed = speed.of(*overview);
   return report;
+}
+
+Result<StrokeSpeed> stroke_speed(const std::string& name) {
+  const auto overview = session_overview(name);
+  TACTO_TRY(overview);
+  const std::uint64_t end = overview->lost_at.value_or(UINT64_MAX);
+  if (end == 0) return StrokeSpeed{};
+  SpeedOfStrokes speed;
+  StrokeFinder finder([&](const StrokeSums& sums) { speed.add(sums); });
+  RowMaker maker(*overview, 2 * rows_in(JudgedBlocks{}.around_s, overview->header.rate_hz));
+  std::uint64_t index = 0;
+  const auto read = read_rows(maker, name, [&](const SessionRow& row) {
+    if (row.tick < end) finder.add({index++, row, 0, true, {}, {}, {}});
+  });
+  TACTO_TRY(read);
+  if (!overview->lost_at) finder.end();
+  return speed.of(*overview);
 }
 
 }  // namespace tacto::playback

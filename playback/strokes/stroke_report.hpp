@@ -38,15 +38,19 @@ struct PlayedStroke {
   std::optional<LimitTally> limits;                         ///< none: unknown
 };
 
+struct StrokeSpeed {
+  double mean_mps = 0;  ///< of all strokes; 0: there is none
+  /// Share of the texture's power in the band at that speed (spatial::band_kept_percent); none: several
+  /// textures, or not the one that was played.
+  std::optional<double> power_kept_percent;
+};
+
 struct StrokeReport {
   std::vector<PlayedStroke> strokes;  ///< the first kMostStrokesKept
   std::uint64_t stroke_count = 0;     ///< of all
   std::optional<LimitTally> limits;   ///< of the whole session; none: unknown
   double low_hz = 0, high_hz = 0;     ///< the band of all displacements
-  double mean_speed_mps = 0;          ///< of the strokes kept; 0: there is none
-  /// Share of the texture's power in the band at that speed (spatial::band_kept_percent); none: several
-  /// textures, or not the one that was played.
-  std::optional<double> power_kept_percent;
+  StrokeSpeed speed;
   std::vector<std::string> notes;  ///< what could not be judged, and why
   bool damaged = false;            ///< the file is damaged, and the rest of it is not in the report
 };
@@ -81,5 +85,9 @@ struct StrokeListener {
 /// of the limits in them is not reported. Blind ticks are in no stroke, with a note.
 schema::Result<StrokeReport> report_strokes(const std::string& name, const StrokeListener& listener = {},
                                             const JudgedBlocks& blocks = {});
+
+/// The speed that report_strokes() reports, without its judgement of the displacement and the memory of a
+/// block.
+schema::Result<StrokeSpeed> stroke_speed(const std::string& name);
 
 }  // namespace tacto::playback
