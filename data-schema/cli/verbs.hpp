@@ -6,6 +6,7 @@
 
 namespace tacto::schema {
 
+extern const cli::Verb kExportVerb;
 extern const cli::Verb kInfoVerb;
 extern const cli::Verb kValidateVerb;
 

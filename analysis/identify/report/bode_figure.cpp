@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "analysis/identify/report/bode_curves.hpp"
+#include "data-schema/report/value_text.hpp"
 #include "spatial/picture/draw/axes.hpp"
 #include "spatial/picture/draw/canvas.hpp"
 #include "spatial/picture/draw/heading.hpp"
@@ -116,10 +117,13 @@ std::string title_of(const ResponseFit& fit) {
 }
 
 std::string facts_of(const ResponseFit& fit) {
+  std::vector<std::string> names;
+  for (const FittedParameter& p : fit.parameters) names.push_back(p.name);
+  const auto labels = cli::labels_of(names);
   std::string facts;
-  for (const FittedParameter& p : fit.parameters)
-    facts += fmt::format("{}{} {:.4g}", facts.empty() ? "" : ", ", p.name, p.value);
-  return fmt::format("{}; R^2 {:.5f}", facts, fit.r_squared);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    facts += fmt::format("{} {}, ", labels[i], cli::cell_text(names[i], fit.parameters[i].value));
+  return fmt::format("{}R\u00b2 {:.5f}", facts, fit.r_squared);
 }
 
 spatial::Heading heading_of(const ResponseFit& fit) {
@@ -161,7 +165,9 @@ schema::Result<void> BodeFigure::draw(Canvas& canvas) const {
   residual.dots(c.across, spatial::series_colour(3));
   residual.frame("residual / sigma", true);
   canvas.text({kLeft + kWidth, page().height - 12},
-              "residual along the model (green: amplitude) and across it (pink: phase)",
+              fmt::format("residual along the model (green: amplitude) and across it (pink: phase); dashed: "
+                          "{:g} sigma",
+                          kNearResidual),
               {.size = 9, .colour = spatial::kGreyInk, .align_x = 1});
   return {};
 }

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/cli/describe.hpp"
+#include "data-schema/cli/verbs.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/recording/recording_frames.hpp"
+#include "data-schema/report/progress.hpp"
+#include "data-schema/texture/texture.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::uint64_t kBlockFrames = 8192;
+
+struct ExportOptions {
+  std::string name, output;
+  Existing existing = Existing::keep;
+};
+
+/// A text file, or stdout.
+class TableFile {
+ public:
+  explicit TableFile(const std::string& path)
+      : path_(path), file_(path.empty() ? stdout : std::fopen(path.c_str(), "wb")) {}
+  TableFile(const TableFile&) = delete;
+  TableFile& operator=(const TableFile&) = delete;
+  ~TableFile() {
+    if (file_ != nullptr && file_ != stdout) std::fclose(file_);
+  }
+  Result<void> write(std::string_view text) {
+    if (file_ == nullptr || std::fwrite(text.data(), 1, text.size(), file_) != text.size() ||
+        std::fflush(file_) != 0)
+      return fail(ErrorKind::cannot_write, "can't be written", path_.empty() ? "stdout" : path_,
+                  "is the disk full?");
+    return {};
+  }
+
+ private:
+  std::string path_;
+  std::FILE* file_;
+};
+
+std::string head_of(std::vector<std::string> columns, const std::string& simulated) {
+  if (!simulated.empty()) columns.emplace_back("simulated");
+  return fmt::format("{}\n", fmt::join(columns, ","));
+}
+
+bool is_exported(std::string_view head) {
+  return head.starts_with("time_s,") || head.starts_with("position_m,");
+}
+
+// Numbers have as many digits as give the same double again.
+Result<cli::Report> export_recording(const std::string& path, TableFile& table) {
+  const auto recording = open_recording(path);
+  TACTO_TRY(recording);
+  const RecordingHeader& header = recording->header;
+  auto frames = RecordingFrames::open(*recording);
+  TACTO_TRY(frames);
+  std::vector<std::string> columns{"time_s"};
+  for (const Channel& channel : header.channels) columns.push_back(key_in(channel.name, channel.unit));
+  TACTO_TRY(table.write(head_of(columns, header.simulated)));
+  cli::Progress progress("exporting");
+  std::vector<std::vector<double>> values(header.channels.size());
+  for (std::uint64_t first = 0; first < header.frames; first += kBlockFrames) {
+    const std::uint64_t count = std::min(kBlockFrames, header.frames - first);
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      values[c].resize(count);
+      TACTO_TRY(frames->read(c, first, values[c]));
+    }
+    std::string text;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      fmt::format_to(std::back_inserter(text), "{:.9f}", frame_time_s(header, first + i));
+      for (const auto& channel : values) fmt::format_to(std::back_inserter(text), ",{}", channel[i]);
+      text += header.simulated.empty() ? "\n" : ",1\n";
+    }
+    TACTO_TRY(table.write(text));
+    progress.update(static_cast<double>(first + count) / static_cast<double>(header.frames));
+  }
+  cli::Report report = report_of(FileKind::recording, path, header.simulated);
+  report.add("rows", header.frames).add("columns", columns).add("gaps", header.gaps.size());
+  if (!header.gaps.empty())
+    report.add("missing_frames", header.gaps.back().device_sequence - header.gaps.back().frame);
+  report.add("marks_not_in_table", header.marks.size());
+  return report;
+}
+
+Result<cli::Report> export_texture(const std::string& path, TableFile& table) {
+  const auto texture = read_texture(path);
+  TACTO_TRY(texture);
+  std::vector<std::string> columns{"position_m", key_in(texture->quantity, texture->unit)};
+  if (texture->average) columns.push_back(key_in("spread", texture->unit));
+  std::string text = head_of(columns, texture->simulated);
+  const auto& values = texture->signal.values;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    fmt::format_to(std::back_inserter(text), "{:.12g},{}", static_cast<double>(i) * texture->signal.pitch_m,
+                   values[i]);
+    if (texture->average) fmt::format_to(std::back_inserter(text), ",{}", texture->average->spread[i]);
+    text += texture->simulated.empty() ? "\n" : ",1\n";
+  }
+  TACTO_TRY(table.write(text));
+  cli::Report report = report_of(FileKind::texture, path, texture->simulated);
+  return report.add("rows", values.size()).add("columns", columns);
+}
+
+Result<StoredFile> exportable(const std::string& name) {
+  const auto files = stored_files(name);
+  TACTO_TRY(files);
+  for (const StoredFile& file : *files)
+    if (file.kind == FileKind::recording || file.kind == FileKind::texture) return file;
+  const bool session = files->front().kind == FileKind::session;
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format("is a {}, and only recordings and textures are exported", kind_name(files->front().kind)),
+      files->front().path,
+      session ? fmt::format("export a session with 'tactograph session {0} -o {0}.csv'", name)
+              : "name a recording or a texture");
+}
+
+Result<cli::Report> run_export(const ExportOptions& o) {
+  const auto file = exportable(o.name);
+  TACTO_TRY(file);
+  const auto write = file->kind == FileKind::recording ? export_recording : export_texture;
+  if (o.output == "-") {
+    TableFile table("");
+    const auto written = write(file->path, table);
+    return written ? Result<cli::Report>(cli::Report()) : written;
+  }
+  const std::string output = o.output.empty() ? stem_of(file->path, "") + ".csv" : o.output;
+  TACTO_TRY(cli::check_ending(output, {".csv"}, "the table is a CSV: NAME.csv, or - for stdout"));
+  TACTO_TRY(check_table_free(output, o.existing, is_exported));
+  PendingFiles files;
+  const auto temporary = files.add(output);
+  TACTO_TRY(temporary);
+  auto report = [&] {
+    TableFile table(*temporary);
+    return write(file->path, table);
+  }();
+  TACTO_TRY(report);
+  TACTO_TRY(files.commit(o.existing));
+  return report->add("written", output);
+}
+
+cli::Action declare_export(CLI::App& app) {
+  auto options = std::make_shared<ExportOptions>();
+  app.add_option("FILE", options->name, "Recording or texture: stem or file name")->required();
+  app.add_option("-o,--output", options->output,
+                 "Output: NAME.csv, or - for stdout, without a report; default: the input's name");
+  cli::declare_force(app, options->existing);
+  app.footer(app.get_footer() +
+             "\nSI units; the header names quantity and unit. Of a recording: time_s and a column for each "
+             "channel; a lost sample has no row. Of a texture: position_m, its values and, of an average, "
+             "their spread. Simulated data have a last column 'simulated' of ones.");
+  return [options] { return run_export(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kExportVerb{"export", "Write a recording or a texture as a CSV table for other programs",
+                            "tactograph export oak\n  tactograph export oak-01 -o - | head", declare_export};
+
+}  // namespace tacto::schema
