@@ -11,7 +11,7 @@ namespace {
 const TextStyle kTitle{.size = 15, .bold = true, .align_y = 0};
 const TextStyle kSubtitle{.size = 10, .colour = kGreyInk, .align_y = 0};
 const TextStyle kBadge{.size = 10.5, .colour = kAlarm, .bold = true, .align_y = 0};
-constexpr double kBadgePadding = 4, kBadgeGap = 12;
+constexpr double kBadgePadding = 3, kBadgeGap = 12;  // a badge beside the title is within its line
 constexpr double kTitleLine = 21, kSubtitleLine = 14, kBadgeLine = 14;
 constexpr double kBelowSubtitle = kHeadingHeight - kTitleLine - kSubtitleLine;
 
