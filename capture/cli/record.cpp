@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "capture/cli/command_lines.hpp"
 #include "capture/cli/live_line.hpp"
 #include "capture/cli/terminal_keys.hpp"
 #include "capture/cli/verbs.hpp"
@@ -32,7 +33,7 @@ using schema::Result;
 struct RecordOptions {
   std::string device = "usb:", pattern;
   RecordRequest request;
-  bool allow_gaps = false, no_calibration = false;
+  bool allow_gaps = false, no_calibration = false, commands = false;
   std::string calibration;
   std::optional<double> stale_after_s;
 };
@@ -61,6 +62,10 @@ void declare_options(CLI::App& app, RecordOptions& options) {
   app.add_option("--finger", request.finger, "Finger, or object that slides instead of one");
   app.add_option("--surface", request.surface, "Surface that is touched; default: as the device reports");
   app.add_option("--notes", request.notes, "Other notes");
+  app.add_flag(
+      "--commands", options.commands,
+      "Another program steers the recording by lines on stdin: 'mark LABEL', 'stop'; the end of the input "
+      "is 'stop', too. Answers are lines of JSON on stdout");
 }
 
 std::string footer_text() {
@@ -140,10 +145,21 @@ std::size_t terminal_columns() {
 // The user interface of a recording: signals and keys are the input, a line of figures is the output.
 class Console {
  public:
+  explicit Console(bool commands) {
+    if (commands)
+      lines_.emplace();
+    else
+      keys_.emplace();
+  }
   RecordHooks hooks() {
     RecordHooks hooks;
-    hooks.stop = [this] { return look_at_keys(), stopped_ || signals_.stop_asked(); };
-    hooks.new_marks = [this] { return signals_.take_marks() + std::exchange(marks_, 0); };
+    hooks.stop = [this] { return look_at_input(), stopped_ || signals_.stop_asked(); };
+    hooks.new_marks = [this] {
+      std::vector<std::string> labels(signals_.take_marks() + std::exchange(marks_, 0), "mark");
+      if (lines_) std::ranges::move(lines_->take_labels(), std::back_inserter(labels));
+      return labels;
+    };
+    if (lines_) hooks.marked = &CommandLines::answer;
     if (isatty(STDERR_FILENO) == 1)
       hooks.view = [](const LiveView& view, const schema::RecordingHeader& header) {
         cli::write_message(fmt::format("\r\033[K{}", live_line(view, header, terminal_columns())));
@@ -158,15 +174,17 @@ class Console {
   }
 
  private:
-  void look_at_keys() {
-    for (char key = keys_.next(); key != 0; key = keys_.next()) {
+  void look_at_input() {
+    if (lines_) stopped_ = lines_->stopped();
+    for (char key = keys_ ? keys_->next() : '\0'; key != 0; key = keys_->next()) {
       stopped_ = stopped_ || key == 'q';
       marks_ += key == 'm' ? 1 : 0;
     }
   }
 
   cli::StopSignals signals_;
-  TerminalKeys keys_;
+  std::optional<TerminalKeys> keys_;  // one of these two
+  std::optional<CommandLines> lines_;
   cli::Progress progress_{"recording"};
   bool stopped_ = false;
   std::size_t marks_ = 0;
@@ -189,7 +207,7 @@ Result<cli::Report> run_record(const RecordOptions& options) {
   }
   const cli::Pace pace;
   const Result<Recorded> recorded = [&] {
-    Console console;
+    Console console(options.commands);
     return record(*device, request, console.hooks());
   }();
   TACTO_TRY(recorded);

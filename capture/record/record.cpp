@@ -95,6 +95,9 @@ class Capture {
   void take_events(FrameBlock& block);
   void take_marks(FrameBlock& block);
   void tell();
+  double time_s() const {
+    return static_cast<double>(frames_ + lost_noted_) / device_.capabilities().sample_rate_hz;
+  }
 
   Device& device_;
   const RecordRequest& request_;
@@ -156,8 +159,11 @@ void Capture::take_block() {
 }
 
 void Capture::take_marks(FrameBlock& block) {
-  if (hooks_.new_marks)
-    for (std::size_t mark = hooks_.new_marks(); mark > 0; --mark) block.marks.push_back({frames_, "mark"});
+  if (!hooks_.new_marks) return;
+  for (std::string& label : hooks_.new_marks()) {
+    block.marks.push_back({frames_, std::move(label)});
+    if (hooks_.marked) hooks_.marked(block.marks.back(), time_s());
+  }
 }
 
 void Capture::tell() {
@@ -167,7 +173,7 @@ void Capture::tell() {
   next_view_ = Clock::now() + kViewEvery;
   LiveView view = figures_.take_view();
   view.lost_frames = lost_noted_;
-  view.time_s = static_cast<double>(frames_ + lost_noted_) / device_.capabilities().sample_rate_hz;
+  view.time_s = time_s();
   view.disk_left_bytes = static_cast<std::uint64_t>(std::min(disk_left_bytes(request_.name), 0x1p63));
   hooks_.view(view, figures_.header());
 }

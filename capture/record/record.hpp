@@ -32,8 +32,11 @@ struct RecordHooks {
   std::function<void(double)> progress;  ///< fractions from 0 to 1, if a time is given
   /// Ten times a second at most.
   std::function<void(const LiveView&, const schema::RecordingHeader&)> view;
-  std::function<bool()> stop;              ///< true ends the recording
-  std::function<std::size_t()> new_marks;  ///< the number of marks requested since the last call
+  std::function<bool()> stop;  ///< true ends the recording
+  std::function<std::vector<std::string>()>
+      new_marks;  ///< the labels of the marks requested since the last call
+  /// A mark is set; its time is since the first frame, lost frames included.
+  std::function<void(const schema::Mark&, double time_s)> marked;
 };
 
 struct Recorded {

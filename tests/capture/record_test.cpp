@@ -215,12 +215,18 @@ TEST(Record, StopsAndMarksWhenAsked) {
   int blocks = 0;
   RecordHooks hooks;
   hooks.stop = [&] { return blocks == 10; };
-  hooks.new_marks = [&] { return ++blocks == 4 ? 2U : 0U; };
+  hooks.new_marks = [&] { return std::vector<std::string>(++blocks == 4 ? 2U : 0U, "mark"); };
+  std::vector<double> times_s;
+  hooks.marked = [&](const schema::Mark& mark, double time_s) {
+    EXPECT_EQ(mark.label, "mark");
+    times_s.push_back(time_s);
+  };
   const auto recorded = record(device, asked, hooks);
   ASSERT_TRUE(recorded);
   EXPECT_EQ(recorded->recording.header.frames, 200U);  // ten blocks of 20 ms at 1 kHz
   ASSERT_EQ(recorded->recording.header.marks.size(), 2U);
   EXPECT_EQ(recorded->recording.header.marks[1].frame, 80U);
+  EXPECT_EQ(times_s, std::vector<double>(2, 0.08));
   EXPECT_EQ(recorded->recording.header.ended, "");
 }
 
@@ -234,7 +240,7 @@ TEST(Record, KeepsAMarkThatComesTogetherWithTheEnd) {
   bool ended = false;
   RecordHooks hooks;
   hooks.stop = [&] { return ended = blocks == 10; };
-  hooks.new_marks = [&] { return ++blocks, ended ? 1U : 0U; };
+  hooks.new_marks = [&] { return ++blocks, std::vector<std::string>(ended ? 1U : 0U, "mark"); };
   const auto recorded = record(device, asked, hooks);
   ASSERT_TRUE(recorded);
   ASSERT_EQ(recorded->recording.header.marks.size(), 1U);
@@ -334,7 +340,7 @@ TEST(Record, ProgressRunsToOne) {
   CountingDevice device(2000);
   std::vector<double> heard;
   ASSERT_TRUE(
-      record(device, request(folder / "oak", 2), {[&](double part) { heard.push_back(part); }, {}, {}, {}}));
+      record(device, request(folder / "oak", 2), {[&](double part) { heard.push_back(part); }, {}, {}, {}, {}}));
   EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
   EXPECT_EQ(heard.back(), 1);
 }
