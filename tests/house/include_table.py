@@ -143,7 +143,7 @@ MAY_INCLUDE = {
         "capture/table data-schema/{base files recording transducer} firmware-host/link playback/model "
         "spatial/dsp/fourier",
     "analysis/identify/report":
-        "analysis/{identify/fit identify/measure} data-schema/{base results} firmware-host/sim/physics "
+        "analysis/{identify/fit identify/measure} data-schema/{base report results} firmware-host/sim/physics "
         "spatial/{picture picture/draw}",
     "analysis/live":
         "analysis/live/server data-schema/{base control files report texture} firmware-host/{core/firmware core/wire "
