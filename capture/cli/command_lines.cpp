@@ -4,10 +4,11 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <nlohmann/json.hpp>
+#include <tuple>
 #include <utility>
 
 #include "capture/table/text_encoding.hpp"
+#include "data-schema/report/report_text.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -19,13 +20,13 @@ bool ready(int file, short events) {
   return poll(&waiting, 1, 0) == 1;
 }
 
-void print(const nlohmann::ordered_json& event) {
-  const std::string line = event.dump() + "\n";
+void print(const cli::Report& event) {
+  const std::string line = cli::json_line(event);
   if (ready(STDOUT_FILENO, POLLOUT)) std::ignore = ::write(STDOUT_FILENO, line.data(), line.size());
 }
 
 void refuse(const char* why) {
-  print({{"event", "error"}, {"what", why}, {"remedy", "write 'mark LABEL' or 'stop'"}});
+  print(cli::Report().add("event", "error").add("what", why).add("remedy", "write 'mark LABEL' or 'stop'"));
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ void CommandLines::obey(const std::string& line) {
 }
 
 bool CommandLines::stopped() {
-  if (!std::exchange(begun_, true)) print({{"event", "recording"}});
+  if (!std::exchange(begun_, true)) print(cli::Report().add("event", "recording"));
   char bytes[4096];
   while (!stopped_ && ready(STDIN_FILENO, POLLIN)) {
     const auto got = ::read(STDIN_FILENO, bytes, sizeof bytes);
@@ -67,7 +68,11 @@ std::vector<std::string> CommandLines::take_labels() {
 }
 
 void CommandLines::answer(const schema::Mark& mark, double time_s) {
-  print({{"event", "mark"}, {"frame", mark.frame}, {"time_s", time_s}, {"label", mark.label}});
+  print(cli::Report()
+            .add("event", "mark")
+            .add("frame", mark.frame)
+            .add("time_s", time_s)
+            .add("label", mark.label));
 }
 
 }  // namespace tacto::capture

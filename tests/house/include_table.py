@@ -49,7 +49,7 @@ MAY_INCLUDE = {
     "firmware-host/usb": "data-schema/base firmware-host/{core/firmware link}",
     "capture/calibrate": "capture/record data-schema/{base calibration recording transducer} firmware-host/link",
     "capture/cli":
-        "capture/{calibrate doctor import record} data-schema/{base cli command files height recording report} "
+        "capture/{calibrate doctor import record table} data-schema/{base cli command files height recording report} "
         "firmware-host/{. sim/device}",
     "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. link}",
     "capture/import": "capture/{calibrate record table} data-schema/{base calibration files height recording texture}",
