@@ -10,11 +10,13 @@
 
 #include "analysis/identify/measure/number_table.hpp"
 #include "data-schema/base/decibels.hpp"
+#include "data-schema/base/quantity.hpp"
 #include "data-schema/recording/recording.hpp"
 
 namespace tacto::analysis {
 namespace {
 
+using schema::Dimension;
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
@@ -22,19 +24,22 @@ using schema::Result;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kNoRadians = 100;  // sixteen turns; no transducer has such a phase
 
-struct UnitWorth {
-  std::string_view unit;
-  double si;
-};
-constexpr UnitWorth kActuatorUnits[] = {{"m/v", 1}, {"mm/v", 1e-3}, {"um/v", 1e-6}, {"nm/v", 1e-9}};
-constexpr UnitWorth kSensorUnits[] = {{"v/n", 1}, {"mv/n", 1e-3}, {"v/mn", 1e3}, {"mv/mn", 1}};
-constexpr UnitWorth kLengthUnits[] = {{"m", 1}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
-constexpr UnitWorth kFrequencyUnits[] = {{"hz", 1}, {"", 1}, {"khz", 1e3}, {"rad/s", 0.5 / std::numbers::pi}};
-constexpr UnitWorth kVoltUnits[] = {{"v", 1}, {"mv", 1e-3}};
+// A unit in lower case, as unit_in() gives it, in SI.
+std::optional<double> worth(std::string_view unit, Dimension dimension) {
+  const auto found = schema::unit_with_ending(fmt::format("_{}", unit));
+  return found && found->dimension == dimension ? std::optional(found->si) : std::nullopt;
+}
 
-std::optional<double> worth(std::span<const UnitWorth> units, std::string_view unit) {
-  const auto found = std::ranges::find(units, unit, &UnitWorth::unit);
-  return found == units.end() ? std::nullopt : std::optional(found->si);
+std::optional<double> worth(std::string_view unit, Dimension over, Dimension under) {
+  const auto slash = unit.find('/');
+  if (slash == unit.npos) return std::nullopt;
+  const auto above = worth(unit.substr(0, slash), over), below = worth(unit.substr(slash + 1), under);
+  return above && below ? std::optional(*above / *below) : std::nullopt;
+}
+
+std::optional<double> hertz_of(std::string_view unit) {
+  if (unit.empty()) return 1;
+  return unit == "rad/s" ? 0.5 / std::numbers::pi : worth(unit, Dimension::frequency);
 }
 
 // The unit behind the name: "Gain (dB um/V)" after "gain": "db um/v"; "_um_per_v": "um/v".
@@ -89,9 +94,9 @@ Result<AmplitudeUnit> amplitude_unit(std::string unit, const std::string& path) 
   AmplitudeUnit found;
   found.decibels = unit.starts_with("db ");
   if (found.decibels) unit = unit.substr(3);
-  if (const auto si = worth(kActuatorUnits, unit))
+  if (const auto si = worth(unit, Dimension::length, Dimension::voltage))
     found.si = *si;
-  else if (const auto volts = worth(kSensorUnits, unit))
+  else if (const auto volts = worth(unit, Dimension::voltage, Dimension::force))
     found = {Direction::sensor, *volts, found.decibels};
   else
     return fail(
@@ -174,7 +179,7 @@ Result<BodeData> read_bode_table(const std::string& path, const TableUnits& unit
           unit->decibels ? Result<void>() : check_sizes(*table, amplitude->index, unit->direction, path);
       !sound)
     return schema::forward_error(sound);
-  const auto hertz = worth(kFrequencyUnits, frequency->unit);
+  const auto hertz = hertz_of(frequency->unit);
   if (!hertz)
     return fail(ErrorKind::usage, fmt::format("'{}' is not a unit of frequency", frequency->unit), path,
                 "write frequency_hz, frequency_khz or frequency_rad_per_s into the header");
@@ -199,7 +204,8 @@ Result<DrivenTray> read_driven_table(const std::string& path) {
   TACTO_TRY(table);
   const auto drive = column(*table, {"drive"}), displacement = column(*table, {"displacement"});
   if (!drive || !displacement) return no_column(path, !drive ? "drive" : "displacement");
-  const auto volts = worth(kVoltUnits, drive->unit), metres = worth(kLengthUnits, displacement->unit);
+  const auto volts = worth(drive->unit, Dimension::voltage),
+             metres = worth(displacement->unit, Dimension::length);
   if (!volts || !metres)
     return fail(ErrorKind::usage, fmt::format("the {} has no unit", volts ? "displacement" : "drive"), path,
                 "write drive_v,displacement_um (or m, mm, nm) into the first line");
