@@ -6,10 +6,12 @@
 #include <cstdio>
 #include <memory>
 
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/cli/verbs.hpp"
 #include "data-schema/command/output_options.hpp"
+#include "data-schema/exchange/hjif.hpp"
 #include "data-schema/recording/recording_frames.hpp"
 #include "data-schema/report/progress.hpp"
 #include "data-schema/texture/texture.hpp"
@@ -21,6 +23,8 @@ constexpr std::uint64_t kBlockFrames = 8192;
 
 struct ExportOptions {
   std::string name, output;
+  double max_error = 0.005;
+  CLI::Option* asked_error = nullptr;
   Existing existing = Existing::keep;
 };
 
@@ -109,6 +113,32 @@ Result<cli::Report> export_texture(const std::string& path, TableFile& table) {
   return report.add("rows", values.size()).add("columns", columns);
 }
 
+Result<cli::Report> export_hjif(const ExportOptions& o, const StoredFile& file) {
+  if (file.kind != FileKind::texture)
+    return fail(ErrorKind::unsuitable, "is a recording; a .hjif file holds a texture", file.path,
+                "make textures with 'tactograph spatial', or export NAME.csv");
+  TACTO_TRY(check_table_free(o.output, o.existing, [](std::string_view line) {
+    return line.starts_with("{\"version\":\"2023\",\"profile\":\"Main\"");
+  }));
+  const auto texture = read_texture(file.path);
+  TACTO_TRY(texture);
+  const std::string by = texture->simulated.empty() ? "" : "; simulated " + texture->simulated;
+  const auto hjif = hjif_of(*texture, file.path + by, o.max_error);
+  TACTO_TRY(hjif);
+  PendingFiles files;
+  TACTO_TRY(files.write(o.output, hjif->text));
+  TACTO_TRY(files.commit(o.existing));
+  cli::Report report = report_of(FileKind::texture, file.path, texture->simulated);
+  report.add("error_percent", 100 * hjif->error).add("error_db", amplitude_db(hjif->error));
+  report.add("keyframes", hjif->keyframes).add("keyframe_distance_m", 1e-6 * hjif->step_um);
+  report.add("length_m", hjif->length_m).add("peak_n", hjif->peak_n);
+  return report
+      .add("lost",
+           "unit of force, valid band, origin on the bench, direction, spread: the format has no member for "
+           "them")
+      .add("written", o.output);
+}
+
 Result<StoredFile> exportable(const std::string& name) {
   const auto files = stored_files(name);
   TACTO_TRY(files);
@@ -126,6 +156,11 @@ Result<StoredFile> exportable(const std::string& name) {
 Result<cli::Report> run_export(const ExportOptions& o) {
   const auto file = exportable(o.name);
   TACTO_TRY(file);
+  const bool hjif = o.output.ends_with(".hjif");
+  if (!hjif && o.asked_error->count() > 0)
+    return fail(ErrorKind::usage, "only a .hjif file has an error", "--max-error",
+                "add -o NAME.hjif, or leave it out");
+  if (hjif) return export_hjif(o, *file);
   const auto write = file->kind == FileKind::recording ? export_recording : export_texture;
   if (o.output == "-") {
     TableFile table("");
@@ -133,7 +168,7 @@ Result<cli::Report> run_export(const ExportOptions& o) {
     return written ? Result<cli::Report>(cli::Report()) : written;
   }
   const std::string output = o.output.empty() ? stem_of(file->path, "") + ".csv" : o.output;
-  TACTO_TRY(cli::check_ending(output, {".csv"}, "the table is a CSV: NAME.csv, or - for stdout"));
+  TACTO_TRY(cli::check_ending(output, {".csv"}, "name NAME.csv, NAME.hjif, or - for a table on stdout"));
   TACTO_TRY(check_table_free(output, o.existing, is_exported));
   PendingFiles files;
   const auto temporary = files.add(output);
@@ -151,18 +186,28 @@ cli::Action declare_export(CLI::App& app) {
   auto options = std::make_shared<ExportOptions>();
   app.add_option("FILE", options->name, "Recording or texture: stem or file name")->required();
   app.add_option("-o,--output", options->output,
-                 "Output: NAME.csv, or - for stdout, without a report; default: the input's name");
+                 "Output: NAME.csv; - for the table on stdout, without a report; of a texture also NAME.hjif "
+                 "(MPEG haptics). "
+                 "Default: the input's name as .csv");
+  options->asked_error =
+      cli::add_quantity(app, "--max-error", options->max_error, Dimension::share,
+                        "Of a .hjif file: RMS of its curve minus the texture, over the texture's RMS");
   cli::declare_force(app, options->existing);
   app.footer(app.get_footer() +
              "\nSI units; the header names quantity and unit. Of a recording: time_s and a column for each "
              "channel; a lost sample has no row. Of a texture: position_m, its values and, of an average, "
-             "their spread. Simulated data have a last column 'simulated' of ones.");
+             "their spread. Simulated data have a last column 'simulated' of ones.\n"
+             "A .hjif file (ISO/IEC 23090-31) has one curve through keyframes, as far apart as --max-error "
+             "permits.");
   return [options] { return run_export(*options); };
 }
 
 }  // namespace
 
-const cli::Verb kExportVerb{"export", "Write a recording or a texture as a CSV table for other programs",
-                            "tactograph export oak\n  tactograph export oak-01 -o - | head", declare_export};
+const cli::Verb kExportVerb{"export",
+                            "Write a recording or a texture for other programs: CSV, or MPEG haptics",
+                            "tactograph export oak\n  tactograph export oak-01 -o - | head\n"
+                            "  tactograph export oak-01 -o oak.hjif --max-error 0.5%",
+                            declare_export};
 
 }  // namespace tacto::schema

@@ -7,6 +7,7 @@ import subprocess
 
 import numpy as np
 import tacto
+from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 USAGE, NOT_FOUND, UNSUITABLE, CANNOT_WRITE = 2, 3, 5, 7
 
@@ -67,6 +68,51 @@ def a_texture_and_an_average():
     assert np.array_equal(np.column_stack([table["tangential_force_n"], table["spread_n"]]), both)
 
 
+def read_hjif(path):
+    """(positions in m, forces in N of the keyframes); amplitudes in single precision, as the reference software reads them"""
+    file = json.loads(pathlib.Path(path).read_text())
+    assert (file["version"], file["profile"], file["level"], file["avatars"], file["syncs"]) == ("2023", "Main", 1, [], [])
+    assert 0 < file["timescale"] <= 48000 and len(file["date"]) == 10
+    perception, = file["perceptions"]
+    assert perception["perception_modality"] == "Vibrotactile Texture" and perception["effect_library"] == [], perception
+    channel, = perception["channels"]
+    band, = channel["bands"]
+    effect, = band["effects"]
+    assert (band["band_type"], band["curve_type"], effect["position"]) == ("Curve", "Akima", 0), band
+    frames = effect["keyframes"]
+    assert all(isinstance(frame["relative_position"], int) and abs(frame["amplitude_modulation"]) <= 1 for frame in frames)
+    return (np.array([frame["relative_position"] for frame in frames]) * 10.0 ** perception["unit_exponent"],
+            channel["gain"] * np.array([frame["amplitude_modulation"] for frame in frames], dtype=np.float32).astype(float))
+
+
+def error_of(keyframes_m, keyframes_n, position_m, values):
+    inside = position_m <= keyframes_m[-1]
+    return tacto.rms(Akima1DInterpolator(keyframes_m, keyframes_n)(position_m[inside]) - values[inside]) / tacto.rms(values[inside])
+
+
+def mpeg_haptics_keep_the_error_that_was_asked_for():
+    rng = np.random.default_rng(2)
+    for surface in "ABCDE":
+        tacto.run("record", "-d", f"sim:surface={surface}", "--time", "2s", "-o", surface)
+        tacto.run("spatial", surface, "-o", ".")
+        for most_percent in np.exp(rng.uniform(np.log(0.05), np.log(5), 2)):
+            told = tacto.run_json("export", f"{surface}-01", "-o", "x.hjif", "--max-error", f"{most_percent}%", "--force")
+            position_m, values, _ = tacto.texture(f"{surface}-01")
+            at_m, force_n = read_hjif("x.hjif")
+            assert at_m[0] == 0 and position_m[-1] - at_m[-1] < 1e-6 and len(at_m) == told["keyframes"]
+            found = error_of(at_m, force_n, position_m, values)
+            assert abs(100 * found / told["error_percent"] - 1) < 1e-6 and 100 * found <= most_percent, (found, told, most_percent)
+            # The next distance has a larger error: cubic interpolation between the texture's samples gives its keyframes.
+            step_m = told["keyframe_distance_m"] + 1e-6
+            wide_m = np.append(np.arange(0, at_m[-1] - 1e-9, step_m), at_m[-1])
+            assert 100 * error_of(wide_m, CubicSpline(position_m, values)(wide_m), position_m, values) > 0.999 * most_percent, told
+            print(f"{surface}: {told['error_percent']:.3g} % of {most_percent:.3g} % at {1e6 * told['keyframe_distance_m']:.0f} um")
+    _, said = tacto.run("export", "A-01", "-o", "y.hjif", "--max-error", "1e-9%", code=UNSUITABLE)
+    assert "--max-error" in said and not pathlib.Path("y.hjif").exists(), said
+    tacto.run("export", "A", "-o", "y.hjif", code=UNSUITABLE)
+    tacto.run("export", "A-01", "--max-error", "1%", code=USAGE)
+
+
 def wrong_use():
     tacto.run("record", "-d", "sim:", "--time", "0.5s", "-o", "c")
     tacto.run("export", "nothing", code=NOT_FOUND)
@@ -86,5 +132,6 @@ def wrong_use():
 
 
 if __name__ == "__main__":
-    for test in (a_recording_comes_back_whole, simulated_data_say_so_in_each_row, a_texture_and_an_average, wrong_use):
+    for test in (a_recording_comes_back_whole, simulated_data_say_so_in_each_row, a_texture_and_an_average, mpeg_haptics_keep_the_error_that_was_asked_for,
+                 wrong_use):
         tacto.in_folder(test)

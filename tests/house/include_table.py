@@ -10,11 +10,12 @@ MAY_INCLUDE = {
         "data-schema/{base device files height json kinds recording results scene session spectrogram texture transducer "
         "wav}",
     "data-schema/cli":
-        "data-schema/{base calibration check command device files height kinds recording report results scene session spectrogram "
+        "data-schema/{base calibration check command device exchange files height kinds recording report results scene session spectrogram "
         "texture transducer}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
     "data-schema/device": "data-schema/{base json}",
+    "data-schema/exchange": "data-schema/{base texture}",
     "data-schema/files": "data-schema/base",
     "data-schema/height": "data-schema/{base files spectrogram}",
     "data-schema/json": "data-schema/{base files}",
