@@ -113,7 +113,7 @@ Result<void> check_band(const IdentifyOptions& o) {
   if (o.plan.frequencies < kLeastFrequencies || o.plan.frequencies > kMostFrequencies)
     return fail(ErrorKind::usage,
                 fmt::format("a sweep has {} to {} frequencies", kLeastFrequencies, kMostFrequencies),
-                "--frequencies", "the default is 60");
+                "--frequencies", fmt::format("the default is {}", ExcitationPlan{}.frequencies));
   if (!(o.plan.low_hz > 0 && o.plan.low_hz < o.plan.high_hz))
     return fail(ErrorKind::usage, "the lowest frequency has to be above 0 and below the highest",
                 "--low and --high", "the defaults are 10Hz and 1kHz");

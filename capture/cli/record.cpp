@@ -57,7 +57,8 @@ void declare_options(CLI::App& app, RecordOptions& options) {
                  "Calibration file of the device, if not the one that 'tactograph calibrate' stores");
   app.add_flag("--no-calibration", options.no_calibration, "Use the nominal scales of the device only");
   cli::add_quantity(app, "--stale-after", options.stale_after_s, Dimension::time,
-                    "Age from which a calibration causes a warning; default: 30days");
+                    "Age from which a calibration causes a warning; default: " +
+                        schema::for_people(kStaleAfter_s, Dimension::time));
   app.add_option("--subject", request.subject, "A code for the person, never a name");
   app.add_option("--finger", request.finger, "Finger, or object that slides instead of one");
   app.add_option("--surface", request.surface, "Surface that is touched; default: as the device reports");

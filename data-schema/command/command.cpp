@@ -28,11 +28,13 @@
 namespace tacto::cli {
 namespace {
 
-constexpr std::string_view kFooter =
-    "Exit codes: 0 done, 1 internal error, 2 command line, 3 file or device not found, 4 malformed file,\n"
-    "5 data that cannot be used for this, 6 file of a newer version, 7 cannot write, 8 device failed, 9 "
-    "unstable.\n"
-    "Quantities have a unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
+std::string footer() {
+  std::string text = "Exit codes:";
+  for (std::size_t code = 0; code < std::size(kExitCodes); ++code)
+    text += fmt::format("{}{} {}{}", code == 5 ? "\n" : " ", code, kExitCodes[code],
+                        code + 1 < std::size(kExitCodes) ? "," : ".");
+  return text + "\nQuantities have a unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
+}
 
 constexpr std::size_t kHelpColumn = 34;  // in which descriptions of options begin
 
@@ -248,7 +250,7 @@ int print_parse_error(const CLI::App& app, const CLI::ParseError& error, Words w
 
 void describe(CLI::App& app, Topics topics) {
   app.footer(fmt::format("Help on a verb or a topic ({}): tactograph help TOPIC\n{}",
-                         fmt::join(topic_names(topics), ", "), kFooter));
+                         fmt::join(topic_names(topics), ", "), footer()));
   app.set_version_flag("--version", std::string(kCreator));
   app.require_subcommand(1);
   app.get_formatter()->column_width(kHelpColumn);

@@ -29,11 +29,10 @@ std::string units_text() {
 }
 
 std::string exit_codes_text() {
-  return "  0  done\n  1  internal error: please report it\n  2  command line\n  3  file or device not "
-         "found\n"
-         "  4  malformed file\n  5  data that cannot be used for this\n  6  file of a newer version\n"
-         "  7  cannot write\n  8  device failed\n  9  unstable\n"
-         "With --json an error is an object on one line of stderr: what, where, remedy, exit_code.\n";
+  std::string text;
+  for (std::size_t code = 0; code < std::size(kExitCodes); ++code)
+    text += fmt::format("  {}  {}{}\n", code, kExitCodes[code], code == 1 ? ": please report it" : "");
+  return text + "With --json an error is an object on one line of stderr: what, where, remedy, exit_code.\n";
 }
 
 std::string_view document(std::string_view name) {

@@ -9,6 +9,18 @@
 
 namespace tacto::cli {
 
+/// What each exit code means, from 0 on (schema::exit_code).
+inline constexpr std::string_view kExitCodes[] = {"done",
+                                                  "internal error",
+                                                  "command line",
+                                                  "file or device not found",
+                                                  "malformed file",
+                                                  "data that cannot be used for this",
+                                                  "file of a newer version",
+                                                  "cannot write",
+                                                  "device failed",
+                                                  "unstable"};
+
 /// A topic of a folder, for example the keys of `sim:`.
 struct HelpTopic {
   std::string_view name, summary;

@@ -11,6 +11,7 @@
 #include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/base/stroke_rule.hpp"
+#include "firmware-host/core/firmware/encoder_watch.hpp"
 #include "playback/session/session_limits.hpp"
 #include "playback/strokes/block_judge.hpp"
 #include "playback/strokes/session_target.hpp"
@@ -110,9 +111,9 @@ std::string note_of_loss(const SessionOverview& overview) {
 
 std::string note_of_blindness(const SessionOverview& overview) {
   return fmt::format(
-      "in {} ticks no encoder count had come for 10 ms, and the drive fell: strokes end there, and the "
+      "in {} ticks no encoder count had come for {}, and the drive fell: strokes end there, and the "
       "motion until the next count is not judged",
-      overview.blind_ticks);
+      overview.blind_ticks, schema::for_people(double{core::kBlindS}, schema::Dimension::time));
 }
 
 StrokeReport begun_report(const SessionOverview& overview) {

@@ -198,16 +198,6 @@ class Marks {
 
 }  // namespace
 
-Colour series_colour(std::size_t index) {
-  constexpr std::array<Colour, 6> kSeriesColours = {{{0.000, 0.447, 0.698},
-                                                     {0.835, 0.369, 0.000},
-                                                     {0.000, 0.620, 0.451},
-                                                     {0.800, 0.475, 0.655},
-                                                     {0.337, 0.706, 0.914},
-                                                     {0.902, 0.624, 0.000}}};
-  return kSeriesColours[index % kSeriesColours.size()];
-}
-
 Size LineFigure::page() const {
   return {size.width, size.height + head_of(*this).extra()};
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "spatial/picture/draw/axis.hpp"
+#include "spatial/picture/draw/colours.hpp"
 #include "spatial/picture/figure.hpp"
 
 namespace tacto::spatial {
@@ -20,10 +21,6 @@ struct Series {
   bool marks = false;                    ///< a mark at each point instead of a curve
   std::vector<std::string> labels = {};  ///< beside the marks, if there is space; at most as many as points
 };
-
-/// Colours that colour-blind people can distinguish, also in grey (Okabe and Ito 2008): blue, vermilion,
-/// green, ...
-Colour series_colour(std::size_t index);
 
 struct LineFigure : Figure {
   std::string title, subtitle;

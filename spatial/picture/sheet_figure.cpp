@@ -23,8 +23,6 @@ namespace {
 
 using schema::Result;
 
-constexpr Colour kSheetTrace{0.16, 0.28, 0.45};
-constexpr Colour kSheetNoWindow{0.93, 0.93, 0.94};
 constexpr std::size_t kSheetLabels = 4;
 const TextStyle kName{.size = 11, .bold = true, .align_y = 0};
 const TextStyle kFacts{.size = 8.5, .colour = kGreyInk, .align_y = 0};
@@ -152,7 +150,7 @@ void SheetFigure::draw_trace(Canvas& canvas, std::size_t index) const {
   const Axis axis = upwards(unit.factor * scales_.low_value, unit.factor * scales_.high_value, cell.trace);
   canvas.clip(cell.trace);
   for (const auto& piece : trace(x, y, positions(index), axis, canvas.pixels_per_point()))
-    canvas.polyline(piece, {kSheetTrace, 0.5});
+    canvas.polyline(piece, {kTrace, 0.5});
   canvas.release();
   if (const ShownRange beyond = outside(axis, y); beyond.beyond > 0)
     canvas.text({cell.trace.right() - 3, cell.trace.y + 2}, out_of_range_text(beyond, unit.text),
@@ -174,7 +172,7 @@ Result<void> SheetFigure::draw_heat(Canvas& canvas, std::size_t index) const {
                               static_cast<int>(std::lround(area.height * canvas.pixels_per_point())));
   TACTO_TRY(pixels);
   const double end = position.place(1e3 * texture->signal.length_m());
-  canvas.fill({cell.heat.x, cell.heat.y, end - cell.heat.x, cell.heat.height}, kSheetNoWindow);
+  canvas.fill({cell.heat.x, cell.heat.y, end - cell.heat.x, cell.heat.height}, kNoWindow);
   canvas.image(area, *pixels);
   if (!texture->valid_band.empty()) draw_valid_band(canvas, area, texture->valid_band, position, frequency);
   draw_formants(canvas, area, formants, position, frequency, kSheetLabels);

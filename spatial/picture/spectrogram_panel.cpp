@@ -19,8 +19,6 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr Colour kTrace{0.16, 0.28, 0.45};
-constexpr Colour kNoWindow{0.93, 0.93, 0.94};
 constexpr double kCaptionGap = 50;
 constexpr std::size_t kLabels = 12;
 

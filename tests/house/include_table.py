@@ -115,7 +115,7 @@ MAY_INCLUDE = {
         "playback/model",
     "playback/stability": "data-schema/{device scene} firmware-host/{core/scene sim/planar}",
     "playback/strokes":
-        "data-schema/{base texture} firmware-host/{core/kernel core/wire} playback/{choose model render "
+        "data-schema/{base texture} firmware-host/{core/firmware core/kernel core/wire} playback/{choose model render "
         "render/reference session} spatial/features",
     "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":

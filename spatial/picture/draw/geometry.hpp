@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points, boxes and colours on a page. Lengths in typographic points (1/72 inch), y grows downwards.
+// Points and boxes on a page. Lengths in typographic points (1/72 inch), y grows downwards.
 #pragma once
 
 #include <cstdint>
@@ -35,10 +35,5 @@ struct Pixels {
   int width = 0, height = 0;
   std::vector<std::uint32_t> rgb;
 };
-
-inline constexpr Colour kInk{0.10, 0.10, 0.12};
-inline constexpr Colour kGreyInk{0.38, 0.38, 0.42};
-inline constexpr Colour kGridLine{0.86, 0.86, 0.88};
-inline constexpr Colour kAlarm{0.76, 0.20, 0.10};
 
 }  // namespace tacto::spatial

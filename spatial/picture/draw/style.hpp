@@ -2,7 +2,7 @@
 // Formats of a page, and styles of its lines and letters.
 #pragma once
 
-#include "spatial/picture/draw/geometry.hpp"
+#include "spatial/picture/draw/colours.hpp"
 
 namespace tacto::spatial {
 
