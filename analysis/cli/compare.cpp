@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "analysis/cli/compare_report.hpp"
 #include "analysis/cli/compared_input.hpp"
@@ -28,6 +30,7 @@ using schema::Result;
 
 struct CompareVerbOptions {
   std::string a, b;
+  std::vector<std::string> more;
   std::vector<std::string> many_a, many_b;
   std::size_t stroke_a = 0, stroke_b = 0;
   CompareOptions compare;
@@ -74,7 +77,8 @@ constexpr const char* kRule =
     "whether "
     "the coherence is above the value that independent signals reach once in 20 times: two stretches of one "
     "rough surface can be alike without it.\n\n"
-    "A session and its texture: the error in dB, the power of the difference over that of the target.";
+    "A session and its texture: the error in dB, the power of the difference over that of the target.\n\n"
+    "More than two inputs: each pair by itself, so that one pair in 20 is called different by chance.";
 
 schema::Results compare_results(const CompareVerbOptions& o, const ComparedNames& names,
                                 const Comparison& c) {
@@ -178,6 +182,72 @@ Result<Report> compare_sides(const CompareVerbOptions& o, bool json, const Tell&
                          std::move(results));
 }
 
+using Inputs = std::vector<std::vector<spatial::NamedTexture>>;
+
+struct PairAnswer {
+  std::string word;  // the verdict of surfaces
+  double db = 0;     // spectral distance of single textures
+};
+
+Result<PairAnswer> answer_textures(const CompareVerbOptions& o, const spatial::NamedTexture& a,
+                                   const spatial::NamedTexture& b, Report& row) {
+  const auto found = compare(a.texture, b.texture, o.compare);
+  TACTO_TRY(found);
+  PairAnswer answer;
+  answer.db = found->spectral_distance_db;
+  row.add("beyond_measurement_noise", to_string(found->verdict.likeness))
+      .add("because", found->verdict.because);
+  row.add("spectral_distance_db", answer.db).add("level_db", found->evidence.level_db);
+  return answer;
+}
+
+Result<PairAnswer> answer_surfaces(const CompareVerbOptions& o, const SurfaceSide& a, const SurfaceSide& b,
+                                   Report& row) {
+  const auto found = compare_surfaces(a, b, o.compare.tolerance_db);
+  TACTO_TRY(found);
+  PairAnswer answer;
+  answer.word = to_string(found->verdict);
+  row.add("verdict", answer.word).add("because", found->because);
+  if (found->test) row.add("p", found->test->p);
+  return answer;
+}
+
+// Each pair is compared by itself.
+Result<Report> compare_all(const CompareVerbOptions& o, const Tell& tell) {
+  std::vector<std::string> names{o.a, o.b};
+  names.insert(names.end(), o.more.begin(), o.more.end());
+  Inputs inputs;
+  for (const std::string& name : names) {
+    auto textures = spatial::open_textures({name});
+    TACTO_TRY(textures);
+    inputs.push_back(std::move(*textures));
+  }
+  const bool single = std::ranges::all_of(inputs, [](const auto& textures) { return textures.size() == 1; });
+  std::vector<Report> matrix, pairs;
+  for (const std::string& name : names) matrix.push_back(Report().add("input", name));
+  const std::size_t count = names.size() * (names.size() - 1) / 2;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t j = i + 1; j < names.size(); ++j) {
+      TACTO_TRY(check_sides(inputs[i], inputs[j]));
+      Report& pair = pairs.emplace_back().add("a", names[i]).add("b", names[j]);
+      const auto answer = single ? answer_textures(o, inputs[i].front(), inputs[j].front(), pair)
+                                 : answer_surfaces(o, surface_side({names[i]}, inputs[i]),
+                                                   surface_side({names[j]}, inputs[j]), pair);
+      TACTO_TRY(answer);
+      const std::string column = std::to_string(j + 1);
+      if (single)
+        matrix[i].add(column + "_db", answer->db);
+      else
+        matrix[i].add(column, answer->word);
+      tell(static_cast<double>(pairs.size()) / static_cast<double>(count));
+    }
+  Report report;
+  report.add("compared",
+             single ? "single textures: spectral distance" : "surfaces: verdict by their strokes");
+  report.add("inputs", names.size()).add("tolerance_db", o.compare.tolerance_db);
+  return report.add("matrix", std::move(matrix)).add("pairs", std::move(pairs));
+}
+
 Result<Report> run_compare(const CompareVerbOptions& o, bool json) {
   if (o.a.empty() != o.b.empty() || o.a.empty() == o.many_a.empty())
     return schema::fail(schema::ErrorKind::usage, "two sides are needed", "compare",
@@ -185,6 +255,13 @@ Result<Report> run_compare(const CompareVerbOptions& o, bool json) {
   TACTO_TRY(check_outputs(o.outputs, o.existing));
   cli::Progress progress("comparing");
   const Tell tell = [&](double part) { progress.update(part); };
+  if (!o.more.empty()) {
+    if (!o.outputs.empty() || o.stroke_a > 0 || o.stroke_b > 0)
+      return schema::fail(schema::ErrorKind::usage,
+                          "more than two inputs have a table only, of all their strokes",
+                          o.outputs.empty() ? "--stroke-a and --stroke-b" : "--output", "name two inputs");
+    return compare_all(o, tell);
+  }
   const bool pair = o.stroke_a > 0 || o.stroke_b > 0 || names_a_session(o.a) || names_a_session(o.b);
   return pair ? compare_named_pair(o, tell) : compare_sides(o, json, tell);
 }
@@ -208,6 +285,7 @@ cli::Action declare_compare(CLI::App& app) {
       "Recording (each stroke is used), texture, or session (the displacement predicted from its drive)");
   CLI::Option* b =
       app.add_option("B", options->b, "A second one, of the same quantity; for a session its own texture");
+  app.add_option("MORE", options->more, "Further recordings or textures: a table of all pairs");
   CLI::Option* many_a =
       app.add_option("--a", options->many_a, "Instead of A: several recordings or textures");
   CLI::Option* many_b =
@@ -235,7 +313,8 @@ const cli::Verb kCompareVerb{
     "Compare two surfaces by several strokes, two single textures, or a session and "
     "its texture",
     "tactograph compare oak pine -o oak-pine.html\n  tactograph compare --a oak-1 oak-2 "
-    "--b pine-1 pine-2\n  tactograph compare oak pine --stroke-a 1 --stroke-b 1\n  "
+    "--b pine-1 pine-2\n  tactograph compare oak pine birch\n  tactograph compare oak pine --stroke-a 1 "
+    "--stroke-b 1\n  "
     "tactograph compare first.session oak --align correlation",
     declare_compare};
 

@@ -274,6 +274,32 @@ def a_recording_gives_its_strokes():
     assert tacto.run_json("compare", "C3", "C4")["a_load_n"] > 0.4
 
 
+def more_than_two_give_all_pairs():
+    make_template()
+    rng = np.random.default_rng(9)
+    names = ["first", "second", "third"]
+    for i, name in enumerate(names):
+        write_texture(name, rng.normal(0, 0.01 * (i + 1), 9000))
+    told = tacto.run_json("compare", *names)
+    pairs = [(names[i], names[j]) for i in range(3) for j in range(i + 1, 3)]
+    assert [(pair["a"], pair["b"]) for pair in told["pairs"]] == pairs, told["pairs"]
+    for pair in told["pairs"]:
+        alone = tacto.run_json("compare", pair["a"], pair["b"])
+        assert (pair["beyond_measurement_noise"], pair["spectral_distance_db"]) == (alone["beyond_measurement_noise"], alone["spectral_distance_db"]), (pair, alone)
+        row = told["matrix"][names.index(pair["a"])]
+        assert row["input"] == pair["a"] and row[f"{names.index(pair['b']) + 1}_db"] == alone["spectral_distance_db"], row
+    for surface in "CE":
+        tacto.run("record", "-d", f"sim:surface={surface},strokes=6", "--strokes", "6", "-o", surface)
+    tacto.run("record", "-d", "sim:surface=C,strokes=6,seed=2", "--strokes", "6", "-o", "C2")
+    told = tacto.run_json("compare", "C", "C2", "E")
+    alone = tacto.run_json("compare", "C", "E")
+    last = told["pairs"][1]
+    assert (last["a"], last["b"], last["verdict"], last["p"]) == ("C", "E", alone["verdict"], alone["p"]), (last, alone)
+    assert told["matrix"][0]["3"] == alone["verdict"] and told["matrix"][2] == {"input": "E"}, told["matrix"]
+    tacto.run("compare", *names, "-o", "x.html", code=2)
+    tacto.run("compare", "first", "second", "first", code=2)
+
+
 def bad_input_is_refused():
     make_template()
     a, b = pair()
@@ -326,7 +352,7 @@ def real_fingers_verdicts():
 
 if __name__ == "__main__":
     for test in (figures_agree_with_scipy, files_come_together, a_narrow_difference_is_named, with_output_all_is_printed_too, a_session_is_held_against_its_texture, surfaces_agree_with_numpy, sides_are_lists,
-                 a_recording_gives_its_strokes, bad_input_is_refused,
+                 a_recording_gives_its_strokes, more_than_two_give_all_pairs, bad_input_is_refused,
                  real_fingers_verdicts):
         tacto.in_folder(test)
     sys.exit(0)
