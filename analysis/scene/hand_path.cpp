@@ -37,7 +37,7 @@ Result<schema::SessionHeader> force_header(const std::string& name) {
   return reader->header();
 }
 
-double distance(Point a, Point b) {
+double length_between(Point a, Point b) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
@@ -62,8 +62,8 @@ void HandPath::add(Point place_m, double force_x_n, double force_y_n) {
     lines_.push_back({at});
     pen_down_ = true;
   }
-  since_arrow_ += distance(at, last_);
-  length_m_ += distance(place_m, last_m_);
+  since_arrow_ += length_between(at, last_);
+  length_m_ += length_between(place_m, last_m_);
   draw_to(at);
   last_ = at;
   last_m_ = place_m;
@@ -92,7 +92,9 @@ void HandPath::draw_to(Point at) {
 
 void HandPath::add_arrow(Point at, double x_n, double y_n) {
   since_arrow_ = 0;
-  const auto near = [&](const ForceArrow& arrow) { return distance(arrow.from, at) < kArrowSpacing / 3; };
+  const auto near = [&](const ForceArrow& arrow) {
+    return length_between(arrow.from, at) < kArrowSpacing / 3;
+  };
   if (std::ranges::any_of(arrows_, near)) return;
   arrows_.push_back({at, x_n, y_n});
   if (arrows_.size() <= kMostArrows) return;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kLine = 13, kIndent = 12, kAbovePatch = 5;
 constexpr double kSliderName = 90, kSliderEnd = 62, kSliderLength = 120;
-const TextStyle kPatchName{.size = 9.5, .bold = true}, kWords{.size = 9, .colour = spatial::kGreyInk},
+const TextStyle kPatchName{.size = 9.5, .bold = true}, kGreyWords{.size = 9, .colour = spatial::kGreyInk},
     kLayerWords{.size = 9};
 
 std::string value_words(std::string_view name, double value) {
@@ -66,7 +66,7 @@ class ListPainter {
     canvas_.text({left_, y_ + kLine / 2}, patch.name, kPatchName);
     const double beside = canvas_.text_size(patch.name, kPatchName).width + 8;
     if (beside > width_ / 2) y_ += kLine;
-    paragraph(place_words(patch), kWords, beside > width_ / 2 ? kIndent : beside);
+    paragraph(place_words(patch), kGreyWords, beside > width_ / 2 ? kIndent : beside);
     for (const schema::ForceLayer& layer : patch.layers) {
       paragraph(layer_words(layer), kLayerWords, kIndent);
       for (const auto& [name, number] : schema::numbers_of(layer))
@@ -87,10 +87,10 @@ class ListPainter {
   void slider(std::string_view name, double value, const schema::SliderRange& range) {
     const double middle = y_ + kLine / 2, from = left_ + 2 * kIndent + kSliderName + kSliderEnd,
                  to = from + kSliderLength;
-    canvas_.text({left_ + 2 * kIndent, middle}, "slider " + name_words(name), kWords);
+    canvas_.text({left_ + 2 * kIndent, middle}, "slider " + name_words(name), kGreyWords);
     canvas_.text({from - 6, middle}, value_words(name, range.from),
                  {.size = 9, .colour = spatial::kGreyInk, .align_x = 1});
-    canvas_.text({to + 6, middle}, value_words(name, range.to), kWords);
+    canvas_.text({to + 6, middle}, value_words(name, range.to), kGreyWords);
     canvas_.line({from, middle}, {to, middle}, {spatial::kGreyInk, 1.6});
     const double part = range.to > range.from ? (value - range.from) / (range.to - range.from) : 0;
     canvas_.fill({from + part * kSliderLength - 2, middle - 4, 4, 8}, spatial::kInk);

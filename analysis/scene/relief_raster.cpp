@@ -151,7 +151,7 @@ ReliefRaster relief_raster(const PreparedScene& scene, double rate_hz, const Pix
   return raster;
 }
 
-double shade(double force_x_n, double force_y_n, double full_n) {
+double hill_shade(double force_x_n, double force_y_n, double full_n) {
   if (!(full_n > 0)) return kLightZ;
   const double x = force_x_n / full_n, y = force_y_n / full_n;
   return std::max(0.0, (kLightX * x + kLightY * y + kLightZ) / std::sqrt(1 + x * x + y * y));
@@ -176,8 +176,9 @@ spatial::Pixels shaded(const ReliefRaster& raster) {
   spatial::Pixels pixels{raster.grid.columns, raster.grid.rows, {}};
   pixels.rgb.reserve(raster.acts.size());
   for (std::size_t at = 0; at < raster.acts.size(); ++at)
-    pixels.rgb.push_back(acting_colour(
-        raster.acts[at], shade(double{raster.force_x_n[at]}, double{raster.force_y_n[at]}, raster.full_n)));
+    pixels.rgb.push_back(
+        acting_colour(raster.acts[at],
+                      hill_shade(double{raster.force_x_n[at]}, double{raster.force_y_n[at]}, raster.full_n)));
   return pixels;
 }
 

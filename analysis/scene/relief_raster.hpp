@@ -54,10 +54,10 @@ inline constexpr double kLightX = -0.2705980500730985, kLightY = 0.6532814824381
 
 /// Lambert's law, 0 to 1, on a surface with the normal (F_x, F_y, full) / |...|: because F = -kappa grad h,
 /// this is the relief with its heights times kappa / full. A plane has kLightZ.
-double shade(double force_x_n, double force_y_n, double full_n);
+double hill_shade(double force_x_n, double force_y_n, double full_n);
 
-/// The colour of a pixel: white where nothing acts, grey by shade() on a relief, and tints of springs and
-/// dampers. At most 256 different colours, for an SVG with a palette.
+/// The colour of a pixel: white where nothing acts, grey by hill_shade() on a relief, and tints of springs
+/// and dampers. At most 256 different colours, for an SVG with a palette.
 spatial::Pixels shaded(const ReliefRaster& raster);
 
 /// The colour of a place with this shade; `acts`: Acts, added.

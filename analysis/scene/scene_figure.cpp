@@ -36,7 +36,7 @@ constexpr double kBelowMap = 44, kLegendRow = 16;
 constexpr double kLongestArrow = 42, kArrowHead = 5;
 constexpr Colour kHalo{1, 1, 1, 0.8}, kLabelGround{1, 1, 1, 0.85}, kSpringInk{0.62, 0.36, 0.0};
 const Pen kOutline{spatial::kInk, 1}, kAddedOutline{spatial::kInk, 1, true};
-const Pen kTravel{spatial::kGreyInk, 0.9, true}, kSpringWay{kSpringInk, 0.7, true};
+const Pen kTravelPen{spatial::kGreyInk, 0.9, true}, kSpringWay{kSpringInk, 0.7, true};
 const TextStyle kName{.size = 9.5, .bold = true, .align_x = 0, .align_y = 0}, kLegendText{.size = 9};
 
 Colour path_colour() {
@@ -88,12 +88,12 @@ spatial::Pixels bump_sample(int size) {
     for (int column = 0; column < size; ++column) {
       const double x = (column + 0.5) / size * 2 - 1, y = 1 - (row + 0.5) / size * 2;
       const double steep = std::hypot(x, y) < 0.85 ? 1.6 : 0;
-      pixels.rgb.push_back(acting_colour(kActsRelief, shade(steep * x, steep * y, 1)));
+      pixels.rgb.push_back(acting_colour(kActsRelief, hill_shade(steep * x, steep * y, 1)));
     }
   return pixels;
 }
 
-bool overlap(const Box& a, const Box& b) {
+bool boxes_meet(const Box& a, const Box& b) {
   return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
 }
 
@@ -188,7 +188,7 @@ class PatchPainter {
   }
 
   bool is_free(std::size_t i, const Box& box) const {
-    if (std::ranges::any_of(taken_, [&](const Box& other) { return overlap(box, other); })) return false;
+    if (std::ranges::any_of(taken_, [&](const Box& other) { return boxes_meet(box, other); })) return false;
     for (const Point at : {Point{box.x, box.y}, Point{box.right(), box.y}, Point{box.x, box.bottom()},
                            Point{box.right(), box.bottom()}})
       if (const Point place_m = in_plane(at); !frames_[i].holds(place_m) || !is_on_top(i, place_m))
@@ -204,9 +204,9 @@ class PatchPainter {
 };
 
 // Samples with their words, in as many rows as they need.
-class Legend {
+class SceneLegend {
  public:
-  Legend(Canvas& canvas, double top) : canvas_(canvas), at_{kPageMargin, top} {}
+  SceneLegend(Canvas& canvas, double top) : canvas_(canvas), at_{kPageMargin, top} {}
 
   void add(double sample_width, const std::string& words, const auto& draw_sample) {
     constexpr double kGap = 6, kBetween = 16;
@@ -248,7 +248,7 @@ Segment travel_of(const schema::Device& device) {
 void draw_travel(Canvas& canvas, const SceneMap& map, const schema::Device& device) {
   const Segment travel_m = travel_of(device);
   const Point from = map.place(travel_m.from), to = map.place(travel_m.to);
-  canvas.frame({from.x, to.y, to.x - from.x, from.y - to.y}, kTravel);
+  canvas.frame({from.x, to.y, to.x - from.x, from.y - to.y}, kTravelPen);
 }
 
 double newtons_per_point(const HandPath& path) {
@@ -277,7 +277,7 @@ void draw_map_axes(Canvas& canvas, const SceneMap& map) {
   draw_caption(canvas, map.box, spatial::Side::left, "y (mm)", 42);
 }
 
-void add_scale_bar(Canvas& canvas, Legend& legend, const SceneMap& map) {
+void add_scale_bar(Canvas& canvas, SceneLegend& legend, const SceneMap& map) {
   const double bar_m = round_down(map.box.width / map.points_per_m() / 6);
   const double bar = bar_m * map.points_per_m();
   legend.add(bar, spatial::typeset(schema::length_for_people(bar_m)), [&](Point at) {
@@ -288,7 +288,7 @@ void add_scale_bar(Canvas& canvas, Legend& legend, const SceneMap& map) {
   });
 }
 
-void add_kinds(Canvas& canvas, Legend& legend, const ReliefRaster& raster) {
+void add_kinds(Canvas& canvas, SceneLegend& legend, const ReliefRaster& raster) {
   const auto acts = [&](std::uint8_t what) {
     return std::ranges::any_of(raster.acts, [&](std::uint8_t pixel) { return (pixel & what) != 0; });
   };
@@ -305,7 +305,7 @@ void add_kinds(Canvas& canvas, Legend& legend, const ReliefRaster& raster) {
   if (acts(kActsDamper)) legend.add_tint(kActsDamper, "damper");
 }
 
-void add_hand(Canvas& canvas, Legend& legend, const HandSession& session, const HandPath& path) {
+void add_hand_words(Canvas& canvas, SceneLegend& legend, const HandSession& session, const HandPath& path) {
   const std::string words =
       fmt::format("hand in {}, {}", session.path, schema::for_people(session.duration_s, Dimension::time));
   legend.add(22, words, [&](Point at) {
@@ -324,7 +324,7 @@ bool adds_a_patch(const std::vector<schema::Patch>& patches) {
       patches, [](const schema::Patch& patch) { return patch.combine == schema::PatchCombine::add; });
 }
 
-PlaneRange range_of(const ScenePicture& picture) {
+PlaneRange plane_range_of(const ScenePicture& picture) {
   PlaneRange range;
   for (const schema::Patch& patch : picture.scene.patches)
     for (const Point corner : PatchFrame(patch).corners()) range.add(corner);
@@ -398,7 +398,7 @@ Result<SceneFigure> SceneFigure::make(ScenePicture picture, const std::function<
   const ScenePicture& of = made.picture_;
   made.heading_ = spatial::heading_of(of.name, "Force patches of a scene, from above",
                                       of.session ? of.session->simulated : "", kPageWidth - 2 * kPageMargin);
-  made.map_ = scene_map(range_of(of), {kMapLeft, kPageMargin + made.heading_.height()},
+  made.map_ = scene_map(plane_range_of(of), {kMapLeft, kPageMargin + made.heading_.height()},
                         {kPageWidth - kMapLeft - kPageMargin, kMapHeight});
   made.raster_ = relief_raster(of.prepared, of.rate_hz, made.map_.grid, progress);
   if (!of.session) return made;
@@ -409,12 +409,12 @@ Result<SceneFigure> SceneFigure::make(ScenePicture picture, const std::function<
 }
 
 double SceneFigure::draw_below_map(Canvas& canvas) const {
-  Legend legend(canvas, map_.box.bottom() + kBelowMap);
+  SceneLegend legend(canvas, map_.box.bottom() + kBelowMap);
   add_scale_bar(canvas, legend, map_);
   add_kinds(canvas, legend, raster_);
   if (adds_a_patch(picture_.scene.patches)) legend.add_line(kAddedOutline, "added to what is below");
-  if (picture_.device) legend.add_line(kTravel, "travel of " + picture_.device->name);
-  if (path_) add_hand(canvas, legend, *picture_.session, *path_);
+  if (picture_.device) legend.add_line(kTravelPen, "travel of " + picture_.device->name);
+  if (path_) add_hand_words(canvas, legend, *picture_.session, *path_);
   return draw_patch_list(canvas, picture_.scene, {kPageMargin, legend.bottom() + 4},
                          kPageWidth - 2 * kPageMargin);
 }
