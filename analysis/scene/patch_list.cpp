@@ -17,7 +17,7 @@ using spatial::TextStyle;
 namespace {
 
 constexpr double kLine = 13, kIndent = 12, kAbovePatch = 5;
-constexpr double kSliderName = 90, kSliderEnd = 62, kSliderLength = 120;
+constexpr double kSliderName = 150, kSliderEnd = 62, kSliderLength = 120;
 const TextStyle kPatchName{.size = 9.5, .bold = true}, kGreyWords{.size = 9, .colour = spatial::kGreyInk},
     kLayerWords{.size = 9};
 
@@ -87,7 +87,8 @@ class ListPainter {
   void slider(std::string_view name, double value, const schema::SliderRange& range) {
     const double middle = y_ + kLine / 2, from = left_ + 2 * kIndent + kSliderName + kSliderEnd,
                  to = from + kSliderLength;
-    canvas_.text({left_ + 2 * kIndent, middle}, "slider " + name_words(name), kGreyWords);
+    canvas_.text({left_ + 2 * kIndent, middle},
+                 fmt::format("slider {} {}", name_words(name), value_words(name, value)), kGreyWords);
     canvas_.text({from - 6, middle}, value_words(name, range.from),
                  {.size = 9, .colour = spatial::kGreyInk, .align_x = 1});
     canvas_.text({to + 6, middle}, value_words(name, range.to), kGreyWords);

@@ -131,9 +131,9 @@ double full_force_n(const ReliefRaster& raster) {
     if ((raster.acts[at] & kActsRelief) != 0)
       forces_n.push_back(std::hypot(raster.force_x_n[at], raster.force_y_n[at]));
   if (forces_n.empty()) return 0;
-  const auto exceeded = forces_n.begin() + static_cast<std::ptrdiff_t>(forces_n.size() * 49 / 50);
+  const auto exceeded = forces_n.begin() + static_cast<std::ptrdiff_t>(forces_n.size() * 9 / 10);
   std::ranges::nth_element(forces_n, exceeded);
-  return std::max(double{*exceeded}, 0.25 * double{*std::max_element(exceeded, forces_n.end())});
+  return std::max(double{*exceeded}, 0.1 * double{*std::max_element(exceeded, forces_n.end())});
 }
 
 }  // namespace

@@ -298,16 +298,23 @@ void add_kinds(Canvas& canvas, SceneLegend& legend, const ReliefRaster& raster) 
                     schema::for_people(raster.full_n, Dimension::force));
     legend.add(14, words, [&](Point at) { canvas.image({at.x, at.y - 7, 14, 14}, bump_sample(28)); });
   }
-  if (acts(kActsSpring)) {
-    legend.add_tint(kActsSpring, "spring");
-    legend.add(14, "where its force is 0", [&](Point at) { draw_target(canvas, {at.x + 7, at.y}); });
-  }
-  if (acts(kActsDamper)) legend.add_tint(kActsDamper, "damper");
+  const auto tinted = [&](std::uint8_t tint, const char* words) {
+    constexpr std::uint8_t kBoth = kActsSpring | kActsDamper;
+    const auto is = [&](std::uint8_t pixel) { return (pixel & kBoth) == tint; };
+    if (std::ranges::any_of(raster.acts, is)) legend.add_tint(tint, words);
+  };
+  tinted(kActsSpring, "spring");
+  tinted(kActsDamper, "damper");
+  tinted(kActsSpring | kActsDamper, "spring and damper");
+  if (acts(kActsSpring))
+    legend.add(14, "where the force of a spring is 0", [&](Point at) {
+      draw_target(canvas, {at.x + 7, at.y});
+    });
 }
 
 void add_hand_words(Canvas& canvas, SceneLegend& legend, const HandSession& session, const HandPath& path) {
-  const std::string words =
-      fmt::format("hand in {}, {}", session.path, schema::for_people(session.duration_s, Dimension::time));
+  const std::string words = fmt::format("hand in {}, {} from the dot", session.path,
+                                        schema::for_people(session.duration_s, Dimension::time));
   legend.add(22, words, [&](Point at) {
     canvas.line(at, {at.x + 22, at.y}, {path_colour(), 1.2});
     draw_disc(canvas, at, 3.2, path_colour());
