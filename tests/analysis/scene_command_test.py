@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`scene`: the files it writes, the path and the forces of a session in them, and what is refused."""
+import base64
 import collections
 import json
 import pathlib
@@ -68,7 +69,10 @@ def a_scene_becomes_a_picture():
         report = run_json("scene", "bench", "-o", name)
         assert report["written"] == name and report["patches"] == 3 and report["slope_of_1_n"] > 0 and "session" not in report, report
     assert pathlib.Path("bench.png").read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
-    said = [text for text, _, _ in texts(pathlib.Path("bench.svg").read_text())]
+    svg = pathlib.Path("bench.svg").read_text()
+    image = max((base64.b64decode(data) for data in re.findall(r"data:image/png;base64,([^\"]+)", svg)), key=len)
+    assert image[25] == 3, image[:33]  # PNG's colour type: a palette
+    said = [text for text, _, _ in texts(svg)]
     for words in ("A <bench>", "sand", "grid", "pool", "x (mm)", "y (mm)", "spring", "damper", "slider kappa 2 N", "0 N", "5 N"):
         assert words in said, (words, said)
     assert not any("SIMULATED" in text or "travel" in text for text in said), said
