@@ -131,6 +131,18 @@ class PatchPainter {
             [](const auto& /*other*/) {});
   }
 
+  // Names are not written on a path.
+  void avoid(const HandPath& path) {
+    constexpr double kHalf = 2;
+    Point last{-INFINITY, 0};
+    for (const auto& line : path.lines())
+      for (const Point at : line) {
+        if (std::hypot(at.x - last.x, at.y - last.y) < kHalf) continue;
+        taken_.push_back({at.x - kHalf, at.y - kHalf, 2 * kHalf, 2 * kHalf});
+        last = at;
+      }
+  }
+
   void names() {
     for (std::size_t i = 0; i < patches_.size(); ++i) {
       const spatial::Size size = canvas_.text_size(patches_[i].name, kName);
@@ -439,7 +451,10 @@ Result<void> SceneFigure::draw(Canvas& canvas) const {
   PatchPainter patches(canvas, map_, picture_.prepared.patches);
   patches.outlines();
   patches.spring_places();
-  if (path_) draw_hand(canvas, *path_);
+  if (path_) {
+    draw_hand(canvas, *path_);
+    patches.avoid(*path_);
+  }
   patches.names();
   canvas.release();
   draw_map_axes(canvas, map_);
