@@ -13,6 +13,7 @@ extern const cli::Verb kDemoVerb;
 extern const cli::Verb kDesignVerb;
 extern const cli::Verb kExtremesVerb;
 extern const cli::Verb kReportVerb;
+extern const cli::Verb kSceneVerb;
 extern const cli::Verb kIdentifyVerb;
 extern const cli::Verb kTradeVerb;
 extern const cli::Verb kLiveVerb;

@@ -119,8 +119,8 @@ MAY_INCLUDE = {
         "render/reference session} spatial/features",
     "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":
-        "analysis/{compare demo design experiment extremes fidelity identify/fit identify/measure identify/report live page report trade "
-        "trade/rows} data-schema/{base command files kinds report results scene texture} playback/{model "
+        "analysis/{compare demo design experiment extremes fidelity identify/fit identify/measure identify/report live page report scene "
+        "trade trade/rows} data-schema/{base command files kinds report results scene texture} playback/{model "
         "player prepare/scene session stability} spatial/{cli picture}",
     "analysis/compare":
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
@@ -156,6 +156,9 @@ MAY_INCLUDE = {
         "analysis/{identify/measure page} data-schema/{base calibration check device files height kinds recording results "
         "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
         "texture}",
+    "analysis/scene":
+        "data-schema/{base device report scene} playback/{prepare/scene render/reference session} spatial/{picture "
+        "picture/draw}",
     "analysis/trade":
         "analysis/{page trade/offline trade/rows} data-schema/{base results texture transducer} "
         "firmware-host/sim/device playback/{choose host-loop model prepare} spatial/picture",

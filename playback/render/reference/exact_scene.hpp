@@ -28,10 +28,15 @@ class ExactScene {
   };
   Output tick(const std::vector<std::int32_t>& counts);
 
- private:
   struct Vector {
     double x = 0, y = 0;
   };
+  /// The force before the limits on a hand at this place, m, with this speed, m/s. Independent of the ticks.
+  Vector force_at(Vector place, Vector speed) const {
+    return force(place, {static_cast<float>(place.x), static_cast<float>(place.y)}, speed);
+  }
+
+ private:
   struct Edge {
     std::int64_t tick, count;
   };
