@@ -46,12 +46,16 @@ void add_loop_rows(Report& report, const LoopFit& fit) {
   report.add("left_by_the_operator_percent", 100 * fit.residual_part)
       .add("left_by_a_line_percent", 100 * fit.linear_residual_part);
   std::vector<Report> rows;
-  for (std::size_t i = 0; i < fit.hysteresis.weights.size(); ++i) {
+  const auto& weights = fit.hysteresis.weights;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] == 0) continue;
     Report row;
-    row.add("threshold_v", fit.hysteresis.thresholds_v[i]).add("weight", fit.hysteresis.weights[i]);
+    row.add("threshold_v", fit.hysteresis.thresholds_v[i]).add("weight", weights[i]);
     rows.push_back(std::move(row));
   }
+  const std::size_t zeros = weights.size() - rows.size();
   report.add("operator", std::move(rows));
+  if (zeros > 0) report.add("further_weights_of_0", zeros);
 }
 
 constexpr int kTableDigits = 4;  // of a report's table

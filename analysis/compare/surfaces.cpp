@@ -385,7 +385,7 @@ double finest_db(const LabelTest& test, std::size_t bands, double tolerance_db) 
 std::string strongest_words(const SurfaceComparison& c) {
   const BandWindow& window = c.test->windows[c.test->strongest];
   const double reach_db = c.test->reach * window.error_db;
-  return fmt::format("from {} to {} B is {:.1f} dB {} A ({:+.1f} to {:+.1f} dB)",
+  return fmt::format("from {} to {} B is {:.1f} dB {} A (simultaneous 95 % interval {:+.1f} to {:+.1f} dB)",
                      for_people(c.low_per_m(window), Dimension::spatial_frequency),
                      for_people(c.high_per_m(window), Dimension::spatial_frequency),
                      std::abs(window.level_db), window.level_db > 0 ? "above" : "below",
@@ -400,6 +400,12 @@ void judge(SurfaceComparison& c) {
   const bool small = std::abs(test.windows[test.strongest].level_db) < c.tolerance_db;
   c.verdict = by_chance || small ? SurfaceVerdict::no_difference_found : SurfaceVerdict::different;
   c.because = strongest_words(c);
+  if (const BandWindow& window = test.windows[test.strongest];
+      !by_chance && std::abs(window.level_db) <= test.reach * window.error_db)
+    c.because = fmt::format(
+        "the spectra differ in shape (p {:.3f}, all bands together), but no band by itself: the strongest "
+        "difference has an interval that contains 0 dB: {}",
+        test.shape_p, c.because);
   if (by_chance) c.because = "the largest difference is within the spread of the strokes: " + c.because;
   if (!by_chance && small) c.because += fmt::format(", below the tolerance of {:g} dB", c.tolerance_db);
 }

@@ -24,7 +24,7 @@ std::string counted(std::size_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-// "different (p 0.001; 12 + 12 strokes, 1 recording a side)"
+// "different, for these recordings (p 0.001; 12 + 12 strokes, 1 recording a side)"
 std::string verdict_line(const SurfaceComparison& c) {
   const std::string recordings =
       c.a.recordings == c.b.recordings
@@ -36,8 +36,9 @@ std::string verdict_line(const SurfaceComparison& c) {
                           c.test && c.test->p <= kTestLevel ? "below the tolerance; " : "",
                           c.finest_third_octave_db);
   if (c.test) figures += fmt::format("p {:.3f}; ", c.test->p);
-  return fmt::format("{} ({}{} + {}, {})", to_string(c.verdict), figures, c.a.strokes,
-                     counted(c.b.strokes, "stroke"), recordings);
+  const bool these = !c.by_recording && c.verdict != SurfaceVerdict::undecided;
+  return fmt::format("{}{} ({}{} + {}, {})", to_string(c.verdict), these ? ", for these recordings" : "",
+                     figures, c.a.strokes, counted(c.b.strokes, "stroke"), recordings);
 }
 
 std::string condition_words(const SurfaceComparison& c, std::optional<double> SideFacts::*member,

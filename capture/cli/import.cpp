@@ -147,6 +147,16 @@ cli::Report report_on(const Imported& imported, const ImportRequest& request) {
   return report.add("next", next_command(imported.recording));
 }
 
+// A window of 1 mm, or a quarter of a shorter profile.
+std::string next_of_profile(const HeightProfile& profile, const std::string& stem) {
+  constexpr std::size_t kFewest = 10;  // samples of a window
+  if (profile.height_m.size() < kFewest) return fmt::format("tactograph info {}", cli::shell_word(stem));
+  const double length_m = static_cast<double>(profile.height_m.size()) * profile.pitch_m;
+  const double window_m = std::max(std::min(1e-3, length_m / 4), kFewest * profile.pitch_m);
+  return fmt::format("tactograph spectrogram {} -o {} --window {:.3g}mm", cli::shell_word(stem),
+                     cli::shell_word(stem + ".png"), 1e3 * window_m);
+}
+
 schema::Result<cli::Report> run_profile(const ImportRequest& request) {
   const auto imported = [&] {
     cli::Progress progress("importing");
@@ -162,8 +172,7 @@ schema::Result<cli::Report> run_profile(const ImportRequest& request) {
   report.add("direction", profile.direction).add("unevenness_m", profile.unevenness_m);
   report.add("lowest_m", lowest).add("highest_m", highest);
   report.add("files", std::vector{stem + ".texture.wav", stem + ".texture.json"});
-  return report.add("next", fmt::format("tactograph spectrogram {} -o {} --window 1mm", cli::shell_word(stem),
-                                        cli::shell_word(stem + ".png")));
+  return report.add("next", next_of_profile(profile, stem));
 }
 
 schema::Result<cli::Report> run_height_map(const ImportRequest& request) {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -109,7 +110,15 @@ Result<void> check_end(const firmware_host::DeviceToRecord& opened, const Record
                       options.device, "use fewer --strokes, let the device make more, or add --time 2s");
 }
 
-cli::Report report_on(const Recorded& recorded, const firmware_host::Device& device, const cli::Pace& pace) {
+// The folder of the recording if it has to be made, else empty.
+std::string missing_folder(const std::string& name) {
+  const std::string folder = std::filesystem::path(name).parent_path().string();
+  std::error_code ignored;
+  return folder.empty() || std::filesystem::is_directory(folder, ignored) ? "" : folder;
+}
+
+cli::Report report_on(const Recorded& recorded, const firmware_host::Device& device, const cli::Pace& pace,
+                      const std::string& made_folder) {
   const schema::RecordingHeader& header = recorded.recording.header;
   const std::string& stem = recorded.recording.stem;
   cli::Report report;
@@ -124,6 +133,7 @@ cli::Report report_on(const Recorded& recorded, const firmware_host::Device& dev
   if (!header.ended.empty()) report.add("ended", header.ended);
   if (!header.warnings.empty()) report.add("warnings", header.warnings);
   report.add("files", std::vector{stem + ".wav", stem + ".json"});
+  if (!made_folder.empty()) report.add("made_folder", made_folder);
   return report.add("next", fmt::format("tactograph spatial {0} -o {0}", cli::shell_word(stem)));
 }
 
@@ -206,6 +216,7 @@ Result<cli::Report> run_record(const RecordOptions& options) {
     TACTO_TRY(calibration);
     request.calibration = std::move(*calibration);
   }
+  const std::string made_folder = missing_folder(request.name);
   const cli::Pace pace;
   const Result<Recorded> recorded = [&] {
     Console console(options.commands);
@@ -213,7 +224,7 @@ Result<cli::Report> run_record(const RecordOptions& options) {
   }();
   TACTO_TRY(recorded);
   cli::warn_grouped(recorded->recording.header.warnings);
-  cli::Report report = report_on(*recorded, *device, pace);
+  cli::Report report = report_on(*recorded, *device, pace, made_folder);
   const bool gaps = !recorded->recording.header.gaps.empty() || recorded->counts.lost_frames > 0;
   if (gaps && !options.allow_gaps) report.ends_with(schema::ErrorKind::device);
   if (recorded->ended_by && recorded->recording.header.ended.empty())

@@ -128,7 +128,9 @@ Result<void> ClockFinder::locate(std::span<const double> time_s, const PlaceOf& 
     if (!(time > before))
       return fail(ErrorKind::malformed,
                   fmt::format("time goes from {} s to {} s: it must increase", before, time),
-                  fmt::format("{}: {}", file, place_of(row)));
+                  fmt::format("{}: {}", file, place_of(row)),
+                  "if the rows are samples at an even rate, give --rate instead of --time-column; otherwise "
+                  "remove the row");
     if (not_increasing_) continue;
     if (const auto fits = locate_step(time - before, row, place_of, file); !fits) return fits;
   }

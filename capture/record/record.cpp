@@ -61,23 +61,27 @@ Result<void> check_words(const RecordRequest& request) {
   return {};
 }
 
-std::string megabytes(double bytes) {
-  return fmt::format("{:.3g} MB", bytes / 1e6);
+std::string gigabytes(double bytes) {
+  return fmt::format("{:.3g} GB", bytes / 1e9);
 }
 
+// The estimate of a recording without a time is its start.
 Result<void> check_room(const RecordRequest& request, const schema::RecordingHeader& header) {
-  const double needed = request.time_s.value_or(0) * header.sample_rate_hz *
-                            static_cast<double>(header.channels.size()) * sizeof(std::int32_t) +
-                        kSpare_bytes;
+  const double bytes_per_s =
+      header.sample_rate_hz * static_cast<double>(header.channels.size()) * sizeof(std::int32_t);
+  const double needed = request.time_s.value_or(0) * bytes_per_s + kSpare_bytes;
   const double left = disk_left_bytes(request.name);
   if (needed <= left) return {};
   const std::string what =
-      request.time_s ? fmt::format("{:g} s need {} of disk space", *request.time_s, megabytes(needed))
-                     : fmt::format("a recording needs {} of disk space to start", megabytes(needed));
+      request.time_s ? fmt::format("{:g} s need", *request.time_s) : "a recording needs to start";
+  const double longest_s = std::floor((left - kSpare_bytes) / bytes_per_s);
   return schema::fail(
-      ErrorKind::cannot_write, fmt::format("{}, but only {} are free", what, megabytes(left)),
+      ErrorKind::cannot_write,
+      fmt::format("{} {} of disk space, but only {} are free", what, gigabytes(needed), gigabytes(left)),
       schema::existing_folder_of(request.name),
-      request.time_s ? "record for a shorter time, or to another disk" : "record to another disk");
+      request.time_s && longest_s >= 1
+          ? fmt::format("record for at most {:.0f} s, or to another disk", longest_s)
+          : "record to another disk");
 }
 
 // One recording: blocks from the device to the writer, and figures of them for the view.
@@ -233,11 +237,11 @@ Result<schema::RecordingHeader> calibrated_header(const Device& device, const Re
 
 Result<Recorded> record(Device& device, const RecordRequest& request, const RecordHooks& hooks) {
   TACTO_TRY(check_words(request));
-  const auto frames = frames_wanted(request, device.capabilities().sample_rate_hz);
-  TACTO_TRY(frames);
   auto header = calibrated_header(device, request);
   TACTO_TRY(header);
   TACTO_TRY(check_room(request, *header));
+  const auto frames = frames_wanted(request, device.capabilities().sample_rate_hz);
+  TACTO_TRY(frames);
   auto live = schema::LiveRecording::create(request.name, std::move(*header));
   TACTO_TRY(live);
   if (const auto started = device.start(); !started) {

@@ -53,6 +53,7 @@ void add_source(Report& report, const TextureSource& source) {
     report.add("low_per_m", source.low_per_m.value_or(0)).add("high_per_m", *source.high_per_m);
   else if (source.high_hz > 0)
     report.add("low_hz", source.low_hz).add("high_hz", source.high_hz);
+  if (source.interpolated_frames > 0) report.add("interpolated_frames", source.interpolated_frames);
   report.add("equalised", source.equalised).add("position_moved_m", source.position_moved_m);
 }
 

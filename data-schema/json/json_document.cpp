@@ -11,6 +11,7 @@
 #include "data-schema/json/json_schema.hpp"
 #include "data-schema/json/json_text.hpp"
 #include "data-schema/json/known_members.hpp"
+#include "data-schema/json/numbers_sum.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -33,6 +34,27 @@ Result<std::string> newer_version_in(const Json& body, const std::string& where)
   return newer_version(named ? body["version"].get<std::string>() : "", where, place(where, "/version"));
 }
 
+// The first breach; of missing members all that its object lacks.
+std::string first_words(const std::vector<Violation>& list) {
+  constexpr std::string_view kMissing = "Missing required property";
+  const Violation& first = list.front();
+  std::string more;
+  for (std::size_t i = 1; i < list.size() && first.what.starts_with(kMissing); ++i)
+    if (list[i].pointer == first.pointer && list[i].what.starts_with(kMissing))
+      more += (more.empty() ? " " : ", ") + list[i].what.substr(kMissing.size() + 1);
+  return more.empty() ? first.what : fmt::format("{}; missing, too:{}", first.what, more);
+}
+
+// A file without this checksum is of another program, or was edited on purpose.
+Result<void> check_numbers_sum(const Json& body, const std::string& where, std::string_view kind) {
+  const auto sum = numbers_sum(kind, body);
+  if (!sum || !body["data"].contains("numbers_sha256") || body["data"]["numbers_sha256"] == *sum) return {};
+  return fail(ErrorKind::malformed,
+              "its numbers do not match their checksum (SHA-256): a number, quantity or unit was changed",
+              place(where, "/data/numbers_sha256"),
+              "restore the file; if the change is intended, remove this member");
+}
+
 Result<Document> checked(Json body, const std::string& where, std::string_view kind) {
   const auto found = kind_in(body, where, kind);
   TACTO_TRY(found);
@@ -46,8 +68,9 @@ Result<Document> checked(Json body, const std::string& where, std::string_view k
     return fail(ErrorKind::internal, fmt::format("there is no usable schema for '{}'", kind), where);
   const auto list = breaches(body, *rules);
   if (!list.empty())
-    return fail(ErrorKind::malformed, list.front().what, place(where, list.front().pointer),
+    return fail(ErrorKind::malformed, first_words(list), place(where, list.front().pointer),
                 remedy_at(list.front().pointer, *rules));
+  TACTO_TRY(check_numbers_sum(body, where, kind));
   auto unknown = unknown_members(*rules, body);
   auto extra_json = unknown_parts(*rules, body);
   return Document{std::move(body), std::move(*newer), std::move(unknown), std::move(extra_json)};
@@ -77,6 +100,7 @@ Result<std::string> written(std::string_view kind, const Json& body, const std::
     return fail(ErrorKind::unsuitable, "a number that is not finite cannot be stored", *pointer);
   const auto list = breaches(document, *rules);
   if (!list.empty()) return fail(ErrorKind::unsuitable, list.front().what, list.front().pointer);
+  if (const auto sum = numbers_sum(kind, document)) document["data"]["numbers_sha256"] = *sum;
   return document.dump(2) + "\n";
 }
 

@@ -36,8 +36,9 @@ void keep_unknown(const Document& document, File& file) {
   file.extra_json = document.extra_json;
 }
 
-/// Reads a file and checks kind, version and schema. Errors: not_found; malformed, with line and column or
-/// with "FILE#/json/pointer"; unsupported_version, naming both versions.
+/// Reads a file and checks kind, version, schema and the checksum of its numbers (numbers_sum.hpp), if it has
+/// one. Errors: not_found; malformed, with line and column or with "FILE#/json/pointer"; unsupported_version,
+/// naming both versions.
 Result<Document> open_document(const std::string& path, std::string_view kind);
 
 /// The same for a text in memory; `where` names it in errors.
@@ -51,9 +52,9 @@ Result<std::string> kind_of(const std::string& path);
 Result<std::vector<Violation>> violations_of(const std::string& path);
 
 /// The document to write: kind and version, then `body`, then those members of `extra_json` (a document's, or
-/// empty) that body lacks. Two spaces of indentation, a newline at the end; doubles read back to the
-/// same bits. Errors: unsuitable, by JSON pointer, where a number is not finite or the schema does not allow
-/// the document.
+/// empty) that body lacks, then the checksum of the numbers. Two spaces of indentation, a newline at the end;
+/// doubles read back to the same bits. Errors: unsuitable, by JSON pointer, where a number is not finite or
+/// the schema does not allow the document.
 Result<std::string> document_text(std::string_view kind, const Json& body, const std::string& extra_json);
 
 /// body[key] = text, if there is a text: empty optional members are left out.

@@ -83,6 +83,15 @@ std::string misspelt_hint(const std::string& said, const Json& value, const Json
   return {};
 }
 
+// Not for letters and symbols of units, which are all near each other.
+std::string near_choice(const Json& value, const Json& choices) {
+  if (!value.is_string() || value.get_ref<const std::string&>().size() < 3) return "";
+  std::vector<std::string> words;
+  for (const Json& choice : choices)
+    if (choice.is_string()) words.push_back(choice);
+  return did_you_mean(value.get<std::string>(), words);
+}
+
 // The validator's messages do not contain the found value and the allowed ones.
 std::string explained(const std::string& said, const Json& value, const Json& rule) {
   if (said.starts_with("Missing")) return said.substr(0, said.size() - 1) + misspelt_hint(said, value, rule);
@@ -90,7 +99,8 @@ std::string explained(const std::string& said, const Json& value, const Json& ru
   if (type && rule.contains("type"))
     return fmt::format("{} is not of type {}", brief(value), list_of(rule["type"]));
   if (said.find("enum") != std::string::npos && rule.contains("enum"))
-    return fmt::format("{} is not one of {}", brief(value), list_of(rule["enum"]));
+    return fmt::format("{} is not one of {}{}", brief(value), list_of(rule["enum"]),
+                       near_choice(value, rule["enum"]));
   if (rule.contains("const")) return fmt::format("{} is not {}", brief(value), rule["const"].dump());
   const bool barred = said.find("'not' constraint") != std::string::npos && rule.contains("not");
   if (barred && rule["not"].contains("required"))

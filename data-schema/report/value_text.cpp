@@ -56,6 +56,7 @@ std::optional<Suffix> suffix_of(std::string_view key) {
 std::string number_for_people(std::string_view key, double value) {
   const auto suffix = suffix_of(key);
   if (!std::isfinite(value)) return "unknown";
+  if (value == 0) value = 0;  // not -0
   if (!suffix) return fmt::format("{:.4g}", value);
   if (suffix->dimension) return schema::for_people(value, *suffix->dimension);
   const bool whole = std::abs(value) >= 1e4 && std::abs(value) < 1e6;  // 11000, not 1.1e+04

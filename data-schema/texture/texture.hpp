@@ -43,6 +43,7 @@ struct TextureSource {
   bool finger_up = false;                               ///< by that force
   /// Of a band-pass along position, if that is the filter; then the band in Hz is all that was recorded.
   std::optional<double> low_per_m = std::nullopt, high_per_m = std::nullopt;
+  int interpolated_frames = 0;  ///< missing frames of the stretch that were filled
 };
 
 /// One of the strokes that were averaged.

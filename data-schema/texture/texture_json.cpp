@@ -60,6 +60,7 @@ constexpr SourceCount kSourceCounts[] = {
     {"order", &TextureSource::order},
     {"counter_bits", &TextureSource::counter_bits},
     {"counter_wraps", &TextureSource::counter_wraps},
+    {"interpolated_frames", &TextureSource::interpolated_frames},
 };
 
 struct SourceOption {

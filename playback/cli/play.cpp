@@ -52,8 +52,9 @@ void declare_what(CLI::App& app, PlayOptions& o) {
   cli::refuse_force(app);
   app.add_flag("--implausible", o.program.implausible,
                "Accept a transducer file with impossible numbers, for example a mass of 1e-12 kg");
-  cli::add_quantity(app, "--time", o.time_s, Dimension::time,
-                    "Duration; default: that of the finger's path, or 10 s");
+  cli::add_quantity(
+      app, "--time", o.time_s, Dimension::time,
+      "Duration; default: that of the finger's path, or 10 s. After the path's end the finger rests");
 }
 
 void declare_texture(CLI::App& app, PlayOptions& o) {
@@ -135,6 +136,7 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, const cli::
   add_gain(report, outcome.gain_m_per_n, outcome.default_gain_m_per_n);
   add_kept_gain(report, outcome.kept_gain);
   report.add("played_s", outcome.status.ticks.playing_s());
+  if (outcome.rests_from_s) report.add("finger_rests_from_s", *outcome.rests_from_s);
   if (!outcome.real_time) pace.add_to(report, outcome.status.ticks.span_s());
   report.add("off_texture_percent", 100 * outcome.status.ticks.off_textures());
   add_loop(report, outcome.loop_period_m, outcome.loop_seam_m);
@@ -166,6 +168,7 @@ Result<Report> run_play_forces(const PlayVerbOptions& asked) {
   Report report;
   report.add("session", play.session).add("device", outcome->device);
   if (!outcome->simulated.empty()) report.add("simulated", outcome->simulated);
+  if (outcome->rests_from_s) report.add("finger_rests_from_s", *outcome->rests_from_s);
   report.add("rate_hz", ticks.rate_hz()).add("ticks", outcome->recorder.ticks);
   report.add("lost_ticks", ticks.lost() + outcome->recorder.lost());
   report.add("peak_limited_ticks", ticks.peak_limited())

@@ -133,8 +133,11 @@ class TextureReader {
     }
     if (const auto near = check_reach(); !near) return near;
     if (laid_.gain() == 0)
-      return fail(ErrorKind::unsuitable, "every gain is 0", laid_.scene_path_,
-                  "set a gain of at least one layer");
+      return laid_.scene_path_.empty()
+                 ? fail(ErrorKind::unsuitable, "the gain is 0: the drive would be 0",
+                        laid_.rows().front().file, "give --gain a value above or below 0, for example 1x")
+                 : fail(ErrorKind::unsuitable, "every gain is 0: the drive would be 0", laid_.scene_path_,
+                        "set a gain of at least one layer");
     return {};
   }
   void keep_gain(std::optional<schema::PlaybackGain> gain, double usual) {

@@ -32,6 +32,11 @@ double time_of(const PlayOptions& options) {
   return options.finger_path ? options.finger_path->duration_s() : kUsualS;
 }
 
+std::optional<double> rest_from(const std::optional<double>& path_s, double asked_s) {
+  constexpr double kRounding = 1 + 1e-9;
+  return path_s && asked_s > kRounding * *path_s ? path_s : std::nullopt;
+}
+
 Result<void> check_play_options(const std::optional<double>& time_s, const std::string& session) {
   if (time_s && !(*time_s > 0))
     return fail(ErrorKind::usage, fmt::format("the time {:g} s is not above 0", *time_s), {},
@@ -212,6 +217,8 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   PlayOutcome outcome = outcome_of(*program);
   const PlayableRange what = playable_range(*program);
   outcome.asked_s = time_of(options);
+  if (options.finger_path)
+    outcome.rests_from_s = rest_from(options.finger_path->duration_s(), outcome.asked_s);
   TACTO_TRY((*player)->load(std::move(*program)));
   TACTO_TRY((*player)->gain(options.gain));
   if (*here) lock_memory();
@@ -245,6 +252,7 @@ Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std:
   PlayOutcome outcome;
   outcome.notes = program->notes;
   outcome.asked_s = options.time_s.value_or(device->path_s.value_or(kUsualS));
+  outcome.rests_from_s = rest_from(device->path_s, outcome.asked_s);
   const auto script = script_for(options.script, program->scene, outcome.asked_s);
   TACTO_TRY(script);
   TACTO_TRY((*player)->load(std::move(*program)));

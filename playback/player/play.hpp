@@ -38,6 +38,7 @@ struct PlayOutcome {
   bool real_time = true;                ///< whether the device keeps time
   std::optional<std::string> off_note;  ///< if the finger was off the textures for over a tenth of the time
   double asked_s = 0;
+  std::optional<double> rests_from_s;  ///< end of the path, if the playback is longer: the finger rests
   double passes_to_hz = 0, delay_s = 0, delay_left_s = 0, inverse_error_db = 0;
   double loop_period_m = 0, loop_seam_m = 0;  ///< of a looped texture
   std::vector<std::string> notes;

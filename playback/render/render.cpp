@@ -66,9 +66,13 @@ Result<void> check_length(const FingerPath& path, const RenderOptions& options) 
                             options.band.low_hz),
                 "path", "use a longer path, or a higher --low");
   if (path.duration_s() * options.rate_hz > kMostSamples)
-    return fail(ErrorKind::unsuitable,
-                fmt::format("the path of {:.4g} s is too long to render at once", path.duration_s()), "path",
-                fmt::format("cut it into parts of at most {:.0f} s", kMostSamples / options.rate_hz));
+    return fail(
+        ErrorKind::unsuitable,
+        fmt::format(
+            "the path of {:.4g} s has {:.4g} samples at {:g} Hz, at most {:.4g} can be rendered at once",
+            path.duration_s(), path.duration_s() * options.rate_hz, options.rate_hz, kMostSamples),
+        "path",
+        fmt::format("use a --rate up to {:.0f}Hz, or a shorter path", kMostSamples / path.duration_s()));
   return {};
 }
 

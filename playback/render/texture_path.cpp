@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "data-schema/base/quantity.hpp"
+
 namespace tacto::playback {
 
 using schema::Result;
@@ -37,12 +39,13 @@ std::size_t TexturePath::count_outside(const ReadingGrid& grid) const {
 tl::unexpected<schema::Error> TexturePath::outside_textures() const {
   const auto [low, high] = std::ranges::minmax(path_->position_m);
   const bool several = layers_.size() > 1;
-  return schema::fail(schema::ErrorKind::unsuitable,
-                      fmt::format("the finger moves from {:.4g} mm to {:.4g} mm, outside the texture{}, "
-                                  "which {} from {:.4g} mm to {:.4g} mm",
-                                  low * 1e3, high * 1e3, several ? "s" : "", several ? "reach" : "reaches",
-                                  start_m_ * 1e3, end_m_ * 1e3),
-                      "path", several ? "move them in the scene" : "--at moves the texture");
+  const auto shown = [](double length_m) { return schema::for_people(length_m, schema::Dimension::length); };
+  return schema::fail(
+      schema::ErrorKind::unsuitable,
+      fmt::format("the finger moves from {} to {}, outside the texture{}, which {} at {} and {} {} long",
+                  shown(low), shown(high), several ? "s" : "", several ? "begin" : "begins", shown(start_m_),
+                  several ? "are" : "is", shown(end_m_ - start_m_)),
+      "path", several ? "move them in the scene" : "--at moves the texture");
 }
 
 double TexturePath::fade_m() const {

@@ -13,6 +13,7 @@
 #include "data-schema/report/progress.hpp"
 #include "data-schema/texture/formants.hpp"
 #include "data-schema/version.hpp"
+#include "spatial/cli/formant_row.hpp"
 #include "spatial/cli/spectrogram_options.hpp"
 #include "spatial/cli/table_output.hpp"
 #include "spatial/cli/texture_inputs.hpp"
@@ -54,17 +55,6 @@ Result<schema::FormantFile> found(const std::vector<NamedTexture>& files, const 
   return all;
 }
 
-Report row_of(const schema::FormantTable& table, const schema::Formant& formant) {
-  Report row;
-  row.add("texture", table.texture).add("from_m", formant.from_m).add("to_m", formant.to_m);
-  row.add("frequency_per_m", formant.frequency_per_m).add("width_per_m", formant.width_per_m);
-  row.add("lowest_per_m", formant.lowest_per_m).add("highest_per_m", formant.highest_per_m);
-  row.add("level_db", formant.level_db).add("prominence_db", formant.prominence_db);
-  row.add("goes_on",
-          formant.open_from ? (formant.open_to ? "both ends" : "before") : (formant.open_to ? "after" : ""));
-  return row;
-}
-
 // The background of a line is the median of cells between 3.5 and 16 times 1 / window away. Where lines of 3
 // times 1 / window on each side repeat more closely than this, they are most of these cells.
 constexpr double kWindowOverPeriod = 10;
@@ -72,7 +62,7 @@ constexpr double kWindowOverPeriod = 10;
 Report report_of(const schema::FormantFile& file, const std::string& path) {
   std::vector<Report> rows;
   for (const auto& table : file.tables)
-    for (const auto& formant : table.formants) rows.push_back(row_of(table, formant));
+    for (const auto& formant : table.formants) rows.push_back(formant_row(table.texture, formant));
   const auto& first = file.tables.front();
   Report report;
   report.add("textures", file.tables.size()).add("found", rows.size());

@@ -9,6 +9,7 @@
 
 #include "data-schema/command/budget_options.hpp"
 #include "data-schema/command/output_options.hpp"
+#include "spatial/cli/formant_row.hpp"
 #include "spatial/cli/spectrogram_files.hpp"
 #include "spatial/cli/spectrogram_run.hpp"
 #include "spatial/cli/texture_inputs.hpp"
@@ -52,10 +53,12 @@ Result<FormantLists> formants_of(const SpectrogramRun& run, bool target) {
   return lists;
 }
 
-std::size_t count_of(const FormantLists& lists) {
-  std::size_t count = 0;
-  for (const auto& list : lists) count += list.size();
-  return count;
+std::vector<Report> formant_rows(const SpectrogramRun& run, const FormantLists& lists) {
+  std::vector<Report> rows;
+  for (std::size_t i = 0; i < lists.size(); ++i)
+    for (const schema::Formant& formant : lists[i])
+      rows.push_back(formant_row(run.textures()[i].name, formant));
+  return rows;
 }
 
 SpectrogramFigure figure_of(const SpectrogramRun& run, const FormantLists& formants,
@@ -179,7 +182,7 @@ Result<Report> run_spectrogram(SpectrogramVerbOptions options) {
   if (files.has_pictures()) figure = figure_of(run, *formants, options.picture);
   TACTO_TRY(files.finish(figure ? &*figure : nullptr, options.existing));
   Report report = report_of(run, run.lowest_per_m(), options);
-  if (options.formants) report.add("formants_drawn", count_of(*formants));
+  if (options.formants) report.add("formants", formant_rows(run, *formants));
   if (*chosen) report.add("chosen", std::vector<Report>{**chosen});
   return report;
 }

@@ -108,6 +108,9 @@ void Run::warn_of_recording(const TouchRecord& record) {
   for (const std::string& warning : header.warnings)
     if (warning.starts_with(record.channel().name + ": "))
       warn(fmt::format("{}: {}", record.where(), warning));
+  if (const std::size_t gaps = record.filled().size(); gaps > 0)
+    warn(fmt::format("{}: {} missing frames in {} short gaps were interpolated", record.where(),
+                     record.filled_in({0, header.frames}), gaps));
   for (const schema::StrokeFigures& stored : header.strokes)
     for (const Stroke& stroke : record.strokes()) {
       const bool together = stroke.frames.begin < stored.first_frame + stored.frames / 2 &&

@@ -9,7 +9,6 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kFastestFinger_mps = 10;
 constexpr double kLongestHold_s = 0.05;
 constexpr double kOfMedianStep = 20;
 constexpr double kRare = 0.01;

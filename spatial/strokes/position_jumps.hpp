@@ -17,11 +17,13 @@ struct PositionJump {
   double step_m = 0;
 };
 
-/// The jumps within the pieces, by time. A step is a jump if it exceeds 10 m/s since the position last
-/// changed (a slow encoder's position is held; at most 50 ms), ten times the fastest stroke that this program
-/// is made for, and exceeds 20 times the median step of the moving finger. If over 1 % of the steps are like
-/// that, they are the normal behaviour of this position, and there are no jumps. Reads all frames once, and
-/// twice more if a step may be a jump. Errors: of reading.
+/// Ten times the fastest stroke that this program is made for.
+inline constexpr double kFastestFinger_mps = 10;
+
+/// The jumps within the pieces, by time. A step is a jump if it exceeds kFastestFinger_mps since the position
+/// last changed (a slow encoder's position is held; at most 50 ms), and exceeds 20 times the median step of
+/// the moving finger. If over 1 % of the steps are like that, they are the normal behaviour of this position,
+/// and there are no jumps. Reads all frames once, and twice more if a step may be a jump. Errors: of reading.
 schema::Result<std::vector<PositionJump>> find_position_jumps(const ReadFrames& read,
                                                               std::span<const FrameRange> pieces,
                                                               double sample_rate_hz);

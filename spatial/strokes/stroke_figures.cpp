@@ -12,17 +12,18 @@ namespace {
 using schema::Result;
 using schema::StrokeFigures;
 
-schema::StrokeFigures figures_of(const TouchRecord& record, const Stroke& stroke) {
+schema::StrokeFigures figures_of(const TouchRecord& record, const Stroke& stroke,
+                                 const std::vector<schema::Gap>& gaps) {
   StrokeFigures figures;
-  figures.first_frame = stroke.frames.begin;
-  figures.frames = stroke.frames.size();
+  figures.first_frame = record.stored_frame(stroke.frames.begin);
+  figures.frames = record.stored_frame(stroke.frames.end) - figures.first_frame;
   figures.length_m = record.length_m(stroke);
   figures.direction = stroke.direction;
   figures.mean_speed_mps = record.mean_speed_mps(stroke);
   figures.mean_normal_n = stroke.force_n;
   const auto near = static_cast<std::uint64_t>(schema::kStrokePause_s * record.header().sample_rate_hz);
-  for (const schema::Gap& gap : record.header().gaps)
-    if (gap.frame + near >= stroke.frames.begin && gap.frame <= stroke.frames.end + near)
+  for (const schema::Gap& gap : gaps)
+    if (gap.frame + near >= figures.first_frame && gap.frame <= figures.first_frame + figures.frames + near)
       figures.lost_frames += gap.count;
   return figures;
 }
@@ -39,7 +40,8 @@ Result<std::vector<StrokeFigures>> stroke_figures(const schema::Recording& recor
   const auto record = TouchRecord::open(std::move(*source), recording.header, recording.stem);
   if (!record) return without_strokes(record.error());
   std::vector<StrokeFigures> all;
-  for (const Stroke& stroke : record->strokes()) all.push_back(figures_of(*record, stroke));
+  for (const Stroke& stroke : record->strokes())
+    all.push_back(figures_of(*record, stroke, recording.header.gaps));
   return all;
 }
 

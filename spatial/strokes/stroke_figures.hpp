@@ -10,8 +10,8 @@
 namespace tacto::spatial {
 
 /// The strokes that `spatial` finds; none without a position, or if the position never changes.
-/// `clipped_samples` is not filled in. `lost_frames` are missing directly before or after a stroke, which
-/// they end. Reads the position as TouchRecord::open. Errors: of reading.
+/// `clipped_samples` is not filled in. `lost_frames` are missing within a stroke (bridge_short_gaps), or
+/// directly before or after it. Reads the position as TouchRecord::open. Errors: of reading.
 schema::Result<std::vector<schema::StrokeFigures>> stroke_figures(const schema::Recording& recording);
 
 }  // namespace tacto::spatial

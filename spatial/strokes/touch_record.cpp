@@ -27,6 +27,20 @@ constexpr double kShortestTravelResolutions = 20;
 // A frame includes half a sample period on each side, so that a time with few digits still selects it.
 constexpr double kWithinFrame = 0.5;
 
+// The pieces without the frames that were filled; both are sorted.
+std::vector<FrameRange> without(std::span<const FrameRange> pieces, std::span<const FrameRange> filled) {
+  std::vector<FrameRange> measured;
+  auto next = filled.begin();
+  for (FrameRange piece : pieces) {
+    for (; next != filled.end() && next->begin < piece.end; ++next) {
+      measured.push_back({piece.begin, next->begin});
+      piece.begin = next->end;
+    }
+    measured.push_back(piece);
+  }
+  return measured;
+}
+
 std::string seconds(double s) {
   return fmt::format("{:.4g} s", s);
 }
@@ -43,9 +57,12 @@ schema::Result<TouchRecord> TouchRecord::open(const schema::Recording& recording
 schema::Result<TouchRecord> TouchRecord::open(std::unique_ptr<TouchSource> source,
                                               schema::RecordingHeader header, std::string where) {
   TouchRecord record;
-  record.header_ = std::move(header);
+  auto bridged = bridge_short_gaps(std::move(source), std::move(header));
+  TACTO_TRY(bridged);
+  record.header_ = std::move(bridged->header);
   record.where_ = std::move(where);
-  record.source_ = std::move(source);
+  record.source_ = std::move(bridged->source);
+  record.filled_ = std::move(bridged->filled);
   TACTO_TRY(record.survey());
   return record;
 }
@@ -65,7 +82,8 @@ schema::Result<void> TouchRecord::survey() {
   TACTO_TRY(jumps);
   jumps_ = std::move(*jumps);
   const auto sound = pieces_between_jumps(pieces_, jumps_);
-  auto facts = spatial::position_facts(read, sound, header_.sample_rate_hz, track_->furthest_m());
+  const auto measured = pieces_between_jumps(without(pieces_, filled_), jumps_);
+  auto facts = spatial::position_facts(read, measured, header_.sample_rate_hz, track_->furthest_m());
   TACTO_TRY(facts);
   facts_ = *facts;
   auto strokes = find_strokes(read, sound, header_.sample_rate_hz, facts_);
@@ -95,8 +113,8 @@ void TouchRecord::mark_cut_strokes() {
 schema::Error TouchRecord::refusal(const PositionJump& jump) const {
   return {ErrorKind::unsuitable,
           fmt::format("the position jumps by {} from sample {} to sample {}, at {}: too fast for a finger",
-                      schema::length_for_people(jump.step_m), jump.frame - 1, jump.frame,
-                      seconds(schema::frame_time_s(header_, jump.frame))),
+                      schema::length_for_people(jump.step_m), stored_frame(jump.frame) - 1,
+                      stored_frame(jump.frame), seconds(schema::frame_time_s(header_, jump.frame))),
           where_, "check the encoder and its cable; select the part before or after with --from and --to"};
 }
 
@@ -114,6 +132,15 @@ schema::Result<void> TouchRecord::weigh(Stroke& stroke) const {
   if (auto done = chunk_by_chunk(stroke.frames, add); !done) return done;
   stroke.force_n = sum_n / static_cast<double>(stroke.frames.size());
   return {};
+}
+
+std::size_t TouchRecord::filled_in(FrameRange frames) const {
+  std::size_t count = 0;
+  for (const FrameRange& range : filled_) {
+    const std::size_t begin = std::max(range.begin, frames.begin), end = std::min(range.end, frames.end);
+    if (begin < end) count += end - begin;
+  }
+  return count;
 }
 
 double TouchRecord::from_s(const Stroke& stroke) const {

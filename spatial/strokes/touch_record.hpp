@@ -10,6 +10,7 @@
 
 #include "data-schema/base/error.hpp"
 #include "data-schema/recording/recording.hpp"
+#include "spatial/strokes/bridged_source.hpp"
 #include "spatial/strokes/monotone_path.hpp"
 #include "spatial/strokes/position_facts.hpp"
 #include "spatial/strokes/position_jumps.hpp"
@@ -51,8 +52,13 @@ class TouchRecord {
   const std::vector<PositionJump>& jumps() const { return jumps_; }
   /// "the position jumps by 1 m from sample 3999 to 4000, at 0.4 s ..."
   schema::Error refusal(const PositionJump& jump) const;
-  /// The stretches between gaps.
+  /// The stretches between gaps that were not filled.
   const std::vector<FrameRange>& pieces() const { return pieces_; }
+  /// Short gaps that were filled (bridge_short_gaps). Frames here are numbered with the filled ones.
+  const std::vector<FrameRange>& filled() const { return filled_; }
+  std::size_t filled_in(FrameRange frames) const;
+  /// The frame's number in the recording.
+  std::size_t stored_frame(std::size_t frame) const { return frame - filled_in({0, frame}); }
 
   /// Errors: of reading.
   schema::Result<std::vector<double>> position_m(FrameRange frames) const { return track_->read(frames); }
@@ -85,7 +91,7 @@ class TouchRecord {
   std::unique_ptr<TouchSource> source_;
   std::optional<PositionTrack> track_;
   PositionFacts facts_;
-  std::vector<FrameRange> pieces_;
+  std::vector<FrameRange> filled_, pieces_;
   std::vector<PositionJump> jumps_;
   std::vector<Stroke> strokes_;
   std::size_t short_runs_ = 0;

@@ -228,6 +228,7 @@ void TextureMaker::describe_position(schema::TextureSource& source, const Stroke
   source.counter_bits = record_.counter_wraps().bits;
   source.counter_wraps =
       static_cast<int>(record_.counter_wraps().count_in(stroke.frames.begin, stroke.frames.end));
+  source.interpolated_frames = static_cast<int>(record_.filled_in(stroke.frames));
   source.normal_force_n = stroke.force_n;
   source.finger_up = stroke.finger_up;
 }

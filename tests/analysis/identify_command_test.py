@@ -157,6 +157,9 @@ def hysteresis_is_written():
     limit, operator = stored["drive_limit_v"], stored["hysteresis"]
     kept = sum(w * (limit - r) for r, w in zip(operator["thresholds_v"], operator["weights"]))
     assert abs(kept / limit - 1) < 1e-9
+    linear = tacto.run_json("identify", "-d", "sim:tray_sensor=on", "--method", "loop", "-o", "linear")
+    weights = json.load(open("linear.transducer.json"))["hysteresis"]["weights"]
+    assert all(row["weight"] for row in linear["operator"]) and linear["further_weights_of_0"] == weights.count(0) > 0, linear
 
 
 def loop_table(name, drive, times=1.0):

@@ -44,6 +44,14 @@ def the_next_command_works():
     assert next_of("normal", "normal_force=f*1N", x) == "tactograph info normal"
 
 
+def a_short_profile_gets_a_window_that_fits():
+    for samples in (12, 40, 300):
+        np.savetxt("profile.csv", np.sin(np.arange(samples)), header="h", comments="")
+        report = tacto.run_json("import", "profile.csv", "-o", f"profile-{samples}", "--pitch", "10um", "--channel", "height=h*1um")
+        done = subprocess.run(["bash", "-c", report["next"].replace("tactograph", tacto.COMMAND, 1)], capture_output=True, text=True)
+        assert done.returncode == 0 and "spectrogram" in report["next"], (report["next"], done.stderr)
+
+
 def a_unit_against_the_heading_is_warned_of():
     pathlib.Path("heads.csv").write_text("force_n,position_mm\n" + "".join(f"{0.1 * (i % 7)},{i * 0.01}\n" for i in range(2000)))
     force = ["--channel", "tangential_force=force_n"]
@@ -95,5 +103,5 @@ def real_outliers_are_masked():
 
 
 if __name__ == "__main__":
-    for test in (the_next_command_works, masked_outliers_leave_the_texture, a_unit_against_the_heading_is_warned_of, real_outliers_are_masked):
+    for test in (the_next_command_works, a_short_profile_gets_a_window_that_fits, masked_outliers_leave_the_texture, a_unit_against_the_heading_is_warned_of, real_outliers_are_masked):
         tacto.in_folder(test)

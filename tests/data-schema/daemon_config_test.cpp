@@ -33,6 +33,16 @@ TEST(DaemonConfig, ANumberOutOfRangeIsToldItsRange) {
   EXPECT_TRUE(refused(R"("max_error":0)").remedy.ends_with("above 0 to 0.1"));
 }
 
+TEST(DaemonConfig, AllMissingMembersAreNamedAtOnce) {
+  const tests::TemporaryFolder folder;
+  std::ofstream(folder / "d.json") << R"({"kind":"daemon","version":"1.0","transducer":"t"})";
+  const auto config = read_daemon_config(folder / "d.json");
+  ASSERT_FALSE(config);
+  for (const char* member : {"'device'", "'socket'", "'sessions'"})
+    EXPECT_NE(config.error().what.find(member), std::string::npos) << config.error().what;
+  EXPECT_EQ(config.error().what.find("'transducer'"), std::string::npos) << config.error().what;
+}
+
 TEST(DaemonConfig, AMisspeltChoiceIsNamedWithTheNearest) {
   EXPECT_EQ(refused(R"("playback":{"contact_on":1})").remedy, "did you mean 'contact_on_n'?");
   EXPECT_EQ(refused(R"("rate_Hz":2000)").remedy, "did you mean 'rate_hz'?");

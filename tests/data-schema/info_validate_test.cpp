@@ -138,6 +138,15 @@ TEST_F(InfoValidate, DescribesSeveral) {
   EXPECT_NE(people.out.find("tangential_force  tangential_force  N"), std::string::npos) << people.out;
 }
 
+TEST_F(InfoValidate, ZeroHasNoSign) {
+  Texture texture;
+  texture.signal.pitch_m = 1e-6;
+  texture.signal.values = {1, 2};
+  texture.source_origin_m = -0.0;
+  ASSERT_TRUE(write_texture(folder_ / "zero", texture));
+  EXPECT_EQ(run({"info", folder_ / "zero"}).out.find(" -0 "), std::string::npos);
+}
+
 TEST_F(InfoValidate, SaysWhatIsNotThere) {
   const Outcome outcome = run({"info", folder_ / "ash"});
   EXPECT_EQ(outcome.exit_code, exit_code(ErrorKind::not_found));

@@ -42,10 +42,9 @@ def make_files():
 DRAWING = ("figure", "subplot", "plot", "imagesc", "axis", "xlabel", "ylabel", "title", "print")
 
 
-def the_example_plots_values_with_units():
-    """Debian's Octave without its recommended packages cannot draw, so functions that print their arguments replace those
-    that draw."""
-    make_files()
+def drawn(script):
+    """The printed drawing. Debian's Octave without its recommended packages cannot draw, so functions that print their
+    arguments replace those that draw."""
     pathlib.Path("drawing").mkdir()
     for name in DRAWING:
         pathlib.Path(f"drawing/{name}.m").write_text(
@@ -53,14 +52,31 @@ def the_example_plots_values_with_units():
             f"  printf('{name}'); cellfun(@(a) printf(' [%s]', disp_of(a)), varargin); printf('\\n'); varargout = {{}};\nend\n"
             "function text = disp_of(a)\n"
             "  if ischar(a) text = a; else text = sprintf('%d from %.9g to %.9g', numel(a), min(a(:)), max(a(:))); end\nend\n")
-    done = octave("warning('off', 'Octave:shadowed-function'); addpath('drawing'); example; disp('end of the example')")
+    done = octave(f"warning('off', 'Octave:shadowed-function'); addpath('drawing'); {script}; disp('end of the example')")
     assert "end of the example" in done.stdout, done
+    return done.stdout.split("\n")
+
+
+def the_example_plots_values_with_units():
+    make_files()
+    lines = drawn("example")
     texture = tactograph.read_texture("E")
     force, position = texture.tangential_force.values, texture.position.values
     wanted = [f"plot [{len(force)} from 0 to {position[-1]:.9g}] [{len(force)} from {force.min():.9g} to {force.max():.9g}]",
               "xlabel [position (m)]", "ylabel [tangential force (N)]", "ylabel [spatial frequency (1/m)]", "ylabel [drive (V)]"]
-    missing = [line for line in wanted if line not in done.stdout.split("\n")]
-    assert not missing, (missing, done.stdout)
+    missing = [line for line in wanted if line not in lines]
+    assert not missing, (missing, lines)
+
+
+def the_readme_plots_force_over_position():
+    make_files()
+    block = [line.strip() for line in (ROOT / "README.md").read_text(encoding="utf-8").split("\n")]
+    at = next(i for i, line in enumerate(block) if "read_tactograph(" in line and "E.texture.json" in line)
+    lines = drawn(" ".join(block[at:at + 2]))
+    texture = tactograph.read_texture("E")
+    force, position = 1e3 * texture.tangential_force.values, 1e3 * texture.position.values
+    assert f"plot [{len(force)} from 0 to {position[-1]:.9g}] [{len(force)} from {force.min():.9g} to {force.max():.9g}]" in lines, lines
+    assert "xlabel [position (mm)]" in lines and "ylabel [tangential force (mN)]" in lines, lines
 
 
 def numbers_are_those_of_python():
@@ -84,6 +100,7 @@ def numbers_are_those_of_python():
 def gaps_are_counted():
     make_files()
     document = json.loads(pathlib.Path("E.json").read_text())
+    document["data"].pop("numbers_sha256")
     document["gaps"] = [{"frame": 100, "device_sequence": 105, "count": 5}, {"frame": 200, "device_sequence": 208, "count": 3}]
     pathlib.Path("E.json").write_text(json.dumps(document))
     assert np.array_equal(read_by_octave("E.json", "time")[0], tactograph.read_recording("E").time)
@@ -96,5 +113,5 @@ def another_kind_is_refused():
 
 
 if __name__ == "__main__":
-    for test in (the_example_plots_values_with_units, numbers_are_those_of_python, gaps_are_counted, another_kind_is_refused):
+    for test in (the_example_plots_values_with_units, the_readme_plots_force_over_position, numbers_are_those_of_python, gaps_are_counted, another_kind_is_refused):
         tacto.in_folder(test)

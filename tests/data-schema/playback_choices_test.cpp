@@ -59,6 +59,12 @@ TEST(PlaybackChoices, ARequestKeepsThem) {
   expect_all(again->playback);
 }
 
+TEST(ControlRequest, AMisspeltRequestGetsTheNearest) {
+  const auto request = parse_control_request(R"({"request":"lod","file":"oak"})");
+  ASSERT_FALSE(request);
+  EXPECT_NE(request.error().what.find("'load'"), std::string::npos) << message(request.error());
+}
+
 TEST(PlaybackChoices, AConfigurationTakesThemAndNothingElse) {
   tests::TemporaryFolder folder;
   const auto config_of =

@@ -49,6 +49,7 @@ def refusal(read, name, *words, **options):
 
 def edit(path, **changed):
     document = json.loads(pathlib.Path(path).read_text())
+    document["data"].pop("numbers_sha256", None)
     document.update(changed)
     pathlib.Path(path).write_text(json.dumps(document))
 
@@ -211,6 +212,20 @@ def what_cannot_be_read_is_named():
     refusal(tactograph.read_spectrogram, "text", "netCDF")
 
 
+def changed_numbers_are_refused():
+    for file, read, member in (("ridge.json", tactograph.read_recording, "sample_rate_hz"),
+                               ("ridge.texture.json", tactograph.read_texture, "pitch_m")):
+        path = pathlib.Path(file)
+        whole = path.read_text()
+        document = json.loads(whole)
+        assert document["data"]["numbers_sha256"]
+        path.write_text(json.dumps({**document, "notes": "dry", "x_bench": 7}))
+        read("ridge")
+        path.write_text(json.dumps({**document, member: document[member] * (1 + 1e-15)}))
+        refusal(read, "ridge", "numbers", "numbers_sha256")
+        path.write_text(whole)
+
+
 def a_newer_minor_version_is_read_with_a_warning():
     edit("ridge.json", version="1.99", later=3)
     with warnings.catch_warnings(record=True) as caught:
@@ -226,7 +241,7 @@ def main():
         for check in (texture_has_its_positions_and_band, clipping_is_masked, recording_is_physical_and_keeps_its_gaps,
                       average_tells_its_spread, spectrogram_is_upright_and_loaded, the_version_is_that_of_the_program, a_stored_session_is_read,
                       a_session_holds_what_the_tray_sensor_measured, a_session_of_the_daemon_has_its_gains, a_session_that_was_cut_is_read_up_to_there,
-                      a_newer_minor_version_is_read_with_a_warning, what_cannot_be_read_is_named):
+                      changed_numbers_are_refused, a_newer_minor_version_is_read_with_a_warning, what_cannot_be_read_is_named):
             check()
             print(f"{check.__name__}: passed")
 

@@ -82,6 +82,7 @@ Recording write_simple(const std::string& name) {
 
 void edit(const std::string& path, const std::string& pointer, const Json& value) {
   Json document = Json::parse(read_file(path).value());
+  document["data"].erase("numbers_sha256");  // the fault to be found is another one
   document[Json::json_pointer(pointer)] = value;
   std::ofstream(path) << document.dump(2);
 }

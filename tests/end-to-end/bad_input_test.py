@@ -67,6 +67,12 @@ def spatial_refuses():
     refused("spatial", "absent", "-o", "t", code=NOT_FOUND, says=["absent"])
 
 
+def repeated_times_have_a_remedy():
+    csv("t,f\n0,1\n0.001,2\n0.001,3\n0.002,4\n", "twice.csv")
+    refused("import", "twice.csv", "-o", "twice", "--time-column", "t*1s", "--channel", "tangential_force=f*1N", code=MALFORMED,
+            says=["line 4", "--rate"])
+
+
 def a_file_from_the_future_is_refused():
     tacto.run("record", "-d", "sim:surface=C,speed=50mm/s,seed=1", "--time", "1s", "-o", "oak")
     side = json.loads(pathlib.Path("oak.json").read_text())
@@ -107,6 +113,7 @@ def the_rest_refuses():
     csv("time_s,place\n0,0\n", "named.csv")
     render = ["render", "oak", "-o", "drive.wav", "--transducer"]
     refused("record", "-d", "sim:surface=C", "--time", "1s", "-o", "oak", code=USAGE, says=["oak"])
+    refused("record", "-d", "sim:magic=C", "--time", "1s", "-o", "new", code=USAGE, says=["magic", "tactograph help sim"])
     refused("record", "-d", "sim:surfice=C", "--time", "1s", "-o", "new", code=USAGE, says=["surfice", "surface"])
     refused("record", "-d", "usb:speed=3", "-o", "new", code=USAGE, says=["speed=3", "usb:serial=XYZ"])
     refused("record", "-d", "usb:serial=none-such", "-o", "new", code=NOT_FOUND, says=["on USB"])
@@ -116,6 +123,9 @@ def the_rest_refuses():
     refused("spectrogram", "nothing", "-o", "x.png", code=NOT_FOUND, says=["nothing"])
     refused("spectrogram", "oak", "-o", "oak.texture.json/x.png", code=CANNOT_WRITE, says=["oak.texture.json"])
     refused(*render, "wiertlewski2011", "--finger-path", "path.csv", "--gain", "1e300m/N", code=USAGE, says=["gain"])
+    refused(*render, "wiertlewski2011", "--finger-path", "path.csv", "--gain", "0x", code=UNSUITABLE, says=["the gain is 0", "--gain"])
+    refused(*render, "wiertlewski2011", "--finger-path", "path.csv", "--rate", "1e12Hz", code=UNSUITABLE, says=["--rate up to"])
+    refused(*render, "wiertlewski2011", "--finger-path", "path.csv", "--at", "1e9m", code=UNSUITABLE, says=["begins at 1e+09 m", "--at"])
     refused(*render, "wiertlewski2011", "--finger-path", "oak.texture.wav", code=MALFORMED, says=["binary"])
     refused("carve", code=USAGE, says=["carve", "spatial"])
     refused(*render, "wiertlewski2011", "--finger-path", "path.csv", "--inverse", "banana", code=USAGE, says=["banana", "magnitude"])
@@ -134,6 +144,8 @@ def the_rest_refuses():
 
 def record_says_which_option_and_what_to_do():
     refused("record", "-d", "sim:", "-o", "x", "--strokes", "0", code=USAGE, says=["--strokes: '0' is not a whole number of at least 1"])
+    refused("record", "-d", "sim:", "-o", "x", "--time", "1e9days", code=CANNOT_WRITE, says=["GB", "record for at most"])
+    assert not list(pathlib.Path(".").glob("x.*"))
     pathlib.Path("file").touch()
     refused("record", "-d", "sim:", "-o", "file/x", "--time", "1s", code=CANNOT_WRITE, says=["file"])
     refused("record", "-d", "sim:", "-o", "x", code=USAGE, says=["faster than real time", "--time 2s", "--strokes 2", "paced=1"])
@@ -164,6 +176,6 @@ def dirty_file_warns():
 
 
 if __name__ == "__main__":
-    for test in (import_refuses, spatial_refuses, a_file_from_the_future_is_refused, validate_finds_damage,
+    for test in (import_refuses, spatial_refuses, repeated_times_have_a_remedy, a_file_from_the_future_is_refused, validate_finds_damage,
                  the_rest_refuses, record_says_which_option_and_what_to_do, dirty_file_warns):
         tacto.in_folder(test)

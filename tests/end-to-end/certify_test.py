@@ -123,8 +123,9 @@ def formants_are_listed_stored_and_drawn():
         _, said = tacto.run(verb, "oak", "-o", "oak.texture.json", code=2)
         assert "is a texture" in said, said
     assert len(pathlib.Path("oak-formants.csv").read_text().splitlines()) == 3
-    drawn = tacto.run_json("spectrogram", "oak", "-o", "oak.svg", "--formants")["formants_drawn"]
-    assert drawn == 2, drawn
+    drawn = tacto.run_json("spectrogram", "oak", "-o", "oak.svg", "--formants")["formants"]
+    listed = tacto.run_json("formants", "oak")["formants"]
+    assert len(drawn) == 2 and [row["frequency_per_m"] for row in drawn] == [row["frequency_per_m"] for row in listed], drawn
     tacto.run("spectrogram", "oak", "-o", "oak.nc", "--formants", code=2)
     assert not pathlib.Path("oak.nc").exists()
     tacto.run("spectrogram", "oak", "-o", "amplitude.png", "--formants", "--scaling", "amplitude", code=2)

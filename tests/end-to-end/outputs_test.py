@@ -106,8 +106,11 @@ def missing_folders_are_made_and_none_is_left_empty():
         several = [option for name in outputs for option in ("-o", name.format(stem))] if command[0] == "spectrogram" else ["-o", stem]
         if command[0] in ("sheet", "formants", "describe", "compare", "report", "render"):
             several = ["-o", outputs[0].format(stem)]
-        tacto.run(*command, *several)
+        said = tacto.run_json(*command, *several)
         assert all(pathlib.Path(name.format(stem)).is_file() for name in outputs), command
+        if command[0] == "record":
+            assert said["made_folder"] == "new/record", said
+            assert "made_folder" not in tacto.run_json(*command, "-o", "new/record/other")
     pathlib.Path("broken.csv").write_text("f\n1\nbroken\n")
     for command, code in ((("import", "broken.csv", "--rate", "10Hz", "--channel", "tangential_force=f*1N"), 4),
                           (("play", "oak", "-d", "sim:", "--finger-path", "broken.csv"), 4), (("spatial", "rec", "--stroke", "99"), UNSUITABLE),

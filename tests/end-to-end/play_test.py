@@ -196,6 +196,9 @@ def what_the_limits_took_is_told_in_db():
     assert said["amplitude_limited_ticks"] == played["amplitude_limited_ticks"] > 500 and said["slew_limited_ticks"] == 0, said
     strokes = said["strokes"]
     assert len(strokes) == 2 and all(-20 < s["removed_by_limits_db"] < -5 for s in strokes), strokes
+    assert "finger_rests_from_s" not in played, played
+    longer = tacto.run_json("play", *shared, "-d", "sim:", "--finger-path", "once.csv", "--time", "2.5s", "-o", "longer")
+    assert abs(longer["finger_rests_from_s"] - 2) < 1e-9, longer
     assert "removed by limits" in tacto.run("play", *shared, "-d", "sim:", "--finger-path", "once.csv", "--time", "0.2s", "-o", "short")[0]
     free = tacto.run_json("play", "oak", "--gain", "0.5mm/N", "-d", "sim:", "--finger-path", "once.csv", "-o", "free")
     assert free["removed_by_limits"] == "none" == tacto.run_json("session", "free")["removed_by_limits"], free

@@ -67,6 +67,17 @@ TEST(SimParameters, NothingAskedIsThePapersBench) {
   EXPECT_EQ(p->tray().hysteresis, 0);
 }
 
+// In either order of the keys.
+TEST(SimParameters, TheSurfaceHasItsOwnSeed) {
+  for (const char* text : {"seed=12,surface_seed=3", "surface_seed=3,seed=12"}) {
+    const auto p = parse_sim_parameters(text);
+    ASSERT_TRUE(p) << message(p.error());
+    EXPECT_EQ(p->seed, 12U);
+    EXPECT_EQ(p->surface.seed, 3U);
+  }
+  EXPECT_EQ(parse_sim_parameters("surface_seed=3")->seed, 1U);
+}
+
 struct Refusal {
   const char *text, *where, *says;
 };
@@ -83,29 +94,31 @@ TEST_P(SimParametersRefused, SaysWhereAndWhatThereIs) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, SimParametersRefused,
-    testing::Values(
-        Refusal{"magic=on", "sim:", "surface, finger, noise"}, Refusal{"speed", "sim:", "key=value"},
-        Refusal{"speed=50", "sim:speed", "mm/s"}, Refusal{"speed=50mm", "sim:speed", "mm/s"},
-        Refusal{"speed=0mm/s", "sim:speed", "from 1 mm/s"}, Refusal{"speed=nanmm/s", "sim:speed", "finite"},
-        Refusal{"speed=1e99m/s", "sim:speed", "out of range"}, Refusal{"seed=-1", "sim:seed", "whole"},
-        Refusal{"seed=1.5", "sim:seed", "whole"}, Refusal{"finger=sideways", "sim:finger", "up or down"},
-        Refusal{"seed=1,seed=2", "sim:seed", "twice"},
-        Refusal{"surface=", "sim:surface", "not a possible value"}, Refusal{",", "sim:", "key=value"},
-        Refusal{"hysteresis=0.5", "sim:hysteresis", "to 0.3"},
-        Refusal{"hysteresis=16um", "sim:hysteresis", "number"},
-        Refusal{"second_mode=20kHz", "sim:second_mode", "5 kHz"},
-        Refusal{"second_mode_share=0.2", "sim:second_mode_share", "add second_mode=800Hz"},
-        Refusal{"finger_load_corner=90Hz", "sim:finger_load_corner", "add finger_load=on"},
-        Refusal{"force=pull", "sim:force", "multisine"},
-        Refusal{"force_low=20Hz", "sim:force_low", "add force=multisine"},
-        Refusal{"lvdt_noise=1um", "sim:lvdt_noise", "add position=lvdt"},
-        Refusal{"position=gps", "sim:position", "encoder or lvdt"},
-        Refusal{"cutoff=500Hz", "sim:cutoff", "add reconstruction=butterworth3"},
-        Refusal{"reconstruction=rc", "sim:reconstruction", "none or butterworth3"},
-        Refusal{"reconstruction=butterworth3,cutoff=6kHz", "sim:cutoff", "from 10 Hz to 5 kHz"},
-        Refusal{"channels=8", "sim:channels", "add source=counter"},
-        Refusal{"source=counter,channels=17", "sim:channels", "from 1 to 16"},
-        Refusal{"link_buffer=1s", "sim:link_buffer", "add paced=1"}));
+    testing::Values(Refusal{"magic=on", "sim:", "tactograph help sim"},
+                    Refusal{"surfice=C", "sim:", "'surface'"}, Refusal{"speed", "sim:", "key=value"},
+                    Refusal{"speed=50", "sim:speed", "mm/s"}, Refusal{"speed=50mm", "sim:speed", "mm/s"},
+                    Refusal{"speed=0mm/s", "sim:speed", "from 1 mm/s"},
+                    Refusal{"speed=nanmm/s", "sim:speed", "finite"},
+                    Refusal{"speed=1e99m/s", "sim:speed", "out of range"},
+                    Refusal{"seed=-1", "sim:seed", "whole"}, Refusal{"seed=1.5", "sim:seed", "whole"},
+                    Refusal{"finger=sideways", "sim:finger", "up or down"},
+                    Refusal{"seed=1,seed=2", "sim:seed", "twice"},
+                    Refusal{"surface=", "sim:surface", "not a possible value"},
+                    Refusal{",", "sim:", "key=value"}, Refusal{"hysteresis=0.5", "sim:hysteresis", "to 0.3"},
+                    Refusal{"hysteresis=16um", "sim:hysteresis", "number"},
+                    Refusal{"second_mode=20kHz", "sim:second_mode", "5 kHz"},
+                    Refusal{"second_mode_share=0.2", "sim:second_mode_share", "add second_mode=800Hz"},
+                    Refusal{"finger_load_corner=90Hz", "sim:finger_load_corner", "add finger_load=on"},
+                    Refusal{"force=pull", "sim:force", "multisine"},
+                    Refusal{"force_low=20Hz", "sim:force_low", "add force=multisine"},
+                    Refusal{"lvdt_noise=1um", "sim:lvdt_noise", "add position=lvdt"},
+                    Refusal{"position=gps", "sim:position", "encoder or lvdt"},
+                    Refusal{"cutoff=500Hz", "sim:cutoff", "add reconstruction=butterworth3"},
+                    Refusal{"reconstruction=rc", "sim:reconstruction", "none or butterworth3"},
+                    Refusal{"reconstruction=butterworth3,cutoff=6kHz", "sim:cutoff", "from 10 Hz to 5 kHz"},
+                    Refusal{"channels=8", "sim:channels", "add source=counter"},
+                    Refusal{"source=counter,channels=17", "sim:channels", "from 1 to 16"},
+                    Refusal{"link_buffer=1s", "sim:link_buffer", "add paced=1"}));
 
 class SimParametersAgainst : public testing::TestWithParam<Refusal> {};
 

@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <numbers>
 #include <random>
 
+#include "spatial/strokes/bridged_source.hpp"
 #include "tests/spatial/bare_finger.hpp"
+#include "tests/spatial/force_and_position.hpp"
 #include "tests/spatial/strokes_of.hpp"
 
 namespace tacto::spatial {
@@ -208,6 +212,86 @@ TEST(Strokes, PiecesLieBetweenGaps) {
   EXPECT_EQ(pieces[0].begin, 0U);
   EXPECT_EQ(pieces[0].end, 10U);
   EXPECT_EQ(pieces[1].end, 20U);
+}
+
+// A finger at 50 mm/s on a force of 500 Hz; some frames are missing, and the counter may overflow at one.
+class TornSine : public samples::ForceAndPosition {
+ public:
+  explicit TornSine(const std::vector<schema::Gap>& gaps, std::size_t overflow = SIZE_MAX) {
+    for (std::size_t i = 0; i < kWhole; ++i) kept_.push_back(i);
+    for (const schema::Gap& gap : gaps) {
+      const auto at = kept_.begin() + static_cast<std::ptrdiff_t>(gap.frame);
+      kept_.erase(at, at + static_cast<std::ptrdiff_t>(gap.count));
+    }
+    overflow_ = overflow;
+    header.sample_rate_hz = kStrokeRate_hz;
+    header.frames = kept_.size();
+    header.gaps = gaps;
+  }
+  static double value(Track track, std::size_t frame) {
+    const double t = static_cast<double>(frame) / kStrokeRate_hz;
+    return track == Track::position ? 0.05 * t : std::sin(2 * std::numbers::pi * 500 * t);
+  }
+  schema::Result<void> read_stored(Track track, std::size_t first, std::span<double> out) override {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      out[i] = value(track, kept_.at(first + i));
+      if (track == Track::position && kept_[first + i] >= overflow_) out[i] -= 0.065536;
+    }
+    return {};
+  }
+  static constexpr std::size_t kWhole = 400;
+  schema::RecordingHeader header;
+
+ private:
+  std::vector<std::size_t> kept_;
+  std::size_t overflow_;
+};
+
+BridgedTouch bridged(const std::vector<schema::Gap>& gaps, std::size_t overflow = SIZE_MAX) {
+  auto torn = std::make_unique<TornSine>(gaps, overflow);
+  const schema::RecordingHeader header = torn->header;
+  auto touch = bridge_short_gaps(std::move(torn), header);
+  EXPECT_TRUE(touch);
+  return std::move(*touch);
+}
+
+// Lagrange's remainder: |f - cubic| <= prod |x - x_i| / 24 (2 pi 500 / 10000)^4 at each missing frame x.
+TEST(Strokes, AShortGapIsOnTheCubicThroughItsNeighbours) {
+  for (std::uint64_t missing = 1; missing <= kMostFilledFrames; ++missing) {
+    const BridgedTouch touch = bridged({{103, 103 + missing, missing}, {200, 200 + 2 * missing, missing}});
+    EXPECT_TRUE(touch.header.gaps.empty());
+    ASSERT_EQ(touch.header.frames, TornSine::kWhole);
+    ASSERT_EQ(touch.filled.size(), 2U);
+    const double h4 = std::pow(2 * std::numbers::pi * 500 / kStrokeRate_hz, 4) / 24;
+    const auto n = static_cast<double>(missing);
+    for (const std::size_t part : {1, 7, 400}) {  // read in parts of every kind
+      for (std::size_t first = 0; first < TornSine::kWhole; first += part) {
+        std::vector<double> force(std::min(part, TornSine::kWhole - first)), position(force.size());
+        ASSERT_TRUE(touch.source->read(Track::value, first, force));
+        ASSERT_TRUE(touch.source->read(Track::position, first, position));
+        for (std::size_t i = 0; i < force.size(); ++i) {
+          double bound = 0;
+          for (const FrameRange& range : touch.filled)
+            if (const auto x = static_cast<double>(first + i + 1) - static_cast<double>(range.begin);
+                x > 0 && x <= n)
+              bound = (x + 1) * x * (n + 1 - x) * (n + 2 - x) * h4;
+          EXPECT_NEAR(force[i], TornSine::value(Track::value, first + i), bound + 1e-12) << first + i;
+          EXPECT_NEAR(position[i], TornSine::value(Track::position, first + i), 1e-12) << first + i;
+        }
+      }
+    }
+  }
+}
+
+TEST(Strokes, AGapStaysIfItIsLongOrHasNoNeighboursOrThePositionJumps) {
+  EXPECT_EQ(bridged({{100, 105, 5}}).header.gaps.size(), 1U);
+  EXPECT_EQ(bridged({{1, 2, 1}}).header.gaps.size(), 1U);
+  EXPECT_EQ(bridged({{100, 101, 1}, {101, 103, 1}}).header.gaps.size(), 2U);
+  EXPECT_EQ(bridged({{100, 101, 1}}, 101).header.gaps.size(), 1U) << "a counter that overflows in the gap";
+  const BridgedTouch mixed = bridged({{100, 102, 2}, {200, 207, 5}});
+  ASSERT_EQ(mixed.header.gaps.size(), 1U);
+  EXPECT_EQ(mixed.header.gaps[0].frame, 202U);
+  EXPECT_EQ(schema::frame_time_s(mixed.header, 202), 207 / kStrokeRate_hz);
 }
 
 TEST(Strokes, FindsTheTwoOfTheBareFinger) {

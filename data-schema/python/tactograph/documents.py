@@ -3,11 +3,16 @@
 import hashlib
 import json
 import pathlib
+import struct
 import warnings
 
 from tactograph.errors import FileProblem
 
 MAJOR = 1
+COVERED = {  # by numbers_sum
+    "recording": ("sample_rate_hz", "channels", "gaps", "transducer"),
+    "texture": ("pitch_m", "quantity", "unit", "direction", "source_origin_m", "valid_band", "source", "average"),
+}
 
 
 def find(name, endings):
@@ -48,9 +53,39 @@ def read_document(path, kind, newest_minor=0):
     if not isinstance(document, dict):
         raise FileProblem("is not a JSON object", path)
     minor = check_kind(document, kind, path)
+    if document.get("data", {}).get("numbers_sha256", "") not in ("", numbers_sum(document)):
+        raise FileProblem("its numbers do not match their checksum (SHA-256): a number, quantity or unit was changed", path,
+                          "restore the file; if the change is intended, remove the member data.numbers_sha256")
     if minor > newest_minor:
         warnings.warn(f"{path}: version {document['version']} is newer than this package; unknown members are ignored")
     return document
+
+
+def numbers_sum(document):
+    """SHA-256 of the numbers that give the samples their meaning, as in `data.numbers_sha256`; None for other kinds."""
+    if document["kind"] not in COVERED:
+        return None
+    covered = {key: document[key] for key in COVERED[document["kind"]] if key in document}
+    total = hashlib.sha256()
+    for pointer, value in sorted(_leaves("", covered), key=lambda leaf: leaf[0].encode()):
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            total.update(pointer.encode() + b"\n" + struct.pack("<d", value))
+        elif isinstance(value, str) and pointer.endswith(("/quantity", "/unit")):
+            total.update(pointer.encode() + b"\n" + value.encode() + b"\n")
+    return total.hexdigest()
+
+
+def _leaves(pointer, value):
+    """Pairs of JSON pointer and value."""
+    if isinstance(value, dict):
+        for key, one in value.items():
+            if not key.startswith("x_"):
+                yield from _leaves(pointer + "/" + key.replace("~", "~0").replace("/", "~1"), one)
+    elif isinstance(value, list):
+        for i, one in enumerate(value):
+            yield from _leaves(f"{pointer}/{i}", one)
+    else:
+        yield pointer, value
 
 
 def check_sum(path, expected):

@@ -81,8 +81,9 @@ std::string extras_words(const SimParameters& p) {
 }
 
 std::string simulated_by(const SimParameters& p) {
-  return fmt::format("by {}'s emulated device{}, seed {}", kCreator, p.counter ? "" : extras_words(p),
-                     p.seed);
+  return fmt::format("by {}'s emulated device{}, seed {}{}", kCreator, p.counter ? "" : extras_words(p),
+                     p.seed,
+                     p.surface.seed == p.seed ? "" : fmt::format(", surface seed {}", p.surface.seed));
 }
 
 // The content of its recorded frames. During playback the surface is not used: the finger is on the texture.

@@ -21,10 +21,15 @@ constexpr NumberKey kNumbers[] = {
     {"strokes", "number of strokes, alternately forth and back, 2; when recorded, until the recording ends",
      Dimension::none, 0, 1e6, true, [](P& p, double v) { p.strokes.strokes = static_cast<int>(v); }},
     {"seed",
-     "of the surface, the finger's way and the noise: another seed is another sample; for strokes of one "
-     "sample use strokes, or surface=profile:NAME; 1",
+     "of the surface, the finger's way and the noise: another seed is another sample; to keep the sample, "
+     "give "
+     "surface_seed, too; 1",
+     Dimension::none, 0, kLargestSeed, true, [](P& p, double v) { p.seed = static_cast<std::uint64_t>(v); }},
+    {"surface_seed",
+     "of the surface alone: with one surface_seed, another seed is another recording of the same sample; the "
+     "value of seed",
      Dimension::none, 0, kLargestSeed, true,
-     [](P& p, double v) { p.seed = p.surface.seed = static_cast<std::uint64_t>(v); }},
+     [](P& p, double v) { p.surface.seed = static_cast<std::uint64_t>(v); }},
     {"person", "seed of the finger's ridges, 1", Dimension::none, 0, kLargestSeed, true,
      [](P& p, double v) { p.person = static_cast<std::uint64_t>(v); }},
     {"length", "of the surface, 40mm", Dimension::length, 10e-3, 1, false,

@@ -27,11 +27,7 @@ std::vector<std::string> key_names() {
   return names;
 }
 
-std::string keys() {
-  std::string list;
-  for (const std::string& name : key_names()) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
+constexpr std::string_view kWhereTheListIs = "'tactograph help sim' lists the keys";
 
 std::string where(std::string_view key) {
   return fmt::format("sim:{}", key);
@@ -77,7 +73,7 @@ Result<void> set_pair(SimParameters& parameters, std::string_view pair, std::set
   const auto equals = pair.find('=');
   if (equals == std::string_view::npos)
     return schema::fail(ErrorKind::usage, fmt::format("'{}' is not key=value", pair),
-                        "sim:", "the keys are: " + keys());
+                        "sim:", std::string(kWhereTheListIs));
   const std::string_view key = pair.substr(0, equals), value = pair.substr(equals + 1);
   if (!seen.insert(key).second) return schema::fail(ErrorKind::usage, "the key is given twice", where(key));
   for (const NumberKey& number : sim_number_keys())
@@ -86,7 +82,7 @@ Result<void> set_pair(SimParameters& parameters, std::string_view pair, std::set
     if (word.key == key) return set(parameters, word, value);
   return schema::fail(ErrorKind::usage,
                       fmt::format("there is no key '{}'{}", key, schema::did_you_mean(key, key_names())),
-                      "sim:", "the keys are: " + keys());
+                      "sim:", std::string(kWhereTheListIs));
 }
 
 // Keys that are only valid together with another key.
@@ -165,6 +161,7 @@ Result<SimParameters> parse_sim_parameters(std::string_view text) {
     text.remove_prefix(std::min(text.size(), pair.size() + 1));
   }
   TACTO_TRY(check_details(parameters, seen));
+  if (!seen.contains("surface_seed")) parameters.surface.seed = parameters.seed;
   return parameters;
 }
 

@@ -64,7 +64,7 @@ struct SimParameters {
 };
 
 /// Reads key=value pairs between commas; a quantity has its unit. Keys that are absent keep their defaults.
-/// Errors: usage: a key that does not exist (with those that do), a repeated key, a value of the wrong kind
+/// Errors: usage: a key that does not exist (with the nearest one), a repeated key, a value of the wrong kind
 /// or out of its range (with the range), a key that requires another one.
 schema::Result<SimParameters> parse_sim_parameters(std::string_view text);
 
