@@ -95,9 +95,10 @@ def what_cannot_be_recorded_is_refused():
     # 4 channels in messages of 16 frames: 18.5 bytes a frame; 0.9 * 11520 / 18.5 = 560.4, 0.9 * 300000 / 18.5 = 14594.
     with board("slow", "sim:surface=E"):
         refused(UNSUITABLE, "tty:slow,baud=115200", says=["560 Hz"])
-        with open("slow", "rb+", buffering=0) as other:
-            fcntl.flock(other, fcntl.LOCK_EX)
-            refused(DEVICE, "tty:slow", says=["another program"])
+        other = os.open("slow", os.O_RDWR | os.O_NOCTTY)
+        fcntl.flock(other, fcntl.LOCK_EX)
+        refused(DEVICE, "tty:slow", says=["another program"])
+        os.close(other)
         tacto.run("record", "--time", "0.1s", "-o", "fast", "-d", "tty:slow,baud=3000000")
         again = subprocess.run([GADGET, "--pty", "slow"], capture_output=True, text=True, timeout=60)
         assert again.returncode == CANNOT_WRITE, again
