@@ -6,6 +6,7 @@
 #include "firmware-host/replay/replay_device.hpp"
 #include "firmware-host/sim/device/sim_device.hpp"
 #include "firmware-host/sim/planar/planar_device.hpp"
+#include "firmware-host/tty/tty_device.hpp"
 #include "firmware-host/usb/usb_device.hpp"
 
 namespace tacto::firmware_host {
@@ -17,6 +18,7 @@ struct Scheme {
 };
 
 constexpr Scheme kSchemes[] = {{"usb:", open_usb_device},
+                               {"tty:", open_tty_device},
                                {kPlanarScheme, open_planar_device},
                                {"sim:", open_sim_device},
                                {"replay:", open_replay_device}};

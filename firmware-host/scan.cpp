@@ -3,6 +3,7 @@
 
 #include "firmware-host/open_device.hpp"
 #include "firmware-host/sim/physics/surface.hpp"
+#include "firmware-host/tty/tty_device.hpp"
 #include "firmware-host/usb/usb_device.hpp"
 
 namespace tacto::firmware_host {
@@ -26,6 +27,7 @@ std::vector<FoundDevice> scan_usb() {
 
 std::vector<FoundDevice> scan_devices() {
   std::vector<FoundDevice> found = scan_usb();
+  for (const std::string& uri : tty_uris()) found.push_back({uri, asked(uri)});
   const std::string names = surface_names() + ", ";
   for (std::size_t at = 0, end; (end = names.find(", ", at)) != std::string::npos; at = end + 2) {
     const std::string uri = "sim:surface=" + names.substr(at, end - at);

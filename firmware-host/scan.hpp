@@ -15,9 +15,9 @@ struct FoundDevice {
   schema::Result<Capabilities> said;
 };
 
-/// Those on USB first; if the bus cannot be read, the entry "usb:" has the reason. Then the emulated ones,
-/// one per surface. A replay needs a file and is not listed. Each device is greeted, which ends a stream that
-/// no program reads.
+/// Those on USB first; if the bus cannot be read, the entry "usb:" has the reason. Then each USB serial port,
+/// with the reason if no device answers there. Then the emulated ones, one per surface. A replay needs a file
+/// and is not listed. Each device is greeted, which ends a stream that no program reads.
 std::vector<FoundDevice> scan_devices();
 
 }  // namespace tacto::firmware_host

@@ -48,7 +48,7 @@ schema::Result<cli::Report> run_doctor(const DoctorOptions& options) {
 cli::Action declare_doctor(CLI::App& app) {
   auto options = std::make_shared<DoctorOptions>();
   DoctorRequest& request = options->request;
-  app.add_option("-d,--device", request.device, "The device: usb:, usb:serial=XYZ, sim:...");
+  app.add_option("-d,--device", request.device, "The device: usb:, usb:serial=XYZ, tty:, sim:...");
   app.add_option("-o,--folder", request.folder, "Folder of the recordings");
   app.add_option("--calibration", request.calibration,
                  "Calibration file of the device, if not the one that 'tactograph calibrate' stores");

@@ -42,7 +42,7 @@ struct RecordOptions {
 void declare_options(CLI::App& app, RecordOptions& options) {
   RecordRequest& request = options.request;
   app.add_option("-d,--device", options.device,
-                 "The device; default: usb:, the only one on USB; usb:serial=XYZ, or "
+                 "The device; default: usb:, the only one on USB; usb:serial=XYZ, tty:, or "
                  "sim:surface=C,speed=50mm/s,seed=1 (all keys: tactograph help sim), or replay:NAME");
   CLI::Option* const name =
       app.add_option("-o,--output", request.name,

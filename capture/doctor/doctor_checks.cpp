@@ -120,6 +120,9 @@ bool is_denied(const schema::Error& why) {
 }
 
 Check check_permission(const schema::Error& why, const std::string& root) {
+  if (why.where.starts_with("tty:") && is_denied(why))
+    return {"permission", Health::fails, why.what, why.remedy, schema::ErrorKind::not_found};
+  if (why.where.starts_with("tty:")) return {"permission", Health::skipped, "requires a device", {}};
   const std::string rule = installed_rule(root);
   const std::string found = rule.empty() ? fmt::format("{} is not installed", kRule) : rule + " is installed";
   const std::string remedy =

@@ -107,7 +107,7 @@ constexpr std::string_view kTail = R"(  esac
     compopt -o default
     COMPREPLY=($(compgen -W "$presets" -- "$word"))
   elif [ "$previous" = -d ] || [ "$previous" = --device ]; then
-    COMPREPLY=($(compgen -W "usb: sim: replay:" -- "$word"))
+    COMPREPLY=($(compgen -W "usb: tty: sim: replay:" -- "$word"))
     compopt -o nospace
   elif [ -n "$units" ] && [[ "$word" =~ ^-?[0-9.]+ ]]; then
     COMPREPLY=($(compgen -P "$BASH_REMATCH" -W "$units" -- "${word#"$BASH_REMATCH"}"))

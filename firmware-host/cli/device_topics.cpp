@@ -25,6 +25,9 @@ std::string devices_text() {
          "  usb:                    the only board on USB\n"
          "  usb:serial=XYZ          a board by its serial number\n"
          "  usb:port=1-2            a board by its port\n"
+         "  tty:                    the only board on the USB serial ports\n"
+         "  tty:/dev/ttyACM0        a board by its serial port\n"
+         "  tty:PATH,baud=2000000   the same at another baud rate than 1000000\n"
          "  sim:KEY=VALUE,...       the emulated device; the keys: tactograph help sim\n"
          "  sim:planar,KEY=VALUE    the emulated force device, for scenes with force patches\n"
          "  replay:NAME             a recording as a device, as fast as possible\n"
@@ -34,8 +37,8 @@ std::string devices_text() {
 
 }  // namespace
 
-const cli::HelpTopic kDevicesTopic{"devices", "how devices are named: USB, emulated, a recording",
-                                   devices_text};
+const cli::HelpTopic kDevicesTopic{
+    "devices", "how devices are named: USB, serial port, emulated, a recording", devices_text};
 const cli::HelpTopic kSimTopic{"sim", "the emulated device and its keys", sim_text};
 
 }  // namespace tacto::firmware_host

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "firmware-host/gadget/file_descriptor.hpp"
+#include "firmware-host/link/file_descriptor.hpp"
 
 namespace tacto::firmware_host {
 namespace {

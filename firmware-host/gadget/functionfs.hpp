@@ -5,7 +5,7 @@
 #include <string>
 
 #include "data-schema/base/error.hpp"
-#include "firmware-host/gadget/file_descriptor.hpp"
+#include "firmware-host/link/file_descriptor.hpp"
 
 namespace tacto::firmware_host {
 

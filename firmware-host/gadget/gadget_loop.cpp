@@ -15,7 +15,7 @@ constexpr std::chrono::milliseconds kIdleWake{
 
 }  // namespace
 
-GadgetLoop::GadgetLoop(GadgetBoard& board, UsbLink& link, const FaultPlan& faults,
+GadgetLoop::GadgetLoop(GadgetBoard& board, BoardLink& link, const FaultPlan& faults,
                        std::function<void(const std::string&)> say)
     : board_(board),
       link_(link),

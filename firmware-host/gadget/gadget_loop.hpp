@@ -4,11 +4,11 @@
 
 #include <functional>
 
+#include "firmware-host/gadget/board_link.hpp"
 #include "firmware-host/gadget/drive_watch.hpp"
 #include "firmware-host/gadget/fault_injector.hpp"
 #include "firmware-host/gadget/gadget_board.hpp"
 #include "firmware-host/gadget/tick_pacer.hpp"
-#include "firmware-host/gadget/usb_link.hpp"
 
 namespace tacto::firmware_host {
 
@@ -17,7 +17,7 @@ namespace tacto::firmware_host {
 /// drive, and the next rise of the drive.
 class GadgetLoop {
  public:
-  GadgetLoop(GadgetBoard& board, UsbLink& link, const FaultPlan& faults,
+  GadgetLoop(GadgetBoard& board, BoardLink& link, const FaultPlan& faults,
              std::function<void(const std::string&)> say);
 
   /// Runs until `stopped` returns true; it is called at least twenty times per second.
@@ -30,7 +30,7 @@ class GadgetLoop {
   std::uint64_t due();
 
   GadgetBoard& board_;
-  UsbLink& link_;
+  BoardLink& link_;
   FaultInjector faults_;
   std::function<void(const std::string&)> say_;
   TickPacer pacer_;

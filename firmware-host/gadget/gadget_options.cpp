@@ -47,6 +47,7 @@ struct Option {
 constexpr Option kOptions[] = {{"--board", read_text<&GadgetOptions::board>},
                                {"--serial", read_text<&GadgetOptions::serial>},
                                {"--udc", read_text<&GadgetOptions::udc>},
+                               {"--pty", read_text<&GadgetOptions::pty>},
                                {"--id", read_id},
                                {"--fault", read_faults}};
 
@@ -71,6 +72,10 @@ Result<GadgetOptions> parse_gadget_options(std::span<const char* const> argument
     const char* value = i + 1 < arguments.size() ? arguments[i + 1] : nullptr;
     TACTO_TRY(read_option(name, value, options));
   }
+  const FaultPlan& faults = options.faults;
+  if (!options.pty.empty() && (faults.packet || faults.stall_after || faults.stop_reading_after))
+    return schema::fail(ErrorKind::usage, "a serial port has no packets, stalls or transfers", "--fault",
+                        "use another fault with --pty");
   return options;
 }
 
@@ -79,15 +84,19 @@ std::string gadget_help() {
       R"(tactograph-gadget: emulates a tactograph device at the USB device port of this machine
 
 usage: tactograph-gadget [--board BOARD] [--serial TEXT] [--udc PORT] [--id VENDOR:PRODUCT] [--fault FAULTS]
+       tactograph-gadget --pty NAME [--board BOARD] [--serial TEXT] [--fault FAULTS]
 
   --board BOARD   source of the samples: sim: (physics; for example sim:surface=C,speed=50mm/s), or replay:FILE (a
                   recording's codes, once; replay:FILE,loop=1 repeats them). Default: sim:
   --serial TEXT   serial number, on USB and in the welcome message. Default: that of the board
   --udc PORT      the device port, one of /sys/class/udc. Default: the first
+  --pty NAME      instead of USB: makes a serial port with that name (a pseudo-terminal), as in
+                  tactograph-gadget --pty board, then tactograph record -d tty:board. It needs neither root nor hardware
   --id V:P        USB vendor and product, hexadecimal. Default: {:04x}:{:04x}, which is for tests and in-house use only
   --fault FAULTS  simulated faults for tests of a host, separated by commas:
 {}
-It runs until Ctrl-C or SIGTERM, also after it was unplugged. It needs root, libcomposite and usb_f_fs.
+It runs until Ctrl-C or SIGTERM, also after it was unplugged. On USB it needs root, libcomposite and usb_f_fs.
+packet, stall-after and deaf-after are faults of USB.
 )",
       usb::kTestVendor, usb::kTestProduct, fault_words());
 }

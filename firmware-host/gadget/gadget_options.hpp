@@ -15,6 +15,7 @@ struct GadgetOptions {
   std::string board = "sim:";
   std::string serial;  ///< empty: the board's own
   std::string udc;     ///< empty: the first
+  std::string pty;     ///< the name of a serial port to make; empty: USB
   std::uint16_t vendor = usb::kTestVendor, product = usb::kTestProduct;
   FaultPlan faults;
 };

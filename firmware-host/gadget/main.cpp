@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactograph-gadget: a Linux board with a USB device port as a device.
+// tactograph-gadget: a Linux board with a USB device port as a device, or an emulated board on a
+// pseudo-terminal.
 #include <fmt/format.h>
 
 #include <csignal>
@@ -11,6 +12,8 @@
 #include "firmware-host/gadget/configfs_gadget.hpp"
 #include "firmware-host/gadget/gadget_loop.hpp"
 #include "firmware-host/gadget/gadget_options.hpp"
+#include "firmware-host/gadget/pty_link.hpp"
+#include "firmware-host/gadget/usb_link.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -38,9 +41,19 @@ Result<void> run_plugged(ConfigfsGadget& gadget, GadgetBoard& board, FunctionFs 
   return {};
 }
 
+Result<void> run_on_pty(GadgetBoard& board, const GadgetOptions& options) {
+  const auto link = PtyLink::open(options.pty);
+  TACTO_TRY(link);
+  stop_on_signals();
+  say(fmt::format("{} with serial {}: tty:{}", options.board, board.serial(), options.pty));
+  GadgetLoop(board, **link, options.faults, say).run([] { return stop_asked != 0; });
+  return {};
+}
+
 Result<void> run(const GadgetOptions& options) {
   auto board = make_gadget_board(options.board, options.serial);
   TACTO_TRY(board);
+  if (!options.pty.empty()) return run_on_pty(**board, options);
   const auto port = choose_port(options.udc);
   TACTO_TRY(port);
   auto gadget = ConfigfsGadget::create(

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The device's end of the cable: bytes to and from the host over FunctionFS, also after unplugging, reset and
-// replugging.
+// A USB device port as the cable: bytes to and from the host over FunctionFS, also after unplugging, reset
+// and replugging.
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <functional>
 #include <optional>
 #include <thread>
 
-#include "firmware-host/gadget/burst_queue.hpp"
+#include "firmware-host/gadget/board_link.hpp"
 #include "firmware-host/gadget/functionfs.hpp"
 
 namespace tacto::firmware_host {
@@ -17,9 +16,8 @@ namespace tacto::firmware_host {
 /// Three threads: the kernel's events, output, input. While no host has configured the device, output is
 /// dropped. When the queue is empty, the transfer to the host ends with a short packet, if necessary an empty
 /// one.
-class UsbLink {
+class UsbLink final : public BoardLink {
  public:
-  using Clock = std::chrono::steady_clock;
   struct Settings {
     std::string port;                                 ///< the device port's name
     std::optional<std::uint64_t> stop_reading_after;  ///< for tests: reads only this number of transfers
@@ -30,15 +28,12 @@ class UsbLink {
   UsbLink(const UsbLink&) = delete;
   UsbLink& operator=(const UsbLink&) = delete;
   /// Precondition: the gadget is unbound, so that no thread blocks.
-  ~UsbLink();
+  ~UsbLink() override;
 
-  void send(std::span<const std::uint8_t> bytes, BurstEnd end = BurstEnd::none);
-  /// The number of bytes in the queue.
-  std::size_t waiting() const { return to_host_.waiting(); }
-  /// Appends the received bytes.
-  void take_received(std::vector<std::uint8_t>& bytes);
-  /// Until bytes have arrived since the last call, or until `time`.
-  void wait_until(Clock::time_point time);
+  void send(std::span<const std::uint8_t> bytes, BurstEnd end) override;
+  std::size_t waiting() const override { return to_host_.waiting(); }
+  void take_received(std::vector<std::uint8_t>& bytes) override;
+  void wait_until(Clock::time_point time) override;
 
  private:
   void watch_events();

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "data-schema/version.hpp"
+#include "firmware-host/link/line_load.hpp"
 #include "firmware-host/link/wire_words.hpp"
 
 namespace tacto::firmware_host {
@@ -22,7 +23,17 @@ constexpr double kStallS = 1;
 constexpr int kAttempts = 3;
 constexpr double kMostBehindS = 10;  // of frames queued before an answer; no device queues more
 constexpr std::size_t kReceiveBytes = 16384;
+constexpr std::size_t kFirstBytes = 32;       // of a foreign device, for the message
 constexpr std::size_t kMostTicksKept = 4096;  // messages; 40 s if no caller fetches them
+
+// "Hello\x0d\x0a"
+std::string text_of(std::span<const std::uint8_t> bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes)
+    text +=
+        byte >= ' ' && byte <= '~' ? std::string(1, static_cast<char>(byte)) : fmt::format("\\x{:02x}", byte);
+  return text;
+}
 
 template <class Message>
 bool understood(const wire::Frame& frame, Message& message) {
@@ -41,7 +52,7 @@ Result<std::unique_ptr<Client>> Client::connect(std::unique_ptr<Transport> trans
 }
 
 Result<void> Client::greet() {
-  Asking asking{transport_->now_s(), blocks_seen_};
+  Asking asking{transport_->now_s(), blocks_seen_, transport_->start_up_s()};
   while (may_retry(asking)) {
     if (const auto flushed = asking.times > 1 ? flush() : Result<void>(); !flushed) return flushed;
     const auto greeted = greet_once();
@@ -58,8 +69,9 @@ Result<void> Client::greet() {
 bool Client::may_retry(Asking& asking) const {
   const bool sends = blocks_seen_ > asking.blocks_seen;
   asking.blocks_seen = blocks_seen_;
-  const bool in_time = transport_->now_s() - asking.since_s < kMostBehindS;
-  if (asking.times >= kAttempts && !(sends && in_time)) return false;
+  const double asked_s = transport_->now_s() - asking.since_s;
+  const bool waits = asked_s < asking.at_least_s || (sends && asked_s < kMostBehindS);
+  if (asking.times >= kAttempts && !waits) return false;
   ++asking.times;
   return true;
 }
@@ -142,6 +154,8 @@ Result<void> Client::exchange(const Encoder& encode, MessageType type) {
     TACTO_TRY(answered);
     if (!*answered) continue;
     if (answer_->code != wire::AnswerCode::ok) return refused(type, *answer_);
+    if (type == MessageType::stream_stop) stream_bytes_per_s_ = 0;
+    if (type == MessageType::disarm) tick_bytes_per_s_ = 0;
     if (on_command_done_) on_command_done_(sent_);
     return {};
   }
@@ -155,6 +169,11 @@ tl::unexpected<schema::Error> Client::refused(MessageType type, const wire::Answ
 }
 
 tl::unexpected<schema::Error> Client::silent(MessageType type, const Asking& asking) const {
+  if (!first_.empty() && decoder_.counts().frames == 0)
+    return fail(
+        ErrorKind::device,
+        fmt::format("the device speaks no tactograph wire; its first bytes are '{}'", text_of(first_)),
+        where_, "connect a tactograph device, or install its firmware on this board");
   return fail(ErrorKind::device,
               fmt::format("the device did not answer {} (sent {} times in {:g} s)", to_string(type),
                           asking.times, asking.times * kAnswerTimeoutS),
@@ -187,10 +206,27 @@ Result<wire::Pulse> Client::heartbeat() {
 }
 
 Result<void> Client::start_stream(std::uint32_t rate_millihertz, std::uint8_t block_frames) {
+  const double rate_hz = 1e-3 * rate_millihertz;
+  const double frame_bytes = bytes_per_frame(description_.channels.size(), block_frames);
+  TACTO_TRY(check_line(
+      {transport_->baud(), tick_bytes_per_s_}, rate_hz, [&](double) { return frame_bytes; }, where_));
   samples_.begin(description_.channels.size());
   last_arrival_.reset();
   converter_failed_ = false;
-  return command(wire::StreamStart{rate_millihertz, block_frames});
+  TACTO_TRY(command(wire::StreamStart{rate_millihertz, block_frames}));
+  stream_bytes_per_s_ = rate_hz * frame_bytes;
+  return {};
+}
+
+Result<void> Client::command(const wire::Arm& arm) {
+  const double rate_hz = 1e-3 * arm.rate_millihertz;
+  const bool forces = arm.source == wire::DriveSource::scene && description_.axes;
+  const std::size_t axes = forces ? description_.axes->count : 0;
+  const auto tick_bytes = [&](double at_hz) { return bytes_per_tick(at_hz, axes); };
+  TACTO_TRY(check_line({transport_->baud(), stream_bytes_per_s_}, rate_hz, tick_bytes, where_));
+  TACTO_TRY(command<wire::Arm>(arm));
+  tick_bytes_per_s_ = rate_hz * tick_bytes(rate_hz);
+  return {};
 }
 
 Result<void> Client::stop_stream() {
@@ -217,6 +253,7 @@ Result<void> Client::await_samples(std::size_t frames) {
 Result<void> Client::receive(double timeout_s) {
   const auto got = transport_->read(received_, timeout_s);
   TACTO_TRY(got);
+  keep_first(std::span(received_).first(*got));
   wire::Arrival arrival = wire::Arrival::frame;
   for (std::size_t at = 0; at < *got || arrival != wire::Arrival::nothing;) {
     wire::Frame frame;
@@ -226,6 +263,12 @@ Result<void> Client::receive(double timeout_s) {
     if (arrival == wire::Arrival::frame) accept(frame);
   }
   return {};
+}
+
+void Client::keep_first(std::span<const std::uint8_t> bytes) {
+  if (decoder_.counts().frames > 0) return;
+  const std::size_t size = std::min(bytes.size(), kFirstBytes - first_.size());
+  first_.insert(first_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
 }
 
 void Client::accept(const wire::Frame& frame) {

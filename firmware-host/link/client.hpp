@@ -43,7 +43,8 @@ struct LinkCounts {
 class Client {
  public:
   /// Sends hello and waits for the description, with the repetitions of command(). Errors: device: no answer,
-  /// or an invalid one; unsupported_version: a device with an unsupported major version, which is named.
+  /// or an invalid one, or bytes of another program; unsupported_version: a device with an unsupported major
+  /// version, which is named.
   static schema::Result<std::unique_ptr<Client>> connect(std::unique_ptr<Transport> transport,
                                                          std::string where);
 
@@ -62,6 +63,8 @@ class Client {
         },
         Message::kType);
   }
+  /// As the other commands. Errors, besides: unsuitable: ticks at this rate do not fit on the serial line.
+  schema::Result<void> command(const wire::Arm& arm);
   /// From now on `told` is called after each successful command, with the frame that was sent.
   void listen(std::function<void(std::span<const std::uint8_t> frame)> told) {
     on_command_done_ = std::move(told);
@@ -71,7 +74,7 @@ class Client {
   /// Resets the watchdog; returns the device's state. Errors: as command().
   schema::Result<wire::Pulse> heartbeat();
 
-  /// Frames begin at 0. Errors: as command().
+  /// Frames begin at 0. Errors: as command(); unsuitable: the frames do not fit on the serial line.
   schema::Result<void> start_stream(std::uint32_t rate_millihertz, std::uint8_t block_frames);
   schema::Result<void> stop_stream();
   /// Waits until `frames` are in the queue, or a gap is reached. Errors: device: gone, silent for a second,
@@ -92,6 +95,7 @@ class Client {
   struct Asking {
     double since_s = 0;
     std::uint64_t blocks_seen = 0;  // at the previous attempt
+    double at_least_s = 0;
     int times = 0;
   };
   using Encoder = std::function<std::size_t(std::uint32_t sequence, std::span<std::uint8_t> frame)>;
@@ -112,6 +116,7 @@ class Client {
   tl::unexpected<schema::Error> refused(wire::MessageType type, const wire::Answer& answer) const;
   bool may_retry(Asking& asking) const;
   tl::unexpected<schema::Error> silent(wire::MessageType type, const Asking& asking) const;
+  void keep_first(std::span<const std::uint8_t> bytes);
 
   std::unique_ptr<Transport> transport_;
   std::string where_;
@@ -131,6 +136,8 @@ class Client {
   bool converter_failed_ = false;
   std::uint32_t refused_drives_ = 0;
   std::vector<std::uint8_t> received_;
+  std::vector<std::uint8_t> first_;  // received bytes, until a frame of the wire was received
+  double stream_bytes_per_s_ = 0, tick_bytes_per_s_ = 0;
   std::uint64_t blocks_seen_ = 0;   // messages of samples, also of an earlier program's stream
   std::vector<std::uint8_t> sent_;  // the last frame
   std::function<void(std::span<const std::uint8_t>)> on_command_done_;

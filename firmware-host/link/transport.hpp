@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A byte stream to a device and back: USB, or an emulated device in this process.
+// A byte stream to a device and back: USB, a serial line, or an emulated device in this process.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "data-schema/base/error.hpp"
@@ -22,6 +23,10 @@ class Transport {
   virtual schema::Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s) = 0;
   /// The clock of the timeouts; an emulated device has its own.
   virtual double now_s() = 0;
+  /// Of a serial line, with 10 bits for each byte. A link without such a limit is infinitely fast.
+  virtual double baud() const { return std::numeric_limits<double>::infinity(); }
+  /// The time that a device may need before it answers, because opening the link has restarted it.
+  virtual double start_up_s() const { return 0; }
 };
 
 }  // namespace tacto::firmware_host

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 #include "firmware-host/link/code_range.hpp"
@@ -14,9 +15,13 @@ using schema::ErrorKind;
 using schema::Result;
 
 constexpr double kBlockS = 5e-3;  // of frames in a message: imperceptible in a live view
+// On a serial line, where the 40 bytes of each message count: 2.5 bytes for each frame.
+constexpr double kLineBlockFrames = 16, kLineBlockS = 0.5;
 constexpr double kClockPairEveryS = 1;
 
-std::uint8_t block_frames(double rate_hz) {
+std::uint8_t block_frames(double rate_hz, double baud) {
+  if (std::isfinite(baud))
+    return static_cast<std::uint8_t>(std::clamp(rate_hz * kLineBlockS, 1.0, kLineBlockFrames));
   return static_cast<std::uint8_t>(std::clamp(rate_hz * kBlockS, 1.0, double{wire::kMaxBlockFrames}));
 }
 
@@ -45,7 +50,8 @@ Result<void> WireDevice::start() {
   ended_.reset();
   next_pair_s_ = -std::numeric_limits<double>::infinity();
   const std::uint32_t rate = client_->description().welcome.default_rate_millihertz;
-  const auto started = client_->start_stream(rate, block_frames(capabilities_.sample_rate_hz));
+  const auto started =
+      client_->start_stream(rate, block_frames(capabilities_.sample_rate_hz, client_->transport().baud()));
   started_ = started.has_value();
   return started;
 }

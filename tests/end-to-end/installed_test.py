@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the packages contain, without making them: manual pages, documents with working links, the Python package.
+"""What the packages contain, without making them: manual pages, documents with working links, udev rules, the Python
+package.
 
 usage: installed_test.py CMAKE BUILD-FOLDER
 """
@@ -38,6 +39,19 @@ def documents_and_pages_are_installed():
             "tactograph-gadget.8.gz"} <= pages, pages
 
 
+# A key of a rule is matched with == or !=, or set with = or +=; a label is where a GOTO of the same file leads.
+def udev_rules_are_installed():
+    install("tactograph")
+    rules = {file.name: file.read_text() for file in pathlib.Path("usr/lib/udev/rules.d").iterdir()}
+    assert set(rules) == {"60-tactograph.rules", "61-tactograph-latency.rules", "62-tactograph-serial.rules"}, set(rules)
+    for name, text in rules.items():
+        lines = [line for line in text.splitlines() if not line.startswith("#")]
+        for line in lines:
+            assert all(re.fullmatch(r'[A-Z]+(\{\w+\})?(==|!=|=|\+=)"[^"]+"', pair) for pair in line.split(", ")), (name, line)
+        assert set(re.findall(r'GOTO="(\w+)"', text)) == set(re.findall(r'LABEL="(\w+)"', text)), name
+    assert 'ENV{ID_MM_DEVICE_IGNORE}="1"' in rules["62-tactograph-serial.rules"]
+
+
 def the_python_package_is_installed_with_its_readme():
     assert "tactograph.Daemon" in (install("python3-tactograph") / "README.md").read_text()
     package = pathlib.Path("usr/lib/python3/dist-packages/tactograph")
@@ -45,5 +59,5 @@ def the_python_package_is_installed_with_its_readme():
 
 
 if __name__ == "__main__":
-    for test in (documents_and_pages_are_installed, the_python_package_is_installed_with_its_readme):
+    for test in (documents_and_pages_are_installed, udev_rules_are_installed, the_python_package_is_installed_with_its_readme):
         tacto.in_folder(test)

@@ -30,14 +30,14 @@ MAY_INCLUDE = {
     "data-schema/texture": "data-schema/{base files json kinds wav}",
     "data-schema/transducer": "data-schema/{base json}",
     "data-schema/wav": "data-schema/{base files}",
-    "firmware-host": "data-schema/base firmware-host/{link replay sim/device sim/physics sim/planar usb}",
+    "firmware-host": "data-schema/base firmware-host/{link replay sim/device sim/physics sim/planar tty usb}",
     "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
     "firmware-host/core/firmware": "firmware-host/{core/kernel core/scene core/wire}",
     "firmware-host/core/kernel": "firmware-host/core/wire",
     "firmware-host/core/scene": "firmware-host/core/{kernel wire}",
     "firmware-host/core/wire": "",
     "firmware-host/gadget":
-        "data-schema/{base recording report} firmware-host/{core/firmware core/wire link sim/device}",
+        "data-schema/{base recording report} firmware-host/{core/firmware core/wire link sim/device tty}",
     "firmware-host/link":
         "data-schema/{base recording transducer} firmware-host/{core/firmware core/kernel core/wire}",
     "firmware-host/reference": "firmware-host/core/wire",
@@ -47,6 +47,7 @@ MAY_INCLUDE = {
         "data-schema/{base transducer} firmware-host/{core/firmware core/wire link sim/bench sim/physics}",
     "firmware-host/sim/physics": "data-schema/{base texture transducer}",
     "firmware-host/sim/planar": "data-schema/device firmware-host/{core/firmware link sim/device}",
+    "firmware-host/tty": "data-schema/base firmware-host/link",
     "firmware-host/usb": "data-schema/base firmware-host/{core/firmware link}",
     "capture/calibrate": "capture/record data-schema/{base calibration recording transducer} firmware-host/link",
     "capture/cli":
