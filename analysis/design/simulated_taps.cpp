@@ -91,15 +91,17 @@ schema::Scene with_sliders_at_ends(schema::Scene scene, bool most_damping) {
   const auto raise = [](schema::LayerNumber& number) { number.value = largest_value(number); };
   for (schema::Patch& patch : scene.patches)
     for (schema::ForceLayer& layer : patch.layers)
-      layer.visit([&](schema::SpringLayer& spring) { raise(spring.stiffness_n_per_m); },
-                  [&](schema::DamperLayer& damper) {
-                    schema::LayerNumber& number = damper.damping_n_s_per_m;
-                    if (number.slider) number.value = most_damping ? number.slider->to : number.slider->from;
-                  },
-                  [&](schema::GroovesLayer& grooves) { raise(grooves.kappa_n), raise(grooves.depth_m); },
-                  [&](schema::HeightMapLayer& map) { raise(map.kappa_n); },
-                  [&](schema::NoiseLayer& noise) { raise(noise.kappa_n), raise(noise.depth_m); },
-                  [](auto& /*other*/) {});
+      layer.visit(
+          [&](schema::SpringLayer& spring) { raise(spring.stiffness_n_per_m); },
+          [&](schema::DamperLayer& damper) {
+            schema::LayerNumber& number = damper.damping_n_s_per_m;
+            if (number.slider) number.value = most_damping ? number.slider->to : number.slider->from;
+          },
+          [&](schema::GroovesLayer& grooves) { raise(grooves.kappa_n), raise(grooves.depth_m); },
+          [&](schema::HeightMapLayer& map) { raise(map.kappa_n); },
+          [&](schema::TextureForceLayer& texture) { texture.gain.value = farthest_value(texture.gain); },
+          [&](schema::NoiseLayer& noise) { raise(noise.kappa_n), raise(noise.depth_m); },
+          [](auto& /*other*/) {});
   return scene;
 }
 
@@ -113,7 +115,7 @@ TapBench::TapBench(const schema::Scene& scene, const playback::PreparedScene& pr
       stack_(scene.patches) {}
 
 std::vector<double> TapBench::force_at(const std::vector<std::int32_t>& counts) const {
-  std::vector<float> live(view_.number_count);
+  std::vector<float> live(view_.live_words());
   core::SceneKernel kernel;
   kernel.set(view_, setup_, live.data());
   const core::ForceOutput output = kernel.tick(counts.data(), true);
@@ -197,7 +199,7 @@ std::optional<TapPlace> TapBench::stiffest(const playback::ActingPatches& place,
 }
 
 SimulatedTap TapBench::tap(const TapPlace& at, double push_n, double speed_mps, double factor) const {
-  std::vector<float> live(view_.number_count);
+  std::vector<float> live(view_.live_words());
   core::SceneKernel kernel;
   kernel.set(view_, setup_, live.data());
   for (std::uint32_t i = 0; i < view_.layer_count; ++i) {

@@ -59,7 +59,7 @@ def noise_table(per_count, per_m, amplitudes):
 
 def relief_table(per_m, levels):
     """A level: samples per count along x and y with 32 bits after the point, samples per metre, columns, rows."""
-    table, first, coefficients = struct.pack("<fI", per_m, len(levels)), 0, b""
+    table, first, coefficients = struct.pack("<fIff", per_m, len(levels), 0.8, -0.6), 0, b""
     for x, y, samples_per_m, columns, rows in levels:
         along = struct.pack("<iIiIIiII", 1, 2**31, x >> 32, x & 0xFFFFFFFF, 0, y >> 32, y & 0xFFFFFFFF, 0)
         table += along * 2 + struct.pack("<2f3I", samples_per_m, samples_per_m, columns, rows, first)
@@ -109,7 +109,8 @@ CONVERSATIONS = {
     "host_drive": HELLO + LIMITS + arm(1) + PLAY + action_frame(0x0F, struct.pack("<H50f", 50, *[2.0] * 50)) + TICKS +
                   bytes([3]) + TICKS + DISARM + TICKS,
     "scene": HELLO + FORCE_LIMITS + action_frame(0x1A, struct.pack("<IIH", len(SPRING_BLOCK), 0, len(SPRING_BLOCK)) + SPRING_BLOCK) + arm(3) + PLAY +
-             TICKS + COUNTS + TICKS + action_frame(0x1B, struct.pack("<HHff", 0, 0, 100, 0.01)) + TICKS + bytes([3]) + TICKS + DISARM + TICKS,
+             TICKS + COUNTS + TICKS + action_frame(0x1B, struct.pack("<HHff", 0, 0, 100, 0.01)) + TICKS +
+             action_frame(0x1C, struct.pack("<HHiif", 0, 0, -40, 70, 0.01)) + action_frame(0x1D, struct.pack("<H", 0)) + TICKS + bytes([3]) + TICKS + DISARM + TICKS,
     "sweep": HELLO + LIMITS + action_frame(0x0A, struct.pack("<fIII", 1, 10_000, 500_000, 4_000_000)) + arm(2) + PLAY +
              TICKS * 3 + action_frame(0x10, struct.pack("<I", 1)) + DISARM,
 }

@@ -3,6 +3,8 @@
 // that were cut, changed or made to harm.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstring>
@@ -11,6 +13,7 @@
 #include <random>
 
 #include "data-schema/height/height_map.hpp"
+#include "data-schema/texture/texture.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
@@ -79,6 +82,17 @@ schema::ForceLayer height_map(const std::string& name, std::size_t columns, std:
   return schema::HeightMapLayer{path, {kappa_n}, "", 0};
 }
 
+// The same; `force_n` by the number of the sample.
+schema::ForceLayer texture(const std::string& name, std::size_t samples, double pitch_m, double direction_deg,
+                           double gain, const std::function<double(double)>& force_n) {
+  schema::Texture made;
+  made.signal.pitch_m = pitch_m;
+  for (std::size_t i = 0; i < samples; ++i) made.signal.values.push_back(force_n(static_cast<double>(i)));
+  const std::string path = testing::TempDir() + name;
+  EXPECT_TRUE(schema::write_texture(path, made));
+  return schema::TextureForceLayer{path, {direction_deg}, {gain}, "", 0};
+}
+
 Patch patch(const std::string& name, std::vector<schema::ForceLayer> layers) {
   Patch made;
   made.name = name;
@@ -99,10 +113,10 @@ struct OnDevice {
   schema::Device device;
   PreparedScene scene;
   core::SceneKernel kernel;
-  std::vector<float> live = std::vector<float>(100);
+  std::vector<float> live;
 
   OnDevice(const schema::Device& on, std::vector<Patch> patches)
-      : device(on), scene(prepared(std::move(patches), on)) {
+      : device(on), scene(prepared(std::move(patches), on)), live(scene.view().live_words()) {
     kernel.set(scene.view(), *force_setup_of(device, 1000), live.data());
   }
   core::ForceOutput at(double x_m, double y_m) {
@@ -110,6 +124,11 @@ struct OnDevice {
         static_cast<std::int32_t>(std::lround(x_m / device.axes[0].encoder_step_m)),
         static_cast<std::int32_t>(std::lround(y_m / device.axes[1].encoder_step_m))};
     return kernel.tick(counts, true);
+  }
+  // In the block.
+  std::uint32_t patch_named(const std::string& name) const {
+    const auto found = std::ranges::find(scene.patches, name, &Patch::name);
+    return static_cast<std::uint32_t>(found - scene.patches.begin());
   }
 };
 
@@ -341,6 +360,8 @@ TEST(SceneKernel, OctavesEndWithTheSpeed) {
 
 // Layers, patches and numbers at random, a hand that wanders, rests and jumps: the differences are those of
 // single precision. The bound is relative to the sum of the absolute forces of one layer of each patch.
+// The reference has the patches where the file puts them. Every second scene of the kernel begins with other
+// places and another order, and is moved and raised to them.
 TEST(SceneKernel, SinglePrecisionIsTheReference) {
   std::mt19937_64 random(1990);
   const auto draw = [&](double from, double to) {
@@ -366,14 +387,31 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
       patches.back().layers.push_back(height_map("map" + std::to_string(i), 40, 30, pitch_m, kappa_n,
                                                  [&](double, double) { return draw(-white_m, white_m); }));
       scale += kappa_n * white_m / pitch_m * 6;  // coefficients of white heights are within 3 of them
+      const double gain = draw(-2, 2), white_n = draw(0, 0.5);
+      patches.back().layers.push_back(texture("texture" + std::to_string(i), 3000, 2e-5, draw(-360, 360),
+                                              gain, [&](double) { return draw(-white_n, white_n); }));
+      scale += std::abs(gain) * white_n * 3;  // as of the height maps
       patches.back().x_m = draw(-0.05, 0.05);
       patches.back().angle_deg = draw(-360, 360);
       patches.back().order = draw(-1, 1);
       patches.back().combine = i % 2 == 0 ? PatchCombine::add : PatchCombine::topmost;
       scale += k * 0.2 + b * 1;  // at most 0.2 m and about 1 m/s
     }
+    const PreparedScene placed = prepared(patches, unlimited());
+    std::vector<std::array<std::int32_t, 2>> ways;
+    for (Patch& from : patches) {
+      const auto way = [&] { return scene % 2 == 0 ? 0 : static_cast<std::int32_t>(draw(-1e5, 1e5)); };
+      ways.push_back({way(), way()});
+      from.x_m -= 1e-5 * ways.back()[0];
+      from.y_m -= 1e-5 * ways.back()[1];
+      if (scene % 2 != 0) from.order = draw(-1, 1);
+    }
     OnDevice on(unlimited(), patches);
-    ExactScene exact(on.scene, on.device, 1000);
+    ExactScene exact(placed, on.device, 1000);
+    for (std::size_t i = 0; i < patches.size() && scene % 2 != 0; ++i)
+      on.kernel.move(on.patch_named(patches[i].name), {ways[i][0], ways[i][1]}, 1);
+    for (auto patch = placed.patches.rbegin(); patch != placed.patches.rend() && scene % 2 != 0; ++patch)
+      on.kernel.raise(on.patch_named(patch->name));
     std::vector<std::int32_t> counts(2);
     double speed[2] = {};
     for (int tick = 0; tick < 3000; ++tick) {
@@ -391,17 +429,80 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
   EXPECT_LT(worst, 3e-7);
 }
 
-// Square grooves of 0.5 mm as a height map, at 1 kHz and steady speeds: all that is no harmonic below half
-// the rate is an image of the spline or was folded by the rate. The harmonic m n falls into bin m n of 512.
-// At its ends the map continues evenly as the same grooves.
-TEST(SceneKernel, AHeightMapAtSteadySpeedHasOnlyHarmonics) {
+// Of n ticks, after k of them: k / n of the way, rounded towards its beginning.
+std::int32_t part_of(std::int32_t from, std::int32_t to, int k, int n) {
+  const std::int64_t way = std::int64_t{to} - from, part = std::abs(way) * std::min(k, n) / n;
+  return from + static_cast<std::int32_t>(way < 0 ? -part : part);
+}
+
+// The patch of the block at n - m, to the bit, while it moves and after it.
+TEST(SceneKernel, AMovingPatchHasTheForcesOfItsOldPlace) {
+  Patch turned = patch(
+      "a", {spring(100, 0.001), grooves(schema::GrooveProfile::sine, 4e-3, 1e-4, 1, 20),
+            noise(5e-3, 2, 0.5, 3, 1e-4, 1), height_map("moved", 40, 30, 1e-3, 1, [](double x, double y) {
+              return 1e-4 * std::sin(0.3 * x) * std::cos(0.2 * y);
+            })});
+  turned.angle_deg = 25;
+  OnDevice on(unlimited(), {turned}), still(unlimited(), {turned});
+  struct Event {
+    int tick, ramp;
+    std::int32_t to[2];
+  };
+  constexpr Event kEvents[] = {
+      {0, 10, {407, -93}}, {20, 50, {-31, 1000}}, {40, 7, {-32, 950}}, {60, 0, {-30, 940}}};
+  std::int32_t from[2] = {}, at[2] = {};
+  const Event* last = nullptr;
+  for (int tick = 0; tick < 80; ++tick) {
+    for (const Event& event : kEvents) {
+      if (event.tick != tick) continue;
+      on.kernel.move(0, event.to, static_cast<float>(event.ramp));
+      std::copy_n(at, 2, from);
+      last = &event;
+    }
+    std::int32_t relative[2];
+    const std::int32_t hand[2] = {1234, -777};
+    for (int i = 0; i < 2; ++i) {
+      at[i] = part_of(from[i], last->to[i], tick - last->tick + 1, std::max(last->ramp, 1));
+      relative[i] = hand[i] - at[i];
+    }
+    const core::ForceOutput moved = on.kernel.tick(hand, true), there = still.kernel.tick(relative, true);
+    EXPECT_EQ(moved.force_n[0], there.force_n[0]) << tick;
+    EXPECT_EQ(moved.force_n[1], there.force_n[1]) << tick;
+  }
+}
+
+// 10 periods in 10 ticks: nothing of the surface can be played until the patch rests. The hand rests.
+TEST(SceneKernel, WhileItMovesASurfaceIsPlayedAtTheRelativeSpeed) {
+  OnDevice on(unlimited(), {patch("a", {grooves(schema::GrooveProfile::sine, 1e-3, 1e-4, 1), damper(10)})});
+  const double there_n = -on.at(0.0102, 0).force_n[0];  // 0.2 periods; the force is odd
+  on.kernel.set(on.scene.view(), *force_setup_of(on.device, 1000), on.live.data());
+  EXPECT_EQ(on.at(0, 0).force_n[0], 0);
+  on.kernel.move(0, {1020, 0}, 10);
+  for (int tick = 1; tick < 10; ++tick) EXPECT_EQ(on.at(0, 0).force_n[0], 0) << tick;
+  EXPECT_NEAR(on.at(0, 0).force_n[0], there_n, 1e-6);
+  EXPECT_GT(std::abs(there_n), 0.2);
+}
+
+// The 17th of 16 moves that are not complete.
+TEST(SceneKernel, AFurtherMoveEndsTheOldest) {
+  std::vector<Patch> patches;
+  for (int i = 0; i < 17; ++i) {
+    patches.push_back(patch("p" + std::to_string(i), {spring(1)}));
+    patches.back().combine = PatchCombine::add;
+  }
+  OnDevice on(unlimited(), patches);
+  for (std::uint32_t i = 0; i < 17; ++i) on.kernel.move(i, {1000, 0}, 100);
+  // The first one is complete, 1 N/m x 0.01 m; 16 made 10 of 1000 counts.
+  EXPECT_NEAR(on.at(0, 0).force_n[0], 0.01 + 16 * 1e-4, 1e-7);
+}
+
+// A surface of 0.5 mm at 1 kHz and steady speeds: all that is no harmonic below half the rate is an image of
+// the spline or was folded by the rate. The harmonic m n falls into bin m n of 512. `first_n`: its first
+// harmonic.
+void expect_only_harmonics(const char* name, schema::ForceLayer layer, double first_n) {
   constexpr std::size_t kTicks = 512;
-  const double period_m = 5e-4, top_m = 5e-5;
-  Patch wide = patch("a", {height_map("square", 52 * 280, 1, period_m / 52, 1, [&](double x, double) {
-                       return std::fmod(x + 13, 52) < 26 ? top_m : -top_m;
-                     })});
-  OnDevice on(unlimited(1e-9), {wide});
-  const double first_n = 4 / std::numbers::pi * top_m * 2 * std::numbers::pi / period_m;  // of its slope
+  const double period_m = 5e-4;
+  OnDevice on(unlimited(1e-9), {patch("a", {std::move(layer)})});
   const double whole = std::pow(first_n * kTicks / 2, 2);  // its power in a bin
   spatial::RealFft fft(kTicks);
   for (const std::size_t m : {11U, 21U, 31U, 51U, 77U, 103U, 151U, 205U, 301U, 511U}) {
@@ -418,11 +519,80 @@ TEST(SceneKernel, AHeightMapAtSteadySpeedHasOnlyHarmonics) {
     for (std::size_t bin = 0; bin < spectrum.size(); ++bin)
       (bin % m == 0 && bin > 0 ? harmonics : others) += std::norm(spectrum[bin]);
     const double others_db = 10 * std::log10(others / std::max(harmonics, whole));
-    std::printf("  square grooves at %.3g mm/s: %.1f dB is no harmonic\n", 1e6 * step_m, others_db);
-    EXPECT_LT(others_db, -65) << m;
+    std::printf("  %s at %.3g mm/s: %.1f dB is no harmonic\n", name, 1e6 * step_m, others_db);
+    EXPECT_LT(others_db, -65) << name << ' ' << m;
     // The first harmonic is whole up to 0.8 x 0.354 of the rate.
-    if (100 * m < 28 * kTicks) EXPECT_GT(harmonics, 0.98 * whole) << m;
+    if (100 * m < 28 * kTicks) EXPECT_GT(harmonics, 0.98 * whole) << name << ' ' << m;
   }
+}
+
+// Square grooves; at its ends the map continues evenly as the same grooves.
+TEST(SceneKernel, AHeightMapAtSteadySpeedHasOnlyHarmonics) {
+  const double top_m = 5e-5, first_n = 4 / std::numbers::pi * top_m * 2 * std::numbers::pi / 5e-4;
+  expect_only_harmonics(
+      "square grooves",
+      height_map("square", 52 * 280, 1, 5e-4 / 52, 1,
+                 [&](double x, double) { return std::fmod(x + 13, 52) < 26 ? top_m : -top_m; }),
+      first_n);
+}
+
+TEST(SceneKernel, ATextureAtSteadySpeedHasOnlyHarmonics) {
+  expect_only_harmonics("a square texture",
+                        texture("square", 52 * 400, 5e-4 / 52, 0, 1,
+                                [](double i) { return std::fmod(i, 52) < 26 ? 0.2 : -0.2; }),
+                        4 / std::numbers::pi * 0.2);
+}
+
+// 40 mm of a sine of 2 mm. Its fade at the ends is 1 mm.
+TEST(SceneKernel, ATextureIsItsForceAlongItsDirection) {
+  const double turn = 2 * std::numbers::pi / 2e-3, half_m = 0.5 * 3999 * 1e-5;
+  Patch turned =
+      patch("turned",
+            {texture("sine", 4000, 1e-5, 20, -2, [&](double i) { return 0.5 * std::sin(turn * i * 1e-5); })});
+  turned.x_m = 0.0123;
+  turned.y_m = -0.004;
+  turned.angle_deg = 30;
+  const double c = std::cos(50 * std::numbers::pi / 180), s = std::sin(50 * std::numbers::pi / 180);
+  OnDevice on(unlimited(1e-9), {turned});
+  std::mt19937_64 random(51);
+  std::uniform_real_distribution<double> place(-0.05, 0.05);
+  double worst = 0;
+  int inside = 0, outside = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double x = std::round(place(random) * 1e9) * 1e-9, y = std::round(place(random) * 1e9) * 1e-9;
+    on.kernel.set(on.scene.view(), *force_setup_of(on.device, 1000), on.live.data());
+    const core::ForceOutput output = on.at(x, y);
+    const double along = (x - 0.0123) * c + (y + 0.004) * s;
+    if (std::abs(along) > half_m + 3e-5) {
+      EXPECT_EQ(output.force_n[0], 0);
+      EXPECT_EQ(output.force_n[1], 0);
+      ++outside;
+    }
+    if (std::abs(along) > half_m - 1.1e-3) continue;
+    const double force_n = -2 * 0.5 * std::sin(turn * (along + half_m));
+    worst = std::max(
+        {worst, std::abs(output.force_n[0] - force_n * c), std::abs(output.force_n[1] - force_n * s)});
+    ++inside;
+  }
+  EXPECT_GT(inside, 500);
+  EXPECT_GT(outside, 500);
+  // Of 1 N: single precision of heights of 0.16 mm, 7e-12 m twice on a pitch of 1e-5 m, times the gain of 2.
+  std::printf("  a sine as a texture: within %.2g of its amplitude\n", worst);
+  EXPECT_LT(worst, 4e-6);
+}
+
+// 10 m/s across it: nothing of it changes.
+TEST(SceneKernel, ATextureIsWholeForAHandThatMovesAcrossIt) {
+  Patch line = patch("line", {texture("fine", 400, 1e-5, 90, 1,
+                                      [](double i) { return std::sin(2 * std::numbers::pi * i / 20); })});
+  OnDevice on(unlimited(), {line});
+  const float rests_n = on.at(0, 5.5e-4).force_n[1];
+  EXPECT_GT(std::abs(rests_n), 0.5F);
+  for (int tick = 1; tick < 10; ++tick) EXPECT_EQ(on.at(0.01 * tick, 5.5e-4).force_n[1], rests_n) << tick;
+  float moved_n = 0;
+  for (int tick = 0; tick < 10; ++tick)
+    moved_n = on.at(0, 1e-3 * tick - 4.5e-3).force_n[1];  // 5 periods per tick
+  EXPECT_EQ(moved_n, 0);
 }
 
 TEST(SceneKernel, TheLimitsOfTheReferenceAreTheKernels) {
@@ -581,11 +751,12 @@ TEST(SceneBlock, AHarmfulHeightMapIsRefused) {
   };
   EXPECT_EQ(fault(1, 0), core::SceneFault::structure);  // levels
   EXPECT_EQ(fault(1, 0xFFFFFFFF), core::SceneFault::structure);
-  EXPECT_EQ(fault(2 + 18, 7), core::SceneFault::structure);  // columns
-  EXPECT_EQ(fault(2 + 18, 0x80000000), core::SceneFault::structure);
-  EXPECT_EQ(fault(2 + 19, 0), core::SceneFault::structure);                     // rows
-  EXPECT_EQ(fault(2 + 20, 1), core::SceneFault::structure);                     // first coefficient
-  EXPECT_EQ(fault(2 + 16, 0x7F800000), core::SceneFault::value);                // samples per metre
+  EXPECT_EQ(fault(4 + 18, 7), core::SceneFault::structure);  // columns
+  EXPECT_EQ(fault(4 + 18, 0x80000000), core::SceneFault::structure);
+  EXPECT_EQ(fault(4 + 19, 0), core::SceneFault::structure);                     // rows
+  EXPECT_EQ(fault(4 + 20, 1), core::SceneFault::structure);                     // first coefficient
+  EXPECT_EQ(fault(4 + 16, 0x7F800000), core::SceneFault::value);                // samples per metre
+  EXPECT_EQ(fault(2, 0x3F000000), core::SceneFault::value);                     // cosine
   EXPECT_EQ(fault(0, 0x7FC00000), core::SceneFault::value);                     // highest frequency
   EXPECT_EQ(fault(view.table_words - 1, 0x41300000), core::SceneFault::value);  // a coefficient of 11 m
   EXPECT_EQ(fault(view.table_words - 1, 0x3F800000), core::SceneFault::none);
@@ -627,7 +798,7 @@ TEST(SceneBlock, AHarmfulBlockIsRefusedOrLimited) {
       }
       ++accepted;
       core::SceneKernel kernel;
-      std::vector<float> live(view.number_count);
+      std::vector<float> live(view.live_words());
       kernel.set(view, setup, live.data());
       for (const std::int32_t count : {0, INT32_MAX, INT32_MIN, 1000, -1000}) {
         const std::int32_t counts[2] = {count, -(count / 2)};
