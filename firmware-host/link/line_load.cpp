@@ -45,7 +45,7 @@ double bytes_per_tick(double rate_hz, std::size_t axes) {
   return frame_bytes(block) / ticks;
 }
 
-schema::Result<void> check_line(const Line& line, double rate_hz,
+schema::Result<void> check_line(const SerialLine& line, double rate_hz,
                                 const std::function<double(double rate_hz)>& bytes_of_one,
                                 const std::string& where) {
   const double carried = kShareOfStreams * line.baud / kBitsPerByte;

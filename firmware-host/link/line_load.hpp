@@ -17,7 +17,7 @@ double bytes_per_frame(std::size_t channels, std::size_t block_frames);
 double bytes_per_tick(double rate_hz, std::size_t axes);
 
 /// A serial line, and the bytes that are already sent over it.
-struct Line {
+struct SerialLine {
   double baud = 0;
   double used_bytes_per_s = 0;
 };
@@ -25,7 +25,7 @@ struct Line {
 /// Refuses a rate of frames or ticks that the line does not carry. `bytes_of_one` gives the bytes of one
 /// frame or tick at a rate. Errors: unsuitable, with the largest whole rate that fits and the baud rate that
 /// would be needed.
-schema::Result<void> check_line(const Line& line, double rate_hz,
+schema::Result<void> check_line(const SerialLine& line, double rate_hz,
                                 const std::function<double(double rate_hz)>& bytes_of_one,
                                 const std::string& where);
 
