@@ -34,6 +34,7 @@ TEST(TtyPlay, ReplaysToTheBit) {
   ASSERT_TRUE(outcome) << schema::message(outcome.error());
   EXPECT_NE(outcome->status.state, PlayerState::fault) << outcome->status.fault;
   EXPECT_EQ(outcome->recorder.lost(), 0U);
+  EXPECT_GT(outcome->status.ticks.drive_peak_v(), 0.01) << "the finger moved over the texture";
   EXPECT_GE(outcome->recorder.ticks, static_cast<std::uint64_t>(kOnPortS * kRateHz));
   const auto replayed = replay_session(folder / "one.session");
   ASSERT_TRUE(replayed) << schema::message(replayed.error());
