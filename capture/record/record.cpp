@@ -71,7 +71,7 @@ Result<void> check_room(const RecordRequest& request, const schema::RecordingHea
       header.sample_rate_hz * static_cast<double>(header.channels.size()) * sizeof(std::int32_t);
   const double needed = request.time_s.value_or(0) * bytes_per_s + kSpare_bytes;
   const double left = disk_left_bytes(request.name);
-  if (needed <= left) return {};
+  if (!(needed > left)) return {};  // also for a time that is no number, which is refused by itself
   const std::string what =
       request.time_s ? fmt::format("{:g} s need", *request.time_s) : "a recording needs to start";
   const double longest_s = std::floor((left - kSpare_bytes) / bytes_per_s);

@@ -142,6 +142,7 @@ Result<void> Service::connect() {
   player_options.tell_limits = true;
   player_options.most_late = 1e-2 * config_.most_late_percent;
   device_ = std::move(*device);
+  player_options.full_queue = device_.full_queue();
   if (config_.loop == "host") {
     const HostLoopOptions loop{config_.rate_hz, config_.real_time_priority,
                                static_cast<std::uint16_t>(config_.watchdog_ms)};

@@ -156,13 +156,6 @@ Result<void> play_through(const Playing& playing, const std::string& session,
   return {};
 }
 
-// Emulated time can wait, so nothing may be lost.
-PlayerOptions options_for(const PlayerDevice& device) {
-  PlayerOptions options;
-  options.full_queue = device.device->is_real_time() ? FullQueue::lose : FullQueue::wait;
-  return options;
-}
-
 void tell_limits(const std::string& session, PlayOutcome& outcome) {
   const auto tally = tally_session(session);
   if (tally) outcome.limits = *tally;
@@ -218,7 +211,8 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   if (options.finger_path) script = FingerScript{*options.finger_path, false, options.loop_here};
   auto device = open_player_device(options.device_uri, script);
   TACTO_TRY(device);
-  PlayerOptions player_options = options_for(*device);
+  PlayerOptions player_options;
+  player_options.full_queue = device->full_queue();
   const auto here = loop_of(options, *device, player_options);
   TACTO_TRY(here);
   const auto player = Player::make(*here ? *here->client : *device->client, device->uri, player_options);
@@ -259,7 +253,9 @@ Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std:
   firmware_host::Client& client = *device->player.client;
   auto program = make_force_program(options.program, device->about, device->hand, *client.description().axes);
   TACTO_TRY(program);
-  const auto player = Player::make(client, device->player.uri, options_for(device->player));
+  PlayerOptions player_options;
+  player_options.full_queue = device->player.full_queue();
+  const auto player = Player::make(client, device->player.uri, player_options);
   TACTO_TRY(player);
   PlayOutcome outcome;
   outcome.notes = program->notes;

@@ -12,6 +12,7 @@
 #include "firmware-host/link/client.hpp"
 #include "firmware-host/link/device.hpp"
 #include "playback/model/finger_path.hpp"
+#include "playback/player/flight_recorder.hpp"
 
 namespace tacto::playback {
 
@@ -49,6 +50,9 @@ struct PlayerDevice {
   std::string uri;
   DeviceLock lock;
   std::function<void()> begin_path;  ///< starts a script that waits; from any thread
+
+  /// For PlayerOptions. Emulated time can wait for the recorder, so no tick needs to be lost.
+  FullQueue full_queue() const { return device->is_real_time() ? FullQueue::lose : FullQueue::wait; }
 };
 
 /// Opens by URI (see open_device), and locks a device that other programs could open too. A script is for

@@ -68,9 +68,9 @@ Result<void> check_length(const FingerPath& path, const RenderOptions& options) 
   if (path.duration_s() * options.rate_hz > kMostSamples)
     return fail(
         ErrorKind::unsuitable,
-        fmt::format(
-            "the path of {:.4g} s has {:.4g} samples at {:g} Hz, at most {:.4g} can be rendered at once",
-            path.duration_s(), path.duration_s() * options.rate_hz, options.rate_hz, kMostSamples),
+        fmt::format("the path of {:.4g} s is too long: it has {:.4g} samples at {:g} Hz, and at most {:.4g} "
+                    "can be rendered at once",
+                    path.duration_s(), path.duration_s() * options.rate_hz, options.rate_hz, kMostSamples),
         "path",
         fmt::format("use a --rate up to {:.0f}Hz, or a shorter path", kMostSamples / path.duration_s()));
   return {};

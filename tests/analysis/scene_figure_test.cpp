@@ -120,7 +120,7 @@ TEST(ReliefRaster, HasTheForcesOfTheKernel) {
   const schema::Device device = fine_device();
   const auto setup = playback::force_setup_of(device, kRateHz);
   const core::SceneView view = picture.prepared.view();
-  std::vector<float> live(view.number_count);
+  std::vector<float> live(view.live_words());
   double worst_n = 0, largest_n = 0;
   for (int row = 3; row < grid.rows; row += 29)
     for (int column = 5; column < grid.columns; column += 31) {

@@ -161,7 +161,7 @@ TEST(Record, NeverOverwrites) {
 TEST(Record, RefusesATimeThatIsNone) {
   const TemporaryFolder folder;
   CountingDevice device(1000);
-  for (const double time_s : {0.0, -1.0, 1e-9, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double time_s : {0.0, -1.0, 1e-9, std::numeric_limits<double>::quiet_NaN()}) {
     const auto refused = record(device, request(folder / "oak", time_s));
     ASSERT_FALSE(refused) << time_s;
     EXPECT_EQ(refused.error().kind, ErrorKind::usage);

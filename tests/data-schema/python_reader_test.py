@@ -238,10 +238,10 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         os.chdir(temporary)
         make_files()
-        for check in (texture_has_its_positions_and_band, clipping_is_masked, recording_is_physical_and_keeps_its_gaps,
+        for check in (changed_numbers_are_refused, texture_has_its_positions_and_band, clipping_is_masked, recording_is_physical_and_keeps_its_gaps,
                       average_tells_its_spread, spectrogram_is_upright_and_loaded, the_version_is_that_of_the_program, a_stored_session_is_read,
                       a_session_holds_what_the_tray_sensor_measured, a_session_of_the_daemon_has_its_gains, a_session_that_was_cut_is_read_up_to_there,
-                      changed_numbers_are_refused, a_newer_minor_version_is_read_with_a_warning, what_cannot_be_read_is_named):
+                      a_newer_minor_version_is_read_with_a_warning, what_cannot_be_read_is_named):
             check()
             print(f"{check.__name__}: passed")
 

@@ -135,7 +135,7 @@ def completion_offers_values():
     assert "wiertlewski2011" in complete("tactograph", "render", "oak", "--transducer", "wiert")
     assert complete("tactograph", "play", "oak", "--quality", "b") == ["balanced"]
     assert complete("tactograph", "play", "oak", "--gain", "3mm") == ["3mm/N"] and "2x" in complete("tactograph", "play", "oak", "--gain", "2")
-    assert complete("tactograph", "record", "-d", "sim:surf") == ["surface="]
+    assert complete("tactograph", "record", "-d", "sim:surf") == ["surface=", "surface_seed="]
     assert complete("tactograph", "record", "-d", "sim:surface=C,hyst") == ["C,hysteresis="]
     assert complete("tactograph", "calibrate", "t") == ["tare"]
     assert complete("tactograph", "help", "si") == ["sim"]
