@@ -339,8 +339,8 @@ TEST(Record, ProgressRunsToOne) {
   const TemporaryFolder folder;
   CountingDevice device(2000);
   std::vector<double> heard;
-  ASSERT_TRUE(
-      record(device, request(folder / "oak", 2), {[&](double part) { heard.push_back(part); }, {}, {}, {}, {}}));
+  ASSERT_TRUE(record(device, request(folder / "oak", 2),
+                     {[&](double part) { heard.push_back(part); }, {}, {}, {}, {}}));
   EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
   EXPECT_EQ(heard.back(), 1);
 }
