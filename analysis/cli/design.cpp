@@ -41,7 +41,8 @@ constexpr const char* kDesignRule =
     "  --hand any       each passive hand (proved)\n"
     "  --speed V        each passive hand below this speed (proved)\n"
     "All of these limits are in the table. A layer that is proved for each passive hand is stable with any "
-    "hand. Layers that act at the same place add up; a number with a slider counts at its worse end. The "
+    "hand. Layers that act at the same place add up, with the patches at the places and in the order of the "
+    "scene ('ctl move' and 'ctl raise' can change both); a number with a slider counts at its worse end. The "
     "stiffness of grooves, noise and height maps is their largest one; other layers are reported as not "
     "known.\n"
     "The second table: the greatest period and the largest delay at which the place is stable; the damping "
@@ -134,6 +135,11 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   TACTO_TRY(designed);
   design = std::move(*designed);
   Report report = report_of(o, design);
+  if (scene->patches.size() > 1)
+    report.add(
+        "assumed",
+        "patches at the places and in the order of the scene; after 'move' or 'raise' other layers may "
+        "act together");
   if (o.outputs.empty()) return report;
   schema::Results results;
   results.verb = "design";

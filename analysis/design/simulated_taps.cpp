@@ -113,7 +113,7 @@ TapBench::TapBench(const schema::Scene& scene, const playback::PreparedScene& pr
       stack_(scene.patches) {}
 
 std::vector<double> TapBench::force_at(const std::vector<std::int32_t>& counts) const {
-  std::vector<float> live(view_.number_count);
+  std::vector<float> live(view_.live_words());
   core::SceneKernel kernel;
   kernel.set(view_, setup_, live.data());
   const core::ForceOutput output = kernel.tick(counts.data(), true);
@@ -197,7 +197,7 @@ std::optional<TapPlace> TapBench::stiffest(const playback::ActingPatches& place,
 }
 
 SimulatedTap TapBench::tap(const TapPlace& at, double push_n, double speed_mps, double factor) const {
-  std::vector<float> live(view_.number_count);
+  std::vector<float> live(view_.live_words());
   core::SceneKernel kernel;
   kernel.set(view_, setup_, live.data());
   for (std::uint32_t i = 0; i < view_.layer_count; ++i) {

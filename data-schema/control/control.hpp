@@ -18,7 +18,7 @@ namespace tacto::schema {
 inline constexpr std::string_view kControlVersion = "1.0";
 inline constexpr std::size_t kMostControlLine = 16384;  ///< bytes, newline included
 
-enum class ControlVerb { hello, load, arm, play, stop, disarm, gain, set, status, watch };
+enum class ControlVerb { hello, load, arm, play, stop, disarm, gain, set, move, raise, status, watch };
 
 struct ControlRequest {
   ControlVerb verb = ControlVerb::status;
@@ -35,9 +35,11 @@ struct ControlRequest {
   std::optional<double> dead_man_s;  ///< arm
   std::optional<double> gain;        ///< gain: a factor of the loaded gain
   bool save = false;
-  std::string number;            ///< set: PATCH.LAYER.MEMBER
-  std::optional<double> value;   ///< set
-  std::optional<double> over_s;  ///< set
+  std::string number;              ///< set: PATCH.LAYER.MEMBER
+  std::optional<double> value;     ///< set
+  std::string patch;               ///< move, raise
+  std::optional<double> x_m, y_m;  ///< move: of its centre
+  std::optional<double> over_s;    ///< set, move
   /// Filled in by the socket; not in the line.
   std::string asked_by;  ///< the user, for a saved gain
   std::uint64_t client = 0;

@@ -15,8 +15,8 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 10> kControlVerbs = {"hello",  "load", "arm", "play",   "stop",
-                                                            "disarm", "gain", "set", "status", "watch"};
+constexpr std::array<std::string_view, 12> kControlVerbs = {
+    "hello", "load", "arm", "play", "stop", "disarm", "gain", "set", "move", "raise", "status", "watch"};
 constexpr int kDeepestRequest = 3;
 constexpr std::string_view kRequestWhere = "request";
 
@@ -65,6 +65,11 @@ Result<void> check_members(const ControlRequest& request) {
   if (request.verb == ControlVerb::set && (request.number.empty() || !request.value))
     return bad_member("number", "set needs a number and its value",
                       R"(add "number":"bench.0.stiffness_n_per_m","value":100)");
+  if ((request.verb == ControlVerb::move || request.verb == ControlVerb::raise) && request.patch.empty())
+    return bad_member("patch", "the request names no patch", R"(add the name of a patch of the scene)");
+  if (request.verb == ControlVerb::move && !(request.x_m && request.y_m))
+    return bad_member(request.x_m ? "y_m" : "x_m", "move needs the place of the patch's centre",
+                      R"(add "x_m":0.01,"y_m":0.02)");
   const int gains =
       request.gain.has_value() + request.gain_m_per_n.has_value() + request.times_default.has_value();
   if (request.verb == ControlVerb::gain && gains == 0)
@@ -79,7 +84,7 @@ Result<void> check_members(const ControlRequest& request) {
 
 // A member of another request was meant for that request: it must not be ignored, because it may be a limit.
 Result<void> check_taken(const Json& body, ControlVerb verb) {
-  constexpr std::array<std::pair<const char*, ControlVerb>, 14> kTakenBy = {
+  constexpr std::array<std::pair<const char*, ControlVerb>, 15> kTakenBy = {
       {{"version", ControlVerb::hello},
        {"token", ControlVerb::hello},
        {"file", ControlVerb::load},
@@ -93,16 +98,24 @@ Result<void> check_taken(const Json& body, ControlVerb verb) {
        {"save", ControlVerb::gain},
        {"number", ControlVerb::set},
        {"value", ControlVerb::set},
-       {"over_s", ControlVerb::set}}};
+       {"x_m", ControlVerb::move},
+       {"y_m", ControlVerb::move}}};
   const auto word = [](ControlVerb of) { return kControlVerbs[static_cast<std::size_t>(of)]; };
   for (const auto& [name, taker] : kTakenBy)
     if (body.contains(name) && verb != taker)
       return bad_member(name, fmt::format("'{}' does not accept '{}'", word(verb), name),
                         fmt::format("send it with '{}'", word(taker)));
-  for (const char* name : {"gain_m_per_n", "times_default"})
-    if (body.contains(name) && verb != ControlVerb::load && verb != ControlVerb::gain)
+  struct OfTwo {
+    const char* name;
+    ControlVerb one, other;
+  };
+  for (const auto& [name, one, other] : {OfTwo{"gain_m_per_n", ControlVerb::load, ControlVerb::gain},
+                                         {"times_default", ControlVerb::load, ControlVerb::gain},
+                                         {"over_s", ControlVerb::set, ControlVerb::move},
+                                         {"patch", ControlVerb::move, ControlVerb::raise}})
+    if (body.contains(name) && verb != one && verb != other)
       return bad_member(name, fmt::format("'{}' does not accept '{}'", word(verb), name),
-                        "send it with 'load' or 'gain'");
+                        fmt::format("send it with '{}' or '{}'", word(one), word(other)));
   return {};
 }
 
@@ -129,6 +142,9 @@ ControlRequest request_of(const Json& body) {
   request.save = body.value("save", false);
   request.number = text_or(body, "number");
   request.value = asked_number(body, "value");
+  request.patch = text_or(body, "patch");
+  request.x_m = asked_number(body, "x_m");
+  request.y_m = asked_number(body, "y_m");
   request.over_s = asked_number(body, "over_s");
   for (const TextureEnds ends : {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop})
     if (text_or(body, "ends") == to_string(ends)) request.ends = ends;
@@ -221,6 +237,9 @@ std::string control_request_line(const ControlRequest& request) {
   if (request.save) body["save"] = true;
   put_text(body, "number", request.number);
   if (request.value) body["value"] = *request.value;
+  put_text(body, "patch", request.patch);
+  if (request.x_m) body["x_m"] = *request.x_m;
+  if (request.y_m) body["y_m"] = *request.y_m;
   if (request.over_s) body["over_s"] = *request.over_s;
   return line_of(body);
 }

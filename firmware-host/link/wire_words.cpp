@@ -104,6 +104,8 @@ std::string_view to_string(MessageType type) {
       {MessageType::force_limits, "force_limits"},
       {MessageType::scene_part, "scene_part"},
       {MessageType::set, "set"},
+      {MessageType::move, "move"},
+      {MessageType::raise, "raise"},
       {MessageType::change, "change"},
   };
   for (const auto& [key, word] : kWords)

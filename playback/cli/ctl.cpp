@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -21,6 +20,7 @@
 #include "playback/cli/verbs.hpp"
 #include "playback/cli/watched_play.hpp"
 #include "playback/control/control_connection.hpp"
+#include "playback/player/scene_command.hpp"
 
 namespace tacto::playback {
 
@@ -35,13 +35,14 @@ namespace {
 
 constexpr const char* kUsualSocket = "/run/tactographd/control";
 constexpr int kEventMs = 500;
-constexpr std::array<std::string_view, 11> kCtlActions = {
-    "hello", "load", "arm", "play", "stop", "disarm", "gain", "set", "status", "watch", "top"};
+constexpr std::array<std::string_view, 13> kCtlActions = {"hello",  "load",  "arm", "play", "stop",
+                                                          "disarm", "gain",  "set", "move", "raise",
+                                                          "status", "watch", "top"};
 
 struct CtlOptions {
-  std::string socket = kUsualSocket, action, what;
+  std::string socket = kUsualSocket, action, what, value;  // value: of set, move
   std::optional<schema::TextureEnds> ends;
-  std::optional<double> value, over_s;  // of set
+  std::optional<double> over_s;  // of set, move
   std::optional<double> at_m, fade_s;
   std::optional<schema::Gain> gain;
   std::optional<double> time_s;
@@ -80,14 +81,20 @@ Result<void> check_taken(const CtlOptions& o) {
     return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' does not accept '{}'", o.action, what),
                         "command line", who);
   };
-  const bool load = o.action == "load", gain = o.action == "gain", set = o.action == "set";
-  if (!o.what.empty() && !load && !gain && !set)
-    return refuse(o.what, "only load, gain and set have an argument");
-  if (o.value && !set) return refuse(fmt::format("{:g}", *o.value), "only set has a value");
-  if (o.over_s && !set) return refuse("--over", "only set accepts it");
-  if (set && !(o.value && std::isfinite(*o.value)))
-    return schema::fail(schema::ErrorKind::usage, "set has no value", "command line",
-                        "write 'ctl set PATCH.LAYER.MEMBER VALUE', with a plain number");
+  const bool load = o.action == "load", gain = o.action == "gain", set = o.action == "set",
+             move = o.action == "move", raise = o.action == "raise";
+  if (!o.what.empty() && !load && !gain && !set && !move && !raise)
+    return refuse(o.what, "only load, gain, set, move and raise have an argument");
+  if (!o.value.empty() && !set && !move) return refuse(o.value, "only set and move have a value");
+  if (o.over_s && !set && !move) return refuse("--over", "only set and move accept it");
+  const auto missing = [&](const char* what, const char* form) {
+    return schema::fail(schema::ErrorKind::usage, fmt::format("{} has no {}", o.action, what), "command line",
+                        form);
+  };
+  if (set && o.value.empty())
+    return missing("value", "write 'ctl set PATCH.LAYER.MEMBER VALUE', with a plain number");
+  if (move && o.value.empty()) return missing("place", "write 'ctl move PATCH X,Y', as in 10mm,20mm");
+  if (raise && o.what.empty()) return missing("patch", "write 'ctl raise PATCH'");
   for (const auto& [option, given] : {std::pair{"--at", o.at_m.has_value()},
                                       {"--gain", o.gain.has_value()},
                                       {"--ends", o.ends.has_value()},
@@ -116,9 +123,19 @@ Result<ControlRequest> request_of(const CtlOptions& o) {
   request.playback = o.choices;
   request.ends = o.ends;
   request.save = o.save;
-  if (request.verb == ControlVerb::set) request.number = o.what;
-  request.value = o.value;
   request.over_s = o.over_s;
+  if (request.verb == ControlVerb::set) {
+    const auto value = number_in_text(o.value);
+    TACTO_TRY(value);
+    request.number = o.what;
+    request.value = *value;
+  }
+  if (request.verb == ControlVerb::move || request.verb == ControlVerb::raise) request.patch = o.what;
+  if (request.verb == ControlVerb::move) {
+    const auto place = parse_place(o.value);
+    TACTO_TRY(place);
+    request.x_m = place->x_m, request.y_m = place->y_m;
+  }
   if (request.verb != ControlVerb::gain) return request;
   const auto gain = schema::parse_gain(o.what);
   TACTO_TRY(gain);
@@ -215,12 +232,16 @@ cli::Action declare_ctl(CLI::App& app) {
            const std::vector<std::string> words(kCtlActions.begin(), kCtlActions.end());
            o.action = kCtlActions[cli::choose("action", word, words)];
          },
-         "load, arm, play, stop, disarm, gain, set, status; watch: events as lines of JSON; top: live "
-         "figures")
+         "load, arm, play, stop, disarm, gain, set, move, raise, status; watch: events as lines of JSON; "
+         "top: live figures")
       ->type_name(cli::words_of({kCtlActions.begin(), kCtlActions.end()}))
       ->required();
-  app.add_option("what", o.what, "load: a texture or scene; gain: as --gain; set: PATCH.LAYER.MEMBER");
-  app.add_option("value", o.value, "set: within the member's slider, in the unit of its name");
+  app.add_option("what", o.what,
+                 "load: a texture or scene; gain: as --gain; set: PATCH.LAYER.MEMBER; move, raise: PATCH");
+  app.add_option(
+      "value", o.value,
+      "set: within the member's slider, in the unit of its name; move: the place X,Y of the patch's "
+      "centre, as in 10mm,20mm");
   app.add_option("--socket", o.socket, "Socket of the daemon")->capture_default_str();
   cli::add_quantity(app, "--at", o.at_m, Dimension::length,
                     "load of a texture: encoder position of its position 0");
@@ -228,7 +249,8 @@ cli::Action declare_ctl(CLI::App& app) {
   declare_ends(app, o.ends, "load: ");
   cli::add_quantity(app, "--fade", o.fade_s, Dimension::time,
                     "load during playback: duration of the change of texture; default: 50ms");
-  cli::add_quantity(app, "--over", o.over_s, Dimension::time, "set: duration of the change; default: 10ms");
+  cli::add_quantity(app, "--over", o.over_s, Dimension::time,
+                    "set, move: duration of the change; default: 10ms");
   declare_choices(app, o.choices, "load: ");
   app.add_flag("--save", o.save,
                "gain: also store it in the file of the scene or texture, with user and time");
@@ -241,13 +263,15 @@ cli::Action declare_ctl(CLI::App& app) {
 
 }  // namespace
 
-const cli::Verb kCtlVerb{"ctl", "Control the daemon: load, arm, play, stop, gain, set, status, watch, top",
-                         "tactograph ctl load oak --at 10mm\n"
-                         "  tactograph ctl play --watch\n"
-                         "  tactograph ctl arm && tactograph ctl play\n"
-                         "  tactograph ctl gain 50%\n"
-                         "  tactograph ctl load cork --fade 200ms\n"
-                         "  tactograph ctl set bench.spring.stiffness_n_per_m 300",
-                         declare_ctl};
+const cli::Verb kCtlVerb{
+    "ctl", "Control the daemon: load, arm, play, stop, gain, set, move, raise, status, watch, top",
+    "tactograph ctl load oak --at 10mm\n"
+    "  tactograph ctl play --watch\n"
+    "  tactograph ctl arm && tactograph ctl play\n"
+    "  tactograph ctl gain 50%\n"
+    "  tactograph ctl load cork --fade 200ms\n"
+    "  tactograph ctl set bench.spring.stiffness_n_per_m 300\n"
+    "  tactograph ctl move bench 10mm,20mm && tactograph ctl raise bench",
+    declare_ctl};
 
 }  // namespace tacto::playback

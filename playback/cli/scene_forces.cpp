@@ -140,7 +140,7 @@ Report report_of(const ForceRendering& asked, const schema::Device& device, cons
 // mean of several runs.
 double tick_cost_s(const core::SceneView& scene, const core::ForceSetup& setup, const schema::Patch& patch) {
   core::SceneKernel kernel;
-  std::vector<float> live(scene.number_count);
+  std::vector<float> live(scene.live_words());
   kernel.set(scene, setup, live.data());
   double shortest_s = INFINITY;
   for (int run = 0; run < kCostRuns; ++run) {
@@ -296,7 +296,7 @@ Result<Report> explain_forces(const std::string& scene, const std::string& devic
   add_fit(report, on->scene, device_bytes, tick_s, rate);
   report.add("layers", rows_of_layers(*on));
   report.add("block_bytes", on->scene.bytes())
-      .add("live_bytes", view.number_count * sizeof(float))
+      .add("live_bytes", view.live_words() * sizeof(float))
       .add("kernel_bytes", sizeof(core::SceneKernel))
       .add("stiffness_limit_n_per_m", on->scene.stiffness_limit_n_per_m);
   report.add("tick_s", tick_s).add("tick_of_period_percent", 100 * tick_s * rate);

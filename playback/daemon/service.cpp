@@ -383,15 +383,43 @@ Result<ControlFields> Service::gain(const ControlRequest& request) {
 }
 
 Result<ControlFields> Service::set(const ControlRequest& request) {
-  if (!player_->forces()) return fail(ErrorKind::usage, "no scene of forces is loaded", {}, "load one first");
-  const double over_s = request.over_s.value_or(kUsualSetRampS);
+  TACTO_TRY(require_forces());
+  const double over_s = request.over_s.value_or(kUsualRampS);
   const auto command = set_command(request.number, *request.value, over_s, player_->forces()->scene);
   TACTO_TRY(command);
-  TACTO_TRY(player_->set(*command));
-  ControlFields fields{{"number", request.number}, {"value", *request.value}, {"over_s", over_s}};
-  ControlFields event = fields;
-  event.emplace_back("device_s", 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns));
-  publish_("set", event);
+  return change_scene(*command, "set",
+                      {{"number", request.number}, {"value", *request.value}, {"over_s", over_s}});
+}
+
+Result<ControlFields> Service::move(const ControlRequest& request) {
+  TACTO_TRY(require_forces());
+  const double over_s = request.over_s.value_or(kUsualRampS);
+  const auto command = move_command(request.patch, {*request.x_m, *request.y_m}, over_s, *player_->forces());
+  TACTO_TRY(command);
+  return change_scene(
+      *command, "move",
+      {{"patch", request.patch}, {"x_m", *request.x_m}, {"y_m", *request.y_m}, {"over_s", over_s}});
+}
+
+Result<ControlFields> Service::raise(const ControlRequest& request) {
+  TACTO_TRY(require_forces());
+  const auto command = raise_command(request.patch, player_->forces()->scene);
+  TACTO_TRY(command);
+  return change_scene(*command, "raise", {{"patch", request.patch}});
+}
+
+Result<void> Service::require_forces() const {
+  if (player_->forces()) return {};
+  return fail(ErrorKind::usage, "no scene of forces is loaded", {}, "load one first");
+}
+
+Result<ControlFields> Service::change_scene(const SceneCommand& command, const char* event,
+                                            ControlFields fields) {
+  TACTO_TRY(player_->change_scene(command));
+  ControlFields published = fields;
+  published.emplace_back("device_s", 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns));
+  publish_(event, published);
+  if (!command.note.empty()) fields.emplace_back("note_1", command.note);
   return fields;
 }
 
@@ -476,6 +504,10 @@ std::optional<Result<ControlFields>> Service::handle(const ControlRequest& reque
       return gain(request);
     case ControlVerb::set:
       return set(request);
+    case ControlVerb::move:
+      return move(request);
+    case ControlVerb::raise:
+      return raise(request);
     case ControlVerb::status:
     case ControlVerb::watch:
       return status();

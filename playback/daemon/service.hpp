@@ -58,6 +58,11 @@ class Service {
   schema::Result<schema::ControlFields> arm(const schema::ControlRequest& request);
   schema::Result<schema::ControlFields> gain(const schema::ControlRequest& request);
   schema::Result<schema::ControlFields> set(const schema::ControlRequest& request);
+  schema::Result<schema::ControlFields> move(const schema::ControlRequest& request);
+  schema::Result<schema::ControlFields> raise(const schema::ControlRequest& request);
+  schema::Result<void> require_forces() const;
+  schema::Result<schema::ControlFields> change_scene(const SceneCommand& command, const char* event,
+                                                     schema::ControlFields fields);
   schema::Result<void> save_gain(double factor, const std::string& who);
   schema::Result<void> save_scene_gain(double factor, const std::string& who);
   void report_losses(const RecorderCounts& counts, bool last);

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include "data-schema/files/files.hpp"
 #include "firmware-host/link/wire_device.hpp"
@@ -70,7 +72,7 @@ constexpr std::size_t kMostCommandsAtOnce = 8;
 Result<void> follow_script(Player& player, double played_s, std::span<const TimedSceneCommand>& script) {
   for (std::size_t i = 0; i < kMostCommandsAtOnce; ++i) {
     if (script.empty() || script.front().time_s > played_s) return {};
-    TACTO_TRY(player.set(script.front().command));
+    TACTO_TRY(player.change_scene(script.front().command));
     script = script.subspan(1);
   }
   return {};
@@ -178,16 +180,26 @@ HostLoopFigures looped_by(const HostLoop& loop) {
   return {loop.latency(), loop.delay_s(), loop.status().missed_ticks};
 }
 
-Result<std::vector<TimedSceneCommand>> script_for(const std::string& file, const PreparedScene& scene,
+Result<std::vector<TimedSceneCommand>> script_for(const std::string& file, const ForceProgram& forces,
                                                   double time_s) {
   if (file.empty()) return std::vector<TimedSceneCommand>();
-  auto script = read_scene_script(file, scene);
+  auto script = read_scene_script(file, forces);
   TACTO_TRY(script);
   if (script->back().time_s < time_s) return script;
   return fail(ErrorKind::malformed,
               fmt::format("its last command is at {:g} s, but the playback ends at {:g} s",
                           script->back().time_s, time_s),
               file, "play longer, with --time");
+}
+
+// Of each patch the first one.
+void note_moves(const std::vector<TimedSceneCommand>& script, std::vector<std::string>& notes) {
+  std::set<std::uint16_t> noted;
+  for (const auto& [time_s, command] : script) {
+    const auto* const move = std::get_if<wire::Move>(&command.message);
+    if (move != nullptr && !command.note.empty() && noted.insert(move->patch).second)
+      notes.push_back(fmt::format("from {:g} s on {}", time_s, command.note));
+  }
 }
 
 }  // namespace
@@ -245,8 +257,9 @@ Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std:
   PlayOutcome outcome;
   outcome.notes = program->notes;
   outcome.asked_s = options.time_s.value_or(device->path_s.value_or(kUsualS));
-  const auto script = script_for(options.script, program->scene, outcome.asked_s);
+  const auto script = script_for(options.script, *program, outcome.asked_s);
   TACTO_TRY(script);
+  note_moves(*script, outcome.notes);
   TACTO_TRY((*player)->load(std::move(*program)));
   const Playing playing{device->player, {}, **player, *script};
   TACTO_TRY(play_through(playing, options.session, stop_asked, progress, outcome));

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <utility>
+#include <variant>
 
 #include "firmware-host/core/firmware/drive_supervisor.hpp"
 #include "firmware-host/link/wire_device.hpp"
@@ -307,9 +308,9 @@ Result<void> Player::gain(double gain) {
   return done;
 }
 
-Result<void> Player::set(const SceneCommand& command) {
-  TACTO_TRY(require(forces_ && runs(state_), "set", "arm a scene of forces first"));
-  const auto done = steer(command.set);
+Result<void> Player::change_scene(const SceneCommand& command) {
+  TACTO_TRY(require(forces_ && runs(state_), "change a scene of forces", "arm one first"));
+  const auto done = std::visit([&](const auto& message) { return steer(message); }, command.message);
   if (done) recorder_->event({view_.expected(), steady_ns(), command.text});
   return done;
 }

@@ -96,8 +96,8 @@ class Player {
   /// Errors: usage, for a gain that is not finite; unsuitable, for one at which the tray would exceed its
   /// limit, with the largest that fits, and for forces.
   schema::Result<void> may_gain(double gain) const;
-  /// Changes a number of the forces that are played. Errors: usage, in idle and for a drive; device.
-  schema::Result<void> set(const SceneCommand& command);
+  /// Changes the scene of forces that is played. Errors: usage, in idle and for a drive; device.
+  schema::Result<void> change_scene(const SceneCommand& command);
   /// Ramps to zero, waits for idle (a second at most), and closes the session; `why` as in stop(). Errors:
   /// device; cannot_write.
   schema::Result<void> disarm(const std::string& why = {});

@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <optional>
 #include <span>
 
 #include "data-schema/base/column_unit.hpp"
 #include "data-schema/base/nearest_word.hpp"
 #include "data-schema/files/files.hpp"
+#include "playback/prepare/scene/scene_device.hpp"
 
 namespace tacto::playback {
 
@@ -24,18 +24,14 @@ using schema::Result;
 namespace {
 
 constexpr double kLongestRampS = 10;  // limit of the wire
-constexpr std::string_view kForm = "write 'set PATCH.LAYER.MEMBER VALUE' or '... VALUE over 10ms'";
+constexpr std::string_view kForm =
+    "write 'set PATCH.LAYER.MEMBER VALUE', 'move PATCH X,Y' or 'raise PATCH'; 'set' and 'move' may end in "
+    "'over 10ms'";
+constexpr std::string_view kPlaceForm = "write the place of its centre with units, as in 10mm,20mm";
 constexpr std::string_view kHeaderForm =
     "write a header line such as 'time_s,command', then one row per command";
 
 using Words = std::vector<std::string>;
-
-std::optional<double> number_in_text(std::string_view text) {
-  double value = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = fault == std::errc() && end == text.data() + text.size();
-  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
 
 Words words_in(std::string_view text, std::string_view separators) {
   Words words;
@@ -54,6 +50,26 @@ Result<std::size_t> place_of(std::string_view kind, const std::string& name, con
   return fail(ErrorKind::usage,
               fmt::format("there is no {} '{}'{}", kind, name, schema::did_you_mean(name, names)), {},
               fmt::format("it has: {}", fmt::join(names, ", ")));
+}
+
+Result<std::size_t> patch_place(const std::string& name, const PreparedScene& scene) {
+  Words patches;
+  for (const schema::Patch& patch : scene.patches) patches.push_back(patch.name);
+  return place_of("patch", name, patches);
+}
+
+Result<void> check_ramp(double ramp_s) {
+  if (ramp_s >= 0 && ramp_s <= kLongestRampS) return {};
+  return fail(ErrorKind::usage, fmt::format("the ramp is {:g} s", ramp_s), {}, "use 0 s to 10 s");
+}
+
+// From its place in the block, along one axis.
+Result<std::int32_t> counts_to(double to_m, double from_m, double step_m) {
+  const double counts = std::round((to_m - from_m) / step_m);
+  if (std::abs(counts) <= core::kFarthestMove) return static_cast<std::int32_t>(counts);
+  return fail(ErrorKind::usage, fmt::format("{:g} m is too far to move a patch", to_m), {},
+              fmt::format("choose a place within {:g} m of its place in the scene, {:g} m",
+                          step_m * core::kFarthestMove, from_m));
 }
 
 Result<std::size_t> layer_place(const schema::Patch& patch, const std::string& name) {
@@ -80,9 +96,7 @@ Result<void> check_value(const schema::NamedLayerNumber& member, double value) {
 
 // The layer's index in the block, and the number's index in the layer.
 Result<wire::Set> target_of(const Words& path, double value, const PreparedScene& scene) {
-  Words patches;
-  for (const schema::Patch& patch : scene.patches) patches.push_back(patch.name);
-  const auto at_patch = place_of("patch", path[0], patches);
+  const auto at_patch = patch_place(path[0], scene);
   TACTO_TRY(at_patch);
   const schema::Patch& patch = scene.patches[*at_patch];
   const auto at_layer = layer_place(patch, path[1]);
@@ -155,28 +169,75 @@ Result<SceneCommand> set_command(const std::string& number, double value, double
                 "name it as PATCH.LAYER.MEMBER");
   auto set = target_of(path, value, scene);
   TACTO_TRY(set);
-  if (!(ramp_s >= 0 && ramp_s <= kLongestRampS))
-    return fail(ErrorKind::usage, fmt::format("the ramp is {:g} s", ramp_s), {}, "use 0 s to 10 s");
+  TACTO_TRY(check_ramp(ramp_s));
   set->ramp_s = static_cast<float>(ramp_s);
-  return SceneCommand{*set, fmt::format("set {} {} over {} s", number, value, ramp_s)};
+  return SceneCommand{*set, fmt::format("set {} {} over {} s", number, value, ramp_s), {}};
 }
 
-Result<SceneCommand> parse_scene_command(std::string_view text, const PreparedScene& scene) {
+Result<double> number_in_text(std::string_view text) {
+  double value = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (fault == std::errc() && end == text.data() + text.size() && std::isfinite(value)) return value;
+  return fail(ErrorKind::usage, fmt::format("'{}' is not a number", text), {},
+              "write a plain number; its unit is in the name of the member");
+}
+
+Result<PatchPlace> parse_place(const std::string& text) {
+  const Words words = words_in(text, ",");
+  if (words.size() != 2)
+    return fail(ErrorKind::usage, fmt::format("'{}' is not a place", text), {}, std::string(kPlaceForm));
+  const auto x_m = schema::parse_quantity(words[0], Dimension::length);
+  TACTO_TRY(x_m);
+  const auto y_m = schema::parse_quantity(words[1], Dimension::length);
+  TACTO_TRY(y_m);
+  return PatchPlace{*x_m, *y_m};
+}
+
+Result<SceneCommand> move_command(const std::string& patch, const PatchPlace& to, double ramp_s,
+                                  const ForceProgram& forces) {
+  const PreparedScene& scene = forces.scene;
+  const auto at = patch_place(patch, scene);
+  TACTO_TRY(at);
+  schema::Patch moved = scene.patches[*at];
+  const auto x = counts_to(to.x_m, moved.x_m, scene.steps.x_m),
+             y = counts_to(to.y_m, moved.y_m, scene.steps.y_m);
+  TACTO_TRY(x);
+  TACTO_TRY(y);
+  TACTO_TRY(check_ramp(ramp_s));
+  moved.x_m = to.x_m, moved.y_m = to.y_m;
+  schema::Device device;
+  device.axes = forces.session.forces->axes;
+  return SceneCommand{wire::Move{static_cast<std::uint16_t>(*at), 0, *x, *y, static_cast<float>(ramp_s)},
+                      fmt::format("move {} {} m,{} m over {} s", patch, to.x_m, to.y_m, ramp_s),
+                      note_of_travel(moved, device)};
+}
+
+Result<SceneCommand> raise_command(const std::string& patch, const PreparedScene& scene) {
+  const auto at = patch_place(patch, scene);
+  TACTO_TRY(at);
+  return SceneCommand{wire::Raise{static_cast<std::uint16_t>(*at)}, "raise " + patch, {}};
+}
+
+Result<SceneCommand> parse_scene_command(std::string_view text, const ForceProgram& forces) {
   const Words words = words_in(text, " \t");
+  if (words.size() == 2 && words[0] == "raise") return raise_command(words[1], forces.scene);
   const bool over = words.size() == 5 && words[3] == "over";
-  if ((words.size() != 3 && !over) || words[0] != "set")
+  if ((words.size() != 3 && !over) || (words[0] != "set" && words[0] != "move"))
     return fail(ErrorKind::usage, fmt::format("'{}' is not a command", text), {}, std::string(kForm));
-  const auto value = number_in_text(words[2]);
-  if (!value)
-    return fail(ErrorKind::usage, fmt::format("'{}' is not a number", words[2]), {},
-                "write a plain number; its unit is in the name of the member");
-  const auto ramp_s = over ? schema::parse_quantity(words[4], Dimension::time) : kUsualSetRampS;
+  const auto ramp_s = over ? schema::parse_quantity(words[4], Dimension::time) : kUsualRampS;
   TACTO_TRY(ramp_s);
-  return set_command(words[1], *value, *ramp_s, scene);
+  if (words[0] == "move") {
+    const auto place = parse_place(words[2]);
+    TACTO_TRY(place);
+    return move_command(words[1], *place, *ramp_s, forces);
+  }
+  const auto value = number_in_text(words[2]);
+  TACTO_TRY(value);
+  return set_command(words[1], *value, *ramp_s, forces.scene);
 }
 
 Result<std::vector<TimedSceneCommand>> read_scene_script(const std::string& file,
-                                                         const PreparedScene& scene) {
+                                                         const ForceProgram& forces) {
   const auto text = schema::read_file(file);
   TACTO_TRY(text);
   const std::vector<ScriptLine> lines = lines_of_script(*text, file);
@@ -188,7 +249,7 @@ Result<std::vector<TimedSceneCommand>> read_scene_script(const std::string& file
   for (const ScriptLine& line : std::span(lines).subspan(1)) {
     const auto time_s = time_in(line, *unit_s, script.empty() ? -1 : script.back().time_s);
     TACTO_TRY(time_s);
-    auto command = parse_scene_command(line.command, scene);
+    auto command = parse_scene_command(line.command, forces);
     if (!command) return fail(ErrorKind::malformed, command.error().what, line.where, command.error().remedy);
     script.push_back({*time_s, std::move(*command)});
   }

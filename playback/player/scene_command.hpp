@@ -4,19 +4,32 @@
 
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "firmware-host/core/wire/host_messages.hpp"
-#include "playback/prepare/scene/prepared_scene.hpp"
+#include "playback/player/force_program.hpp"
 
 namespace tacto::playback {
 
-inline constexpr double kUsualSetRampS = 0.01;
+inline constexpr double kUsualRampS = 0.01;  ///< of a number and of a place
 
 struct SceneCommand {
-  wire::Set set;
-  std::string text;  ///< for the session
+  std::variant<wire::Set, wire::Move, wire::Raise> message;
+  std::string text;       ///< for the session
+  std::string note = {};  ///< a warning, or empty
 };
+
+/// A plain number. Errors: usage, also for one that is not finite.
+schema::Result<double> number_in_text(std::string_view text);
+
+/// Of a patch's centre.
+struct PatchPlace {
+  double x_m = 0, y_m = 0;
+};
+
+/// "10mm,20mm". Errors: usage; as parse_quantity.
+schema::Result<PatchPlace> parse_place(const std::string& text);
 
 /// Sets a number, PATCH.LAYER.MEMBER, to a value in the unit that ends the member's name; LAYER is its index
 /// in the patch, or its type if no other layer there has this type. Errors: usage, without a place: an
@@ -25,8 +38,18 @@ struct SceneCommand {
 schema::Result<SceneCommand> set_command(const std::string& number, double value, double ramp_s,
                                          const PreparedScene& scene);
 
-/// "set PATCH.LAYER.MEMBER VALUE [over TIME]". Errors: as set_command; usage, for another command.
-schema::Result<SceneCommand> parse_scene_command(std::string_view text, const PreparedScene& scene);
+/// Moves a patch to the whole count of each axis that is nearest to the place. Notes if a part of it is then
+/// outside the travel of the device. Errors: usage: an unknown patch (with the nearest name), a place farther
+/// than core::kFarthestMove, a ramp as in set_command.
+schema::Result<SceneCommand> move_command(const std::string& patch, const PatchPlace& to, double ramp_s,
+                                          const ForceProgram& forces);
+
+/// Makes a patch the topmost one. Errors: usage: an unknown patch.
+schema::Result<SceneCommand> raise_command(const std::string& patch, const PreparedScene& scene);
+
+/// "set PATCH.LAYER.MEMBER VALUE [over TIME]", "move PATCH X,Y [over TIME]", "raise PATCH". Errors: as these
+/// commands; usage, for another command.
+schema::Result<SceneCommand> parse_scene_command(std::string_view text, const ForceProgram& forces);
 
 struct TimedSceneCommand {
   double time_s = 0;  ///< since play
@@ -36,6 +59,6 @@ struct TimedSceneCommand {
 /// A table with the columns time (with its unit, as in time_s) and command. Errors: as read_file; malformed,
 /// with the line: times that do not increase or are below 0; as parse_scene_command.
 schema::Result<std::vector<TimedSceneCommand>> read_scene_script(const std::string& file,
-                                                                 const PreparedScene& scene);
+                                                                 const ForceProgram& forces);
 
 }  // namespace tacto::playback

@@ -71,7 +71,7 @@ class Motion {
 void run_kernel(PlaneRendering& rendering, const PreparedScene& scene, const core::ForceSetup& setup,
                 const Device& device, Motion motion) {
   core::SceneKernel kernel;
-  std::vector<float> live(scene.view().number_count);
+  std::vector<float> live(scene.view().live_words());
   kernel.set(scene.view(), setup, live.data());
   ExactScene exact(scene, device, rendering.rate_hz);
   std::vector<std::int32_t> counts(device.axes.size());

@@ -156,6 +156,22 @@ def a_scene_of_forces_is_played_and_set():
         refused(client, 1, request="load", file="bench.scene.json")
         refused(client, 3, request="set", number=number)
         assert "'spring'" in tacto.run("ctl", "set", "bench.sprng.stiffness_n_per_m", "20", "--socket", "control", code=2)[1]
+        moved = client.must(request="move", patch="bench", x_m=0.01, y_m=0)
+        assert moved["over_s"] == 0.01 and "note_1" not in moved and watcher.next_event("move")["x_m"] == 0.01, moved
+        steady_force(client, -0.6)
+        tacto.run("ctl", "move", "bench", "-10mm,0mm", "--over", "0s", "--socket", "control")
+        assert (watcher.next_event("move")["over_s"], client.must(request="raise", patch="bench")["patch"], watcher.next_event("raise")["patch"]) == (0, "bench", "bench")
+        steady_force(client, -1)
+        assert "outside the travel" in client.must(request="move", patch="bench", x_m=0.15, y_m=0)["note_1"]
+        steady_force(client, 0)
+        tacto.run("ctl", "raise", "bench", "--socket", "control")
+        refused(client, 1, request="raise", patch="bnech")
+        refused(client, 3, request="move", patch="bench", x_m=0)
+        refused(client, 3, request="move", x_m=0, y_m=0)
+        refused(client, 3, request="raise", patch="bench", over_s=0.1)
+        for wrong, word in ((("move", "bnech", "0mm,0mm"), "'bench'"), (("move", "bench", "10mm"), "10mm,20mm"), (("move", "bench", "1,2"), "mm"),
+                            (("move", "bench"), "X,Y"), (("raise",), "PATCH"), (("raise", "bench", "3"), "value"), (("raise", "bench", "--over", "1s"), "--over")):
+            assert word in tacto.run("ctl", *wrong, "--socket", "control", code=2)[1], wrong
         client.must(request="stop")
         wait_for_state(client, "armed")
         client.must(request="disarm")
@@ -163,6 +179,7 @@ def a_scene_of_forces_is_played_and_set():
         assert [(event["number"], event["value"], event["over_s"]) for event in told] == [(number, 100, 0.01), (number, 20, 0), ("bench.0.centre_x_m", -0.01, 0.01)], told
     assert tacto.run_json("replay", session)["same_to_the_bit"] is True
     events = [event["event"] for event in tacto.run_json("session", session)["events"]]
+    assert {"move bench 0.01 m,0 m over 0.01 s", "move bench -0.01 m,0 m over 0 s", "raise bench"} <= set(events), events
     assert f"set {number} 100 over 0.01 s" in events and f"set {number} 20 over 0 s" in events, events
 
 

@@ -61,7 +61,7 @@ TEST(FirmwareScene, AxesAreDescribedAfterTheWelcome) {
   ASSERT_EQ(bench.axes.size(), 1U);
   EXPECT_EQ(bench.axes[0].count, 2);
   EXPECT_EQ(bench.axes[0].axes[1].along, wire::AxisAlong::y);
-  EXPECT_EQ(bench.axes[0].scene_bytes, 12288U);  // 4096 samples less 1024 numbers
+  EXPECT_EQ(bench.axes[0].scene_bytes, 10240U);  // 4096 words less 256 x (3 numbers + 3)
   EXPECT_NE(bench.welcomes[0].features & wire::kFeatureForces, 0U);
   EXPECT_EQ(bench.order[1], wire::MessageType::axes);
   EXPECT_EQ(bench.channels.size(), 2U);
@@ -120,6 +120,52 @@ TEST(FirmwareScene, SetRampsLinearlyFromTheTickThatCountsIt) {
   bench.expect_ok(bench.code(wire::Play{}));
   bench.run(30);
   EXPECT_NEAR(bench.board.force_n[0], -1, 1e-6);
+}
+
+TEST(FirmwareScene, MoveStepsByWholeCountsFromTheTickThatCountsIt) {
+  SceneBench bench;
+  bench.play_spring(100);
+  bench.board.counts[0] = 1000;
+  bench.run(30);
+  bench.axis_ticks.clear();
+  bench.expect_ok(bench.code(wire::Move{0, 0, -407, 93, 0.01F}));  // 10 ticks
+  bench.run(30);
+  std::size_t first = 0;
+  while (bench.axis_ticks[first].flags >> wire::kTickSteeredShift < 2) ++first;  // play, move
+  for (int k = 1; k <= 12; ++k) {
+    const int part = std::min(k, 10), x = 1000 + 407 * part / 10, y = -(93 * part / 10);
+    const wire::AxisTick& tick = bench.axis_ticks[first + static_cast<std::size_t>(k) - 1];
+    EXPECT_FLOAT_EQ(tick.force_n[0], -100 * (static_cast<float>(x) * 1e-5F)) << k;
+    EXPECT_FLOAT_EQ(tick.force_n[1], -100 * (static_cast<float>(y) * 1e-5F)) << k;
+  }
+  // A second move begins where the patch is, and a third one of no time is complete in its first tick.
+  bench.expect_ok(bench.code(wire::Move{0, 0, 0, 0, 0.01F}));
+  bench.run(5);
+  bench.expect_ok(bench.code(wire::Move{0, 0, 500, 0, 0}));
+  bench.run(20);
+  EXPECT_FLOAT_EQ(bench.board.force_n[0], -100 * (500 * 1e-5F));
+  constexpr std::int32_t kFar = kFarthestMove;
+  bench.expect_ok(bench.code(wire::Move{0, 0, -kFar, kFar, 0}));
+  bench.run(20);
+  bench.expect_ok(bench.code(wire::Move{0, 0, kFar, -kFar, 0}));
+  bench.run(20);
+  EXPECT_FLOAT_EQ(bench.board.force_n[0], 0);                               // the patch is elsewhere
+  EXPECT_EQ(bench.code(wire::Move{1, 0, 0, 0, 0}), AnswerCode::bad_value);  // no such patch
+  EXPECT_EQ(bench.code(wire::Move{0, 0, kFar + 1, 0, 0}), AnswerCode::bad_value);
+  EXPECT_EQ(bench.code(wire::Move{0, 0, 0, -kFar - 1, 0}), AnswerCode::bad_value);
+  EXPECT_EQ(bench.code(wire::Move{0, 0, 0, 0, 11}), AnswerCode::bad_value);
+  EXPECT_EQ(bench.code(wire::Move{0, 0, 0, 0, std::nanf("")}), AnswerCode::bad_value);
+  EXPECT_EQ(bench.code(wire::Raise{1}), AnswerCode::bad_value);
+  bench.expect_ok(bench.code(wire::Raise{0}));
+  bench.expect_ok(bench.code(wire::Disarm{}));
+  bench.run(20);
+  EXPECT_EQ(bench.code(wire::Move{0, 0, 0, 0, 0}), AnswerCode::wrong_state);
+  EXPECT_EQ(bench.code(wire::Raise{0}), AnswerCode::wrong_state);
+  // Armed again, the patch is at its place.
+  bench.expect_ok(bench.code(wire::Arm{wire::DriveSource::scene, kKilohertz}));
+  bench.expect_ok(bench.code(wire::Play{}));
+  bench.run(30);
+  EXPECT_FLOAT_EQ(bench.board.force_n[0], -100 * (1000 * 1e-5F));
 }
 
 TEST(FirmwareScene, ASilentHostAnOpenInputAndAJumpEndTheForces) {

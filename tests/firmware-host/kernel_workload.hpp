@@ -216,7 +216,7 @@ class SceneWorkload {
   WorkloadRandom next_{1990};
   uint32_t flags_ = 0, ticks_ = 0;
   int32_t counts_[2] = {}, speed_[2] = {};
-  float live_[13];
+  float live_[13 + 3 * core::kPatchWords];
   core::SceneKernel kernel_;
 };
 

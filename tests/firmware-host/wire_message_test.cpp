@@ -223,6 +223,8 @@ TEST(WireDocument, HostFramesAreItsBytes) {
             frames["force_limits"]);
   EXPECT_EQ(hex_of(example_part(), 25), frames["scene_part"]);
   EXPECT_EQ(hex_of(Set{3, 1, 250, 0.5F}, 26), frames["set"]);
+  EXPECT_EQ(hex_of(Move{3, 0, -1000, 2500, 0.5F}, 27), frames["move"]);
+  EXPECT_EQ(hex_of(Raise{3}, 28), frames["raise"]);
 }
 
 TEST(WireDocument, DeviceFramesAreItsBytes) {

@@ -20,8 +20,8 @@ using AllMessages =
                wire::Play, wire::Stop, wire::Disarm, wire::Drive, wire::Heartbeat, wire::Reset, wire::Welcome,
                wire::ProfileLevels, wire::Taps, wire::Tracking, wire::Energy, wire::Contact, wire::Change,
                wire::Hysteresis, wire::Channel, wire::Note, wire::Answer, wire::Samples, wire::Ticks,
-               wire::Pulse, wire::Fault, wire::ForceLimits, wire::ScenePart, wire::Set, wire::Axes,
-               wire::AxisTicks>;
+               wire::Pulse, wire::Fault, wire::ForceLimits, wire::ScenePart, wire::Set, wire::Move,
+               wire::Raise, wire::Axes, wire::AxisTicks>;
 
 class RandomFields {
  public:

@@ -109,7 +109,8 @@ CONVERSATIONS = {
     "host_drive": HELLO + LIMITS + arm(1) + PLAY + action_frame(0x0F, struct.pack("<H50f", 50, *[2.0] * 50)) + TICKS +
                   bytes([3]) + TICKS + DISARM + TICKS,
     "scene": HELLO + FORCE_LIMITS + action_frame(0x1A, struct.pack("<IIH", len(SPRING_BLOCK), 0, len(SPRING_BLOCK)) + SPRING_BLOCK) + arm(3) + PLAY +
-             TICKS + COUNTS + TICKS + action_frame(0x1B, struct.pack("<HHff", 0, 0, 100, 0.01)) + TICKS + bytes([3]) + TICKS + DISARM + TICKS,
+             TICKS + COUNTS + TICKS + action_frame(0x1B, struct.pack("<HHff", 0, 0, 100, 0.01)) + TICKS +
+             action_frame(0x1C, struct.pack("<HHiif", 0, 0, -40, 70, 0.01)) + action_frame(0x1D, struct.pack("<H", 0)) + TICKS + bytes([3]) + TICKS + DISARM + TICKS,
     "sweep": HELLO + LIMITS + action_frame(0x0A, struct.pack("<fIII", 1, 10_000, 500_000, 4_000_000)) + arm(2) + PLAY +
              TICKS * 3 + action_frame(0x10, struct.pack("<I", 1)) + DISARM,
 }

@@ -61,13 +61,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (read_scene_block(block.data(), bytes, view) != SceneFault::none) return 0;
   const ForceSetup setup = device();
   SceneKernel kernel;
-  std::vector<float> live(view.number_count);
+  std::vector<float> live(view.live_words());
   kernel.set(view, setup, live.data());
   float last_n[kMostAxes] = {};
   std::uint32_t counts[kMostAxes] = {};
   for (std::uint32_t tick = 0; tick < 64; ++tick) {
     for (std::uint32_t i = 0; i < kMostAxes; ++i)
       counts[i] += static_cast<std::uint32_t>(motion[(tick + i) % 4]);
+    if (view.patch_count > 0 && tick % 8 == 5) {
+      const std::int32_t far[2] = {motion[tick / 8 % 4] % kFarthestMove,
+                                   motion[tick / 16 % 4] % kFarthestMove};
+      kernel.move(tick % view.patch_count, far, static_cast<float>(tick));
+      kernel.raise((tick + 1) % view.patch_count);
+    }
     std::int32_t read[kMostAxes];
     std::memcpy(read, counts, sizeof read);
     check(kernel.tick(read, tick % 16 < 12), last_n, setup);

@@ -198,12 +198,82 @@ def sliders_move_the_force_and_are_replayed():
     assert other["first_difference_tick"] == 43210 and "recorded_n" in other, other
 
 
+def moved_and_raised_patches_have_their_forces_and_are_replayed():
+    """Two springs, each in a patch that always covers the hand: only the topmost one acts."""
+    rng = np.random.default_rng(3112)
+    step_m, hand_m, count = 1e-5, 0.03, 200
+    write_scene("two", *(patch(name, layers=[{**spring(0), "stiffness_n_per_m": with_slider(stiffness, 0, 60)}], order=order)
+                         for name, stiffness, order in (("low", 30, 0), ("high", 20, 1))))
+    times = 0.29 * np.arange(count) + 0.1 + 0.1 * rng.random(count)
+    commands, states = [], []
+    state = {"low": [30.0, 0], "high": [20.0, 0], "top": "high"}  # stiffness, counts along x
+    for i in range(count):
+        name, ramp = str(rng.choice(["low", "high"])), str(rng.choice(["", " over 0s", " over 50ms"]))
+        ticks, before = {"": 10, " over 0s": 1, " over 50ms": 50}[ramp], {**state}
+        kind = "raise" if i % 3 == 2 else "set" if i % 3 == 1 else "move"
+        if kind == "raise":
+            state = {**state, "top": name}
+            commands.append(f"raise {name}")
+        elif kind == "set":
+            stiffness = round(rng.uniform(5, 60), 3)
+            state = {**state, name: [stiffness, state[name][1]]}
+            commands.append(f"set {name}.spring.stiffness_n_per_m {stiffness}{ramp}")
+        else:
+            to = int(rng.integers(-3000, 3000))
+            state = {**state, name: [state[name][0], to]}
+            # Less than half a count beside it: the nearest count is taken.
+            commands.append(f"move {name} {1e3 * (to + rng.uniform(-0.4, 0.4)) * step_m:.6f}mm,{rng.uniform(-5, 5):.3f}mm{ramp}")
+        states.append((kind, name, ticks, before, state))
+    write_script("plane.csv", times, commands)
+    write_path("still.csv", {"time_s": [0, 60], "x_m": [hand_m, hand_m], "y_m": [0, 0]})
+    report = play("two.scene.json", "sim:planar", "plane", "--rate", "1kHz", "--finger-path", "still.csv", "--script", "plane.csv", "--onset", "0s")
+    assert report["lost_ticks"] == report["slew_limited_ticks"] == report["rms_limited_ticks"] == 0, report
+    run("session", "plane", "-o", "plane.csv.out.csv")
+    found = table("plane.csv.out.csv")["force_x_n"][:60000]
+
+    def force(stiffness, counts):
+        return -stiffness * (hand_m - step_m * counts)
+
+    seen = 0
+    for i, (kind, name, ticks, before, after) in enumerate(states):
+        begin, end = round(1000 * times[i]), round(1000 * times[i + 1]) if i + 1 < count else 60000
+        was, becomes = force(*before[before["top"]]), force(*after[after["top"]])
+        if abs(becomes - was) < 1e-3:
+            continue
+        # Of single precision 3e-7 x 4 N; a count of the softest spring is 5e-5 N.
+        first = begin + np.flatnonzero(np.abs(found[begin:end] - was) > 2e-6)[0]
+        k = np.minimum(np.arange(1, end - first + 1), ticks)
+        if kind == "raise":
+            line = np.full(len(k), becomes)
+        elif kind == "set":
+            line = was + (becomes - was) * k / ticks
+        else:
+            # From the first tick in which the move is a whole count: k / n of the way, rounded towards its beginning.
+            way = after[name][1] - before[name][1]
+            unseen = int(np.argmax(abs(way) * np.arange(1, ticks + 1) // ticks > 0))
+            k = np.minimum(k + unseen, ticks)
+            line = force(after[name][0], before[name][1] + np.sign(way) * (abs(way) * k // ticks))
+        # Within 20 ms after its time and one tick, and what is not seen of it; single precision: 50 steps of 6e-8 x 4 N.
+        assert first <= begin + 21 + ticks, (i, begin, first)
+        assert np.abs(found[first:end] - line).max() < 1.5e-5, (i, commands[i], np.abs(found[first:end] - line).max())
+        seen += 1
+    assert seen > 80, seen
+    events = [event["event"] for event in run_json("session", "plane")["events"]]
+    assert sum(event.startswith(("set ", "move ", "raise ")) for event in events) == count, events[:5]
+    assert run_json("replay", "plane")["same_to_the_bit"] is True
+    pathlib.Path("other.session").write_bytes(bit_of_a_force_changed("plane.session", 54321))
+    assert run_json("replay", "other", code=UNSUITABLE)["first_difference_tick"] == 54321
+
+
 def a_hand_under_sliders_is_replayed():
     write_sliders()
     rng = np.random.default_rng(3111)
     times = np.sort(rng.choice(59000, 200, replace=False)) / 1000 + 0.1
     kinds = [("bench.damper.damping_n_s_per_m", 0, 5), ("bench.1.stiffness_n_per_m", 0, 200), ("bench.1.centre_x_m", -0.02, 0.02)]
-    write_script("many.csv", times, [f"set {name} {rng.uniform(least, most):.4f}" for name, least, most in (kinds[k] for k in rng.integers(0, 3, 200))])
+    commands = [f"set {name} {rng.uniform(least, most):.4f}" for name, least, most in (kinds[k] for k in rng.integers(0, 3, 200))]
+    for i in range(0, 200, 3):
+        commands[i] = f"raise {rng.choice(['ice', 'bench'])}" if i % 2 else f"move {rng.choice(['ice', 'bench'])} {rng.uniform(-20, 20):.3f}mm,{rng.uniform(-20, 20):.3f}mm"
+    write_script("many.csv", times, commands)
     seconds = np.linspace(0, 60, 241)
     write_path("long.csv", {"time_s": seconds, "x_m": 0.03 * np.sin(4 * seconds), "y_m": 0.02 * np.cos(3 * seconds)})
     report = play("bench.scene.json", "sim:planar,hand=minsky-radial", "held", "--finger-path", "long.csv", "--script", "many.csv")
@@ -219,7 +289,8 @@ def a_wrong_script_plays_nothing():
             (2, "stiffness_n_per_m", "1,set bench.1.stifness_n_per_m 1"), (2, "damper", "1,set bench.3.stiffness_n_per_m 1"), (2, "slider", "1,set bench.1.centre_y_m 0"),
             (2, "200", "1,set bench.1.stiffness_n_per_m 201"), (2, "nan", "1,set bench.1.stiffness_n_per_m nan"), (2, "1e999", "1,set bench.1.stiffness_n_per_m 1e999"),
             (2, "10 s", "1,set bench.1.stiffness_n_per_m 1 over 11s"), (2, "ms", "1,set bench.1.stiffness_n_per_m 1 over 10"), (2, "inf", "inf,set bench.1.stiffness_n_per_m 1"),
-            (2, "-1", "-1,set bench.1.stiffness_n_per_m 1"), (2, "shift", "1,shift bench 1"), (2, "bench.1", "1,set bench.1 1"),
+            (2, "-1", "-1,set bench.1.stiffness_n_per_m 1"), (2, "bench", "1,move bnech 1mm,2mm"), (2, "10mm,20mm", "1,move bench 10mm"), (2, "mm", "1,move bench 10,20"),
+            (2, "10 s", "1,move bench 1mm,2mm over 11s"), (2, "too far", "1,move bench 20000m,0mm"), (2, "bench", "1,raise bnech"), (2, "raise", "1,raise bench ice"), (2, "shift", "1,shift bench 1"), (2, "bench.1", "1,set bench.1 1"),
             (4, "increase", good, "", "0.5,set bench.1.stiffness_n_per_m 90"), (3, "increase", good, "0.4,set bench.1.stiffness_n_per_m 90")):
         pathlib.Path("script.csv").write_text("\n".join(("time_s,command", *rows)))
         _, said = run("play", "bench.scene.json", "-d", "sim:planar", "--time", "5s", "--script", "script.csv", "-o", "x", code=MALFORMED)
@@ -233,8 +304,11 @@ def a_wrong_script_plays_nothing():
     pathlib.Path("script.csv").write_text("time_ms,command\r\n500, set bench.1.stiffness_n_per_m 100\r\n")
     play("bench.scene.json", "sim:planar", "done", "--time", "1s", "--script", "script.csv")
     assert "set bench.1.stiffness_n_per_m 100 over 0.01 s" in [event["event"] for event in run_json("session", "done")["events"]]
+    pathlib.Path("script.csv").write_text("time_s,command\n0.1,move bench 0mm,0mm\n0.2,move bench 500mm,0mm\n")
+    warned = play("bench.scene.json", "sim:planar", "far", "--time", "0.5s", "--script", "script.csv")["warnings"]
+    assert sum("from 0.2 s on" in one and "outside the travel" in one for one in warned) == 1 == sum("travel" in one for one in warned), warned
 
 
 if __name__ == "__main__":
-    for test in (what_the_device_refuses_or_makes_unstable, sliders_move_the_force_and_are_replayed, a_hand_under_sliders_is_replayed, a_wrong_script_plays_nothing, a_played_scene_has_the_forces_of_render, surfaces_replay_to_the_bit, a_hand_on_sim_planar_is_scipys_loop, wrong_uses_are_refused, a_jump_of_the_encoder_ends_in_a_fault):
+    for test in (what_the_device_refuses_or_makes_unstable, moved_and_raised_patches_have_their_forces_and_are_replayed, sliders_move_the_force_and_are_replayed, a_hand_under_sliders_is_replayed, a_wrong_script_plays_nothing, a_played_scene_has_the_forces_of_render, surfaces_replay_to_the_bit, a_hand_on_sim_planar_is_scipys_loop, wrong_uses_are_refused, a_jump_of_the_encoder_ends_in_a_fault):
         tacto.in_folder(test)

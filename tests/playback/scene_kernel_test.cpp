@@ -3,6 +3,8 @@
 // that were cut, changed or made to harm.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstring>
@@ -99,10 +101,10 @@ struct OnDevice {
   schema::Device device;
   PreparedScene scene;
   core::SceneKernel kernel;
-  std::vector<float> live = std::vector<float>(100);
+  std::vector<float> live;
 
   OnDevice(const schema::Device& on, std::vector<Patch> patches)
-      : device(on), scene(prepared(std::move(patches), on)) {
+      : device(on), scene(prepared(std::move(patches), on)), live(scene.view().live_words()) {
     kernel.set(scene.view(), *force_setup_of(device, 1000), live.data());
   }
   core::ForceOutput at(double x_m, double y_m) {
@@ -110,6 +112,11 @@ struct OnDevice {
         static_cast<std::int32_t>(std::lround(x_m / device.axes[0].encoder_step_m)),
         static_cast<std::int32_t>(std::lround(y_m / device.axes[1].encoder_step_m))};
     return kernel.tick(counts, true);
+  }
+  // In the block.
+  std::uint32_t patch_named(const std::string& name) const {
+    const auto found = std::ranges::find(scene.patches, name, &Patch::name);
+    return static_cast<std::uint32_t>(found - scene.patches.begin());
   }
 };
 
@@ -341,6 +348,8 @@ TEST(SceneKernel, OctavesEndWithTheSpeed) {
 
 // Layers, patches and numbers at random, a hand that wanders, rests and jumps: the differences are those of
 // single precision. The bound is relative to the sum of the absolute forces of one layer of each patch.
+// The reference has the patches where the file puts them. Every second scene of the kernel begins with other
+// places and another order, and is moved and raised to them.
 TEST(SceneKernel, SinglePrecisionIsTheReference) {
   std::mt19937_64 random(1990);
   const auto draw = [&](double from, double to) {
@@ -372,8 +381,21 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
       patches.back().combine = i % 2 == 0 ? PatchCombine::add : PatchCombine::topmost;
       scale += k * 0.2 + b * 1;  // at most 0.2 m and about 1 m/s
     }
+    const PreparedScene placed = prepared(patches, unlimited());
+    std::vector<std::array<std::int32_t, 2>> ways;
+    for (Patch& from : patches) {
+      const auto way = [&] { return scene % 2 == 0 ? 0 : static_cast<std::int32_t>(draw(-1e5, 1e5)); };
+      ways.push_back({way(), way()});
+      from.x_m -= 1e-5 * ways.back()[0];
+      from.y_m -= 1e-5 * ways.back()[1];
+      if (scene % 2 != 0) from.order = draw(-1, 1);
+    }
     OnDevice on(unlimited(), patches);
-    ExactScene exact(on.scene, on.device, 1000);
+    ExactScene exact(placed, on.device, 1000);
+    for (std::size_t i = 0; i < patches.size() && scene % 2 != 0; ++i)
+      on.kernel.move(on.patch_named(patches[i].name), {ways[i][0], ways[i][1]}, 1);
+    for (auto patch = placed.patches.rbegin(); patch != placed.patches.rend() && scene % 2 != 0; ++patch)
+      on.kernel.raise(on.patch_named(patch->name));
     std::vector<std::int32_t> counts(2);
     double speed[2] = {};
     for (int tick = 0; tick < 3000; ++tick) {
@@ -389,6 +411,73 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
   }
   std::printf("  scene kernel: within %.2g of the sum of the forces of all layers\n", worst);
   EXPECT_LT(worst, 3e-7);
+}
+
+// Of n ticks, after k of them: k / n of the way, rounded towards its beginning.
+std::int32_t part_of(std::int32_t from, std::int32_t to, int k, int n) {
+  const std::int64_t way = std::int64_t{to} - from, part = std::abs(way) * std::min(k, n) / n;
+  return from + static_cast<std::int32_t>(way < 0 ? -part : part);
+}
+
+// The patch of the block at n - m, to the bit, while it moves and after it.
+TEST(SceneKernel, AMovingPatchHasTheForcesOfItsOldPlace) {
+  Patch turned = patch(
+      "a", {spring(100, 0.001), grooves(schema::GrooveProfile::sine, 4e-3, 1e-4, 1, 20),
+            noise(5e-3, 2, 0.5, 3, 1e-4, 1), height_map("moved", 40, 30, 1e-3, 1, [](double x, double y) {
+              return 1e-4 * std::sin(0.3 * x) * std::cos(0.2 * y);
+            })});
+  turned.angle_deg = 25;
+  OnDevice on(unlimited(), {turned}), still(unlimited(), {turned});
+  struct Event {
+    int tick, ramp;
+    std::int32_t to[2];
+  };
+  constexpr Event kEvents[] = {
+      {0, 10, {407, -93}}, {20, 50, {-31, 1000}}, {40, 7, {-32, 950}}, {60, 0, {-30, 940}}};
+  std::int32_t from[2] = {}, at[2] = {};
+  const Event* last = nullptr;
+  for (int tick = 0; tick < 80; ++tick) {
+    for (const Event& event : kEvents) {
+      if (event.tick != tick) continue;
+      on.kernel.move(0, event.to, static_cast<float>(event.ramp));
+      std::copy_n(at, 2, from);
+      last = &event;
+    }
+    std::int32_t relative[2];
+    const std::int32_t hand[2] = {1234, -777};
+    for (int i = 0; i < 2; ++i) {
+      at[i] = part_of(from[i], last->to[i], tick - last->tick + 1, std::max(last->ramp, 1));
+      relative[i] = hand[i] - at[i];
+    }
+    const core::ForceOutput moved = on.kernel.tick(hand, true), there = still.kernel.tick(relative, true);
+    EXPECT_EQ(moved.force_n[0], there.force_n[0]) << tick;
+    EXPECT_EQ(moved.force_n[1], there.force_n[1]) << tick;
+  }
+}
+
+// 10 periods in 10 ticks: nothing of the surface can be played until the patch rests. The hand rests.
+TEST(SceneKernel, WhileItMovesASurfaceIsPlayedAtTheRelativeSpeed) {
+  OnDevice on(unlimited(), {patch("a", {grooves(schema::GrooveProfile::sine, 1e-3, 1e-4, 1), damper(10)})});
+  const double there_n = -on.at(0.0102, 0).force_n[0];  // 0.2 periods; the force is odd
+  on.kernel.set(on.scene.view(), *force_setup_of(on.device, 1000), on.live.data());
+  EXPECT_EQ(on.at(0, 0).force_n[0], 0);
+  on.kernel.move(0, {1020, 0}, 10);
+  for (int tick = 1; tick < 10; ++tick) EXPECT_EQ(on.at(0, 0).force_n[0], 0) << tick;
+  EXPECT_NEAR(on.at(0, 0).force_n[0], there_n, 1e-6);
+  EXPECT_GT(std::abs(there_n), 0.2);
+}
+
+// The 17th of 16 moves that are not complete.
+TEST(SceneKernel, AFurtherMoveEndsTheOldest) {
+  std::vector<Patch> patches;
+  for (int i = 0; i < 17; ++i) {
+    patches.push_back(patch("p" + std::to_string(i), {spring(1)}));
+    patches.back().combine = PatchCombine::add;
+  }
+  OnDevice on(unlimited(), patches);
+  for (std::uint32_t i = 0; i < 17; ++i) on.kernel.move(i, {1000, 0}, 100);
+  // The first one is complete, 1 N/m x 0.01 m; 16 made 10 of 1000 counts.
+  EXPECT_NEAR(on.at(0, 0).force_n[0], 0.01 + 16 * 1e-4, 1e-7);
 }
 
 // Square grooves of 0.5 mm as a height map, at 1 kHz and steady speeds: all that is no harmonic below half
@@ -627,7 +716,7 @@ TEST(SceneBlock, AHarmfulBlockIsRefusedOrLimited) {
       }
       ++accepted;
       core::SceneKernel kernel;
-      std::vector<float> live(view.number_count);
+      std::vector<float> live(view.live_words());
       kernel.set(view, setup, live.data());
       for (const std::int32_t count : {0, INT32_MAX, INT32_MIN, 1000, -1000}) {
         const std::int32_t counts[2] = {count, -(count / 2)};

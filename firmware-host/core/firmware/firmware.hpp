@@ -91,6 +91,9 @@ class Firmware {
   Reply force_limits(const wire::ForceLimits& message) noexcept;
   Reply scene_part(const wire::ScenePart& message) noexcept;
   Reply set(const wire::Set& message) noexcept;
+  Reply move(const wire::Move& message) noexcept;
+  Reply raise(const wire::Raise& message) noexcept;
+  bool plays_scene() const noexcept { return runs() && ticker_.source() == wire::DriveSource::scene; }
   Reply ready_scene() noexcept;
   SceneArm scene_arm(const wire::Arm& message) const noexcept;
   Reply sweep(const wire::Sweep& message) noexcept;

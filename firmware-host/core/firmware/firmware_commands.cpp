@@ -179,13 +179,24 @@ Reply Firmware::reply_to_texture(const wire::Frame& frame) noexcept {
 Reply Firmware::reply_to_scene(const wire::Frame& frame) noexcept {
   wire::ForceLimits new_limits;
   wire::Set new_set;
+  wire::Move new_move;
+  wire::Raise new_raise;
   const auto type = static_cast<MessageType>(frame.header.type);
-  if (board_.axes != nullptr && type == MessageType::force_limits)
-    return in_idle(frame, new_limits, &Firmware::force_limits);
-  if (board_.axes != nullptr && type == MessageType::scene_part)
-    return in_idle(frame, scene_part_, &Firmware::scene_part);
-  if (board_.axes != nullptr && type == MessageType::set) return with(frame, new_set, &Firmware::set);
-  return {AnswerCode::unknown_type, frame.header.type};
+  if (board_.axes == nullptr) return {AnswerCode::unknown_type, frame.header.type};
+  switch (type) {
+    case MessageType::force_limits:
+      return in_idle(frame, new_limits, &Firmware::force_limits);
+    case MessageType::scene_part:
+      return in_idle(frame, scene_part_, &Firmware::scene_part);
+    case MessageType::set:
+      return with(frame, new_set, &Firmware::set);
+    case MessageType::move:
+      return with(frame, new_move, &Firmware::move);
+    case MessageType::raise:
+      return with(frame, new_raise, &Firmware::raise);
+    default:
+      return {AnswerCode::unknown_type, frame.header.type};
+  }
 }
 
 Reply Firmware::force_limits(const wire::ForceLimits& asked) noexcept {
@@ -215,10 +226,25 @@ Reply Firmware::scene_part(const wire::ScenePart& message) noexcept {
 }
 
 Reply Firmware::set(const wire::Set& message) noexcept {
-  if (!runs() || ticker_.source() != DriveSource::scene) return wrong_state();
+  if (!plays_scene()) return wrong_state();
   if (!number_fits(scene_.view(), message.layer, message.number, message.value)) return bad_value(2);
   if (!within(message.ramp_s, 0, kLongestFadeS)) return bad_value(3);
-  return ticker_.set(message) ? Reply{} : Reply{AnswerCode::too_large, 0};
+  return ticker_.steer({MessageType::set, message, {}, {}}) ? Reply{} : Reply{AnswerCode::too_large, 0};
+}
+
+Reply Firmware::move(const wire::Move& message) noexcept {
+  if (!plays_scene()) return wrong_state();
+  if (message.patch >= scene_.view().patch_count) return bad_value(0);
+  if (message.x_counts < -kFarthestMove || message.x_counts > kFarthestMove) return bad_value(2);
+  if (message.y_counts < -kFarthestMove || message.y_counts > kFarthestMove) return bad_value(3);
+  if (!within(message.ramp_s, 0, kLongestFadeS)) return bad_value(4);
+  return ticker_.steer({MessageType::move, {}, message, {}}) ? Reply{} : Reply{AnswerCode::too_large, 0};
+}
+
+Reply Firmware::raise(const wire::Raise& message) noexcept {
+  if (!plays_scene()) return wrong_state();
+  if (message.patch >= scene_.view().patch_count) return bad_value(0);
+  return ticker_.steer({MessageType::raise, {}, {}, message}) ? Reply{} : Reply{AnswerCode::too_large, 0};
 }
 
 Reply Firmware::ready_scene() noexcept {

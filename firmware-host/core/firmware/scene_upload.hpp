@@ -7,9 +7,9 @@
 
 namespace tacto::core {
 
-/// Stores the block in memory of the board, followed by memory for the kernel's live numbers. Parts come in
-/// order; a repeated part is written again. Only a block that read_scene_block() accepts can be armed. For
-/// the main loop.
+/// Stores the block in memory of the board, followed by the memory for what changes while it plays. Parts
+/// come in order; a repeated part is written again. Only a block that read_scene_block() accepts can be
+/// armed. For the main loop.
 class SceneUpload {
  public:
   /// `memory` holds `words` numbers of 4 bytes.
@@ -25,9 +25,9 @@ class SceneUpload {
   float* live() const noexcept { return memory_ + (words_ - live_words()); }
 
  private:
-  // Numbers of all layers; in a small memory a block of half of it cannot have more.
+  // SceneView::live_words() of the largest scene; in a small memory a block of half of it cannot need more.
   uint32_t live_words() const noexcept {
-    constexpr uint32_t kMost = kMostSceneLayers * kMostLayerNumbers;
+    constexpr uint32_t kMost = kMostSceneLayers * (kMostLayerNumbers + kPatchWords);
     return words_ / 2 < kMost ? words_ / 2 : kMost;
   }
 

@@ -20,7 +20,7 @@ void Ticker::begin_arm(DriveSource source) noexcept {
   source_ = source;
   tick_ = 0;
   drive_queue_.clear();
-  sets_.clear();
+  scene_changes_.clear();
   steered_.store(0);
   steered_taken_ = 0;
   gain_taken_ = gain_.load();
@@ -40,11 +40,11 @@ void Ticker::arm(const SceneArm& scene, uint32_t rate_millihertz) noexcept {
 }
 
 // Writes the change first, then the word after which the tick reads it.
-bool Ticker::set(const wire::Set& message) noexcept {
-  CountedSet* const place = sets_.place();
+bool Ticker::steer(const SceneChange& change) noexcept {
+  CountedChange* const place = scene_changes_.place();
   if (place == nullptr) return false;
-  *place = {message, static_cast<uint8_t>(steered_.load() + 1)};
-  sets_.push();
+  *place = {change, static_cast<uint8_t>(steered_.load() + 1)};
+  scene_changes_.push();
   steered();
   return true;
 }
@@ -100,16 +100,20 @@ void Ticker::take_steering(Record& record) noexcept {
     steered_taken_ = steered;
     gain_taken_ = gain_.load();
     take_change();
-    take_sets();
+    take_scene_changes();
   }
   record.flags |= uint32_t{steered_taken_} << wire::kTickSteeredShift;
 }
 
-void Ticker::take_sets() noexcept {
-  for (const CountedSet* next; (next = sets_.front()) != nullptr; sets_.pop()) {
+void Ticker::take_scene_changes() noexcept {
+  for (const CountedChange* next; (next = scene_changes_.front()) != nullptr; scene_changes_.pop()) {
     if (static_cast<int8_t>(steered_taken_ - next->count) < 0) return;
-    const wire::Set& set = next->set;
-    scene_.change(set.layer, set.number, set.value, set.ramp_s * scene_.rate_hz());
+    const auto& [type, set, move, raise] = next->change;
+    if (type == wire::MessageType::set)
+      scene_.change(set.layer, set.number, set.value, set.ramp_s * scene_.rate_hz());
+    if (type == wire::MessageType::move)
+      scene_.move(move.patch, {move.x_counts, move.y_counts}, move.ramp_s * scene_.rate_hz());
+    if (type == wire::MessageType::raise) scene_.raise(raise.patch);
   }
 }
 

@@ -27,6 +27,16 @@ struct SceneArm {
   uint32_t counts_per_tick = 0;
 };
 
+inline constexpr uint32_t kSceneChanges = 16;
+
+/// A command that changes the scene that plays: `type` says which.
+struct SceneChange {
+  wire::MessageType type = wire::MessageType::set;
+  wire::Set set;
+  wire::Move move;
+  wire::Raise raise;
+};
+
 /// tick() is called by the timer's interrupt and does not wait, allocate, lock or throw; the main loop calls
 /// the other functions.
 class Ticker {
@@ -48,9 +58,9 @@ class Ticker {
   void arm(wire::DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept;
   /// The same for the forces of a scene.
   void arm(const SceneArm& scene, uint32_t rate_millihertz) noexcept;
-  /// Changes a number of the scene, from the tick that first counts it. False if as many changes wait as
-  /// sets() holds. Precondition: number_fits().
-  bool set(const wire::Set& message) noexcept;
+  /// Changes the scene, from the tick that first counts it. False if kSceneChanges wait already.
+  /// Preconditions: those of SceneKernel::change() and move(); the scene has the patch.
+  bool steer(const SceneChange& change) noexcept;
   /// Before arm(): the channel of the normal force.
   void watch_force(const wire::Contact& contact) noexcept { contact_ = contact; }
   /// In effect from the tick that first counts it.
@@ -85,7 +95,7 @@ class Ticker {
   void drive_forces(Record& record) noexcept;
   void begin_arm(wire::DriveSource source) noexcept;
   void rest() noexcept;
-  void take_sets() noexcept;
+  void take_scene_changes() noexcept;
   void take_steering(Record& record) noexcept;
   void take_change() noexcept;
   void end_change() noexcept;
@@ -98,16 +108,15 @@ class Ticker {
 
   Hal hal_;
   TickKernel kernel_;
-  struct CountedSet {
-    wire::Set set;
+  struct CountedChange {
+    SceneChange change;
     uint8_t count = 0;  // of the command
   };
-  static constexpr uint32_t kSets = 16;
   SweepGenerator sweep_;
   SceneKernel scene_;
   EncoderWatch axis_watch_[wire::kMaxAxes];
   uint8_t axes_ = 0;  // of the scene
-  Ring<CountedSet, kSets> sets_;
+  Ring<CountedChange, kSceneChanges> scene_changes_;
   DriveSupervisor supervisor_;
   EncoderWatch watch_;
   Ring<float, kDriveQueue> drive_queue_;

@@ -12,7 +12,8 @@ namespace tacto::core {
 inline constexpr uint32_t kSceneMark = 0x4E435354;  ///< "TSCN"
 inline constexpr uint16_t kSceneVersion = 1;
 inline constexpr uint32_t kMostSceneLayers = 256;
-inline constexpr uint32_t kMostLayerNumbers = 4;
+inline constexpr uint32_t kMostLayerNumbers = 3;
+inline constexpr uint32_t kPatchWords = 3;  ///< of a patch in the kernel's memory: its place and its order
 
 /// The kinds of layers that the kernel has. A number is never reused.
 enum class SceneLayerKind : uint16_t { spring = 0, damper = 1, grooves = 2, noise = 3, height_map = 4 };
@@ -140,6 +141,9 @@ struct SceneView {
   const uint32_t* tables = nullptr;
   uint32_t patch_count = 0, layer_count = 0, number_count = 0, table_words = 0;
   bool needs_speed = false;  ///< it has a layer whose force depends on the speed
+
+  /// Of 4 bytes, of the memory that a kernel needs beside the block.
+  uint32_t live_words() const noexcept { return number_count + patch_count * kPatchWords; }
 };
 
 enum class SceneFault : uint8_t {
@@ -185,6 +189,9 @@ inline Q32 place_on(const SceneRow& row, const int32_t (&counts)[2]) noexcept {
 
 /// Whether a layer has this number, and may have this value.
 bool number_fits(const SceneView& view, uint32_t layer, uint32_t number, float value) noexcept;
+
+/// The farthest that a patch is moved, in counts: the difference of two places is a number of 32 bits.
+inline constexpr int32_t kFarthestMove = (INT32_C(1) << 30) - 1;
 
 struct PlaneVector {
   float x = 0, y = 0;

@@ -11,10 +11,25 @@ namespace tacto::core {
 void SceneKernel::set(const SceneView& scene, const ForceSetup& setup, float* live) noexcept {
   scene_ = scene;
   live_ = live;
+  moved_ = reinterpret_cast<int32_t(*)[2]>(live + scene.number_count);
+  order_ = reinterpret_cast<uint32_t*>(moved_ + scene.patch_count);
   for (uint32_t i = 0; i < scene.number_count; ++i) live[i] = scene.numbers[i];
+  for (uint32_t i = 0; i < scene.patch_count; ++i) {
+    moved_[i][0] = moved_[i][1] = 0;
+    order_[i] = i;
+  }
   for (Ramp& ramp : ramps_) ramp.left = 0;
-  next_ramp_ = 0;
+  for (Move& move : moves_) move.left = 0;
+  next_ramp_ = next_move_ = 0;
+  moving_ = false;
   setup_ = setup;
+  step_m_[0] = step_m_[1] = 0;
+  for (uint32_t i = 0; i < setup.axis_count; ++i) {
+    const auto along = static_cast<uint32_t>(setup.axes[i].along);
+    if (along < 2) step_m_[along] = setup.axes[i].metres_per_count;
+  }
+  for (uint32_t i = 0; i < 2; ++i)
+    if (step_m_[i] == 0) step_m_[i] = step_m_[1 - i];
   for (EdgeSpeed& speed : speeds_) speed.rest();
   envelope_.set(setup.onset_s * setup.rate_hz, setup.release_s * setup.rate_hz);
   limiter_.set(setup);
@@ -42,12 +57,86 @@ void SceneKernel::advance_ramps() noexcept {
   }
 }
 
+// As Bresenham's line: without a division in the tick.
+int32_t SceneKernel::Way::step(uint32_t ticks) noexcept {
+  sum += rest;
+  if (sum < ticks) return each;
+  sum -= ticks;
+  return each + more;
+}
+
+void SceneKernel::move(uint32_t patch, const int32_t (&counts)[2], float ramp_ticks) noexcept {
+  uint32_t place = kMostRamps;
+  for (uint32_t i = 0; i < kMostRamps; ++i)
+    if (moves_[i].left > 0 && moves_[i].patch == patch) place = i;
+  if (place == kMostRamps) {
+    place = next_move_;
+    next_move_ = (next_move_ + 1) % kMostRamps;
+    const Move& oldest = moves_[place];
+    for (int i = 0; oldest.left > 0 && i < 2; ++i) moved_[oldest.patch][i] = oldest.ways[i].to;
+  }
+  const auto ticks = ramp_ticks > 1 ? static_cast<uint32_t>(ramp_ticks) : UINT32_C(1);
+  Move& move = moves_[place];
+  move.patch = patch, move.left = move.ticks = ticks;
+  for (int i = 0; i < 2; ++i) {
+    const int32_t way = counts[i] - moved_[patch][i], of = static_cast<int32_t>(ticks), rest = way % of;
+    move.ways[i] = {counts[i],
+                    way / of,
+                    way < 0 ? -1 : 1,
+                    static_cast<uint32_t>(rest < 0 ? -rest : rest),
+                    0,
+                    static_cast<float>(way) / static_cast<float>(of)};
+  }
+  moving_ = true;
+}
+
+void SceneKernel::raise(uint32_t patch) noexcept {
+  uint32_t at = 0;
+  while (at + 1 < scene_.patch_count && order_[at] != patch) ++at;
+  for (; at > 0; --at) order_[at] = order_[at - 1];
+  order_[0] = patch;
+}
+
+void SceneKernel::advance_moves() noexcept {
+  if (!moving_) return;
+  moving_ = false;
+  for (Move& move : moves_) {
+    if (move.left == 0) continue;
+    moving_ = true;
+    --move.left;
+    for (int i = 0; i < 2; ++i) moved_[move.patch][i] += move.ways[i].step(move.ticks);
+  }
+}
+
+// During the tick after the last step it is at rest.
+PlaneVector SceneKernel::speed_of(uint32_t patch) const noexcept {
+  for (const Move& move : moves_)
+    if (move.left > 0 && move.patch == patch)
+      return {move.ways[0].per_tick * (step_m_[0] * setup_.rate_hz),
+              move.ways[1].per_tick * (step_m_[1] * setup_.rate_hz)};
+  return {};
+}
+
+SceneKernel::Hand SceneKernel::hand_on(uint32_t patch, const Hand& hand) const noexcept {
+  Hand here = hand;
+  for (int i = 0; i < 2; ++i)
+    here.counts[i] =
+        static_cast<int32_t>(static_cast<uint32_t>(hand.counts[i]) - static_cast<uint32_t>(moved_[patch][i]));
+  const PlaneVector in_plane{static_cast<float>(here.counts[0]) * step_m_[0],
+                             static_cast<float>(here.counts[1]) * step_m_[1]};
+  here.place_m = place_in_patch(scene_.patches[patch], in_plane);
+  if (!moving_) return here;
+  const PlaneVector own = speed_of(patch);
+  here.along_mps = {hand.speed_mps.x - own.x, hand.speed_mps.y - own.y};
+  return here;
+}
+
 // Here and below in the axes of the patch.
 PlaneVector SceneKernel::groove_force(const SceneLayer& layer, const Hand& hand,
-                                      PlaneVector speed) const noexcept {
+                                      PlaneVector along) const noexcept {
   const auto& table = table_of<GroovesTable>(scene_, layer);
   const float* const number = live_ + layer.first_number;
-  const float across = speed.x * table.periods_per_m_x + speed.y * table.periods_per_m_y;
+  const float across = along.x * table.periods_per_m_x + along.y * table.periods_per_m_y;
   const auto phase = static_cast<uint32_t>(place_on(table.across, hand.counts));
   const GrooveSample at = groove_at({amplitudes_of(table), table.harmonics}, phase,
                                     (across < 0 ? -across : across) / setup_.rate_hz);
@@ -58,7 +147,7 @@ PlaneVector SceneKernel::groove_force(const SceneLayer& layer, const Hand& hand,
 PlaneVector SceneKernel::noise_force(const SceneLayer& layer, const Hand& hand) const noexcept {
   const auto& table = table_of<NoiseSurfaceTable>(scene_, layer);
   const float* const number = live_ + layer.first_number;
-  const PlaneVector v = hand.speed_mps;
+  const PlaneVector v = hand.along_mps;
   float cycles_per_tick =
       __builtin_sqrtf(v.x * v.x + v.y * v.y) * table.periods_per_m * kNoiseCycles / setup_.rate_hz;
   float weights[kMostOctaves];
@@ -73,7 +162,7 @@ PlaneVector SceneKernel::noise_force(const SceneLayer& layer, const Hand& hand) 
 // A level is left when its highest frequency reaches half the rate.
 PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand) const noexcept {
   const auto& table = table_of<ReliefTable>(scene_, layer);
-  const PlaneVector v = hand.speed_mps;
+  const PlaneVector v = hand.along_mps;
   const float cycles_per_tick = __builtin_sqrtf(v.x * v.x + v.y * v.y) * table.highest_per_m / setup_.rate_hz;
   const Detail detail = detail_at(cycles_per_tick * (1 / kWholeReliefPerTick));
   const float weights[2] = {1 - detail.fade, detail.fade};
@@ -91,9 +180,9 @@ PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand)
   return {-kappa * slope.x, -kappa * slope.y};
 }
 
-PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand,
-                                  PlaneVector place) const noexcept {
-  const PlaneVector speed = into_patch(patch, hand.speed_mps);
+PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) const noexcept {
+  const PlaneVector place = hand.place_m, speed = into_patch(patch, hand.speed_mps),
+                    along = into_patch(patch, hand.along_mps);
   PlaneVector sum;
   for (uint32_t i = 0; i < patch.layers; ++i) {
     const SceneLayer& layer = scene_.layers[patch.first_layer + i];
@@ -108,7 +197,7 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand,
         force = {-number[kDamperDamping] * speed.x, -number[kDamperDamping] * speed.y};
         break;
       case SceneLayerKind::grooves:
-        force = groove_force(layer, hand, speed);
+        force = groove_force(layer, hand, along);
         break;
       case SceneLayerKind::noise:
         force = noise_force(layer, hand);
@@ -127,13 +216,13 @@ PlaneVector SceneKernel::force(const Hand& hand) const noexcept {
   PlaneVector sum;
   bool covered = false;
   for (uint32_t i = 0; i < scene_.patch_count; ++i) {
-    const ScenePatch& patch = scene_.patches[i];
+    const ScenePatch& patch = scene_.patches[order_[i]];
     const bool adds = patch.adds != 0;
     if (covered && !adds) continue;
-    const PlaneVector here = place_in_patch(patch, hand.place_m);
-    if (!within_patch(patch, here)) continue;
+    const Hand here = hand_on(order_[i], hand);
+    if (!within_patch(patch, here.place_m)) continue;
     covered = covered || !adds;
-    const PlaneVector local = force_in(patch, hand, here);
+    const PlaneVector local = force_in(patch, here);
     sum.x += patch.cosine * local.x - patch.sine * local.y;
     sum.y += patch.sine * local.x + patch.cosine * local.y;
   }
@@ -142,19 +231,17 @@ PlaneVector SceneKernel::force(const Hand& hand) const noexcept {
 
 ForceOutput SceneKernel::tick(const int32_t* counts, bool raise) noexcept {
   advance_ramps();
+  advance_moves();
   Hand hand;
-  float place_m[2] = {}, speed_mps[2] = {};
+  float speed_mps[2] = {};
   for (uint32_t i = 0; i < setup_.axis_count; ++i) {
     const auto along = static_cast<uint32_t>(setup_.axes[i].along);
     if (along > 1) continue;
-    const float step_m = setup_.axes[i].metres_per_count;
     hand.counts[along] = counts[i];
-    place_m[along] = static_cast<float>(counts[i]) * step_m;
     if (!scene_.needs_speed) continue;
-    speed_mps[along] = speeds_[along].track(counts[i]) * (step_m * setup_.rate_hz);
+    speed_mps[along] = speeds_[along].track(counts[i]) * (step_m_[along] * setup_.rate_hz);
   }
-  hand.place_m = {place_m[0], place_m[1]};
-  hand.speed_mps = {speed_mps[0], speed_mps[1]};
+  hand.speed_mps = hand.along_mps = {speed_mps[0], speed_mps[1]};
   const PlaneVector sum = force(hand);
   ForceOutput output;
   output.sound = is_finite(sum.x) && is_finite(sum.y);

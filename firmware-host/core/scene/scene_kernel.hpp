@@ -9,7 +9,7 @@
 
 namespace tacto::core {
 
-inline constexpr uint32_t kMostRamps = 16;
+inline constexpr uint32_t kMostRamps = 16;  ///< of numbers, and of places
 
 /// Forces on the hand, in the order of the device's axes.
 struct ForceOutput {
@@ -23,36 +23,47 @@ struct ForceOutput {
 /// hand's place and of every patch there that adds. In the axes of a patch, from its centre:
 ///   spring: -stiffness (place - centre);  damper: -damping speed;  surface: -kappa grad h.
 /// place = counts x metres_per_count, on a surface in whole counts (place_on()); speed by EdgeSpeed, only in
-/// a scene with a layer that depends on it. Of a surface, frequencies above half the rate at this speed are
-/// not played (held_by_rate(); of an octave of noise up to kNoiseCycles; of a height map one of its levels or
-/// two, mixed). Without the axis x or y the hand
-/// stays at 0 along it; an axis z gets no force. Single precision, no contraction, of libm only the square
-/// root: the same bits on host and device. Against double precision (ExactScene) at places up to 0.1 m:
-/// within 3e-7 of the sum of the absolute forces of all layers. No function allocates, locks, throws or makes
-/// system calls; a tick costs at most one step per patch and layer.
+/// a scene with a layer that depends on it. A patch is moved by whole counts, with all that belongs to its
+/// place: its force at count n, moved by m, is to the bit that of the patch of the block at n - m. A damper
+/// resists the speed of the hand, also while its patch moves; a surface is played at the speed relative to
+/// it. Of a surface, frequencies above half the rate at this speed are not played (held_by_rate(); of an
+/// octave of noise up to kNoiseCycles; of a height map one of its levels or two, mixed). Without the axis x
+/// or y the hand stays at 0 along it; an axis z gets no force. Single precision, no contraction, of libm only
+/// the square root: the same bits on host and device. Against double precision (ExactScene) at places up to
+/// 0.1 m: within 3e-7 of the sum of the absolute forces of all layers. No function allocates, locks, throws
+/// or makes system calls; a tick costs at most one step per patch and layer.
 class SceneKernel {
  public:
-  /// Starts at rest at zero, with the numbers of the block. The block, and `live` with memory for
-  /// scene.number_count numbers, have to outlive their use by the kernel.
+  /// Starts at rest at zero, with the numbers, places and order of the block. The block, and `live` with
+  /// scene.live_words(), have to outlive their use by the kernel.
   void set(const SceneView& scene, const ForceSetup& setup, float* live) noexcept;
   /// Between ticks: from the next tick on a number changes linearly, and has its new value after
   /// `ramp_ticks` (at least one). If kMostRamps others change already, the oldest one ends at once.
   /// Precondition: number_fits().
   void change(uint32_t layer, uint32_t number, float value, float ramp_ticks) noexcept;
+  /// The same for the place of a patch: `counts` along x and y from its place in the block. After k of n
+  /// ticks it is moved by k / n of the way, rounded to a whole count towards its beginning. Along an axis
+  /// that the device does not have, a count is as long as one of the other axis. Preconditions: the scene
+  /// has this patch; counts within kFarthestMove.
+  void move(uint32_t patch, const int32_t (&counts)[2], float ramp_ticks) noexcept;
+  /// Between ticks: this patch becomes the topmost one; the order of the others stays.
+  void raise(uint32_t patch) noexcept;
   /// `counts` of the setup's axes; `raise`: towards the full force, otherwise towards zero.
   ForceOutput tick(const int32_t* counts, bool raise) noexcept;
   float rate_hz() const noexcept { return setup_.rate_hz; }
   bool at_rest() const noexcept { return envelope_.at_rest() && limiter_.at_rest(); }
 
  private:
-  // Of one tick, along x and y.
+  // Of one tick, along x and y; on a patch relative to where it is in the block.
   struct Hand {
     int32_t counts[2] = {};
-    PlaneVector place_m, speed_mps;
+    PlaneVector place_m;
+    PlaneVector speed_mps, along_mps;  // of the hand; relative to the patch
   };
   PlaneVector force(const Hand& hand) const noexcept;
-  PlaneVector force_in(const ScenePatch& patch, const Hand& hand, PlaneVector place) const noexcept;
-  PlaneVector groove_force(const SceneLayer& layer, const Hand& hand, PlaneVector speed) const noexcept;
+  PlaneVector force_in(const ScenePatch& patch, const Hand& hand) const noexcept;
+  Hand hand_on(uint32_t patch, const Hand& hand) const noexcept;
+  PlaneVector groove_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
   PlaneVector noise_force(const SceneLayer& layer, const Hand& hand) const noexcept;
   PlaneVector relief_force(const SceneLayer& layer, const Hand& hand) const noexcept;
 
@@ -63,12 +74,32 @@ class SceneKernel {
   };
   void advance_ramps() noexcept;
 
+  // `each` counts per tick, and one more in `rest` of `ticks` ticks, evenly.
+  struct Way {
+    int32_t to = 0, each = 0, more = 0;
+    uint32_t rest = 0, sum = 0;
+    float per_tick = 0;
+    int32_t step(uint32_t ticks) noexcept;
+  };
+  struct Move {
+    uint32_t patch = 0, left = 0, ticks = 0;
+    Way ways[2];
+  };
+  void advance_moves() noexcept;
+  PlaneVector speed_of(uint32_t patch) const noexcept;
+
   SceneView scene_;
+  // In the memory of the caller: the numbers; of each patch the counts by which it is moved; the order.
   float* live_ = nullptr;
+  int32_t (*moved_)[2] = nullptr;
+  uint32_t* order_ = nullptr;
   Ramp ramps_[kMostRamps];
-  uint32_t next_ramp_ = 0;
+  Move moves_[kMostRamps];
+  uint32_t next_ramp_ = 0, next_move_ = 0;
+  bool moving_ = false;
   ForceSetup setup_;
-  EdgeSpeed speeds_[2];  // along x and y
+  float step_m_[2] = {};  // of a count along x and y
+  EdgeSpeed speeds_[2];
   Envelope envelope_;
   ForceLimiter limiter_;
 };

@@ -315,4 +315,27 @@ struct Set {
   }
 };
 
+/// Moves a patch, linearly over a time.
+struct Move {
+  static constexpr MessageType kType = MessageType::move;
+  uint16_t patch = 0;  ///< in the order of the block
+  uint16_t reserved = 0;
+  int32_t x_counts = 0, y_counts = 0;  ///< from its place in the block
+  float ramp_s = 0;                    ///< 0 to 10
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.patch, self.reserved, self.x_counts, self.y_counts, self.ramp_s);
+  }
+};
+
+/// A patch becomes the topmost one.
+struct Raise {
+  static constexpr MessageType kType = MessageType::raise;
+  uint16_t patch = 0;  ///< in the order of the block
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.patch);
+  }
+};
+
 }  // namespace tacto::wire

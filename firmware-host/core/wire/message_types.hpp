@@ -37,6 +37,8 @@ enum class MessageType : uint8_t {
   force_limits = 0x19,
   scene_part = 0x1A,
   set = 0x1B,
+  move = 0x1C,
+  raise = 0x1D,
   welcome = 0x81,
   channel = 0x82,
   note = 0x83,
@@ -113,7 +115,8 @@ inline constexpr uint32_t kTickSteeredShift = 24;
 /// Whether this command changes a running drive in a tick; that tick counts it.
 constexpr bool steers(MessageType type) noexcept {
   return type == MessageType::gain || type == MessageType::play || type == MessageType::stop ||
-         type == MessageType::disarm || type == MessageType::change || type == MessageType::set;
+         type == MessageType::disarm || type == MessageType::change || type == MessageType::set ||
+         type == MessageType::move || type == MessageType::raise;
 }
 
 inline constexpr size_t kMaxChannels = 16;

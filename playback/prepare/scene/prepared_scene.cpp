@@ -333,10 +333,13 @@ Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& wher
   TACTO_TRY(check_types(scene, where));
   PreparedScene base;
   base.stiffness_limit_n_per_m = stiffness_limit_of(device, rate_hz, hand);
+  base.steps = {0, 0};
   for (const schema::DeviceAxis& axis : device.axes) {
     if (axis.name == "x") base.steps.x_m = axis.encoder_step_m;
     if (axis.name == "y") base.steps.y_m = axis.encoder_step_m;
   }
+  if (!(base.steps.x_m > 0)) base.steps.x_m = base.steps.y_m;
+  if (!(base.steps.y_m > 0)) base.steps.y_m = base.steps.x_m;
   TACTO_TRY(set_filters(scene, base.stiffness_limit_n_per_m, where));
   auto reliefs = read_reliefs(scene, where, rate_hz);
   TACTO_TRY(reliefs);

@@ -19,7 +19,8 @@
 
 namespace tacto::playback {
 
-/// Displacement of one encoder count, of the axes x and y; of an axis that the device has not, anything.
+/// Displacement of one encoder count, of the axes x and y; of an axis that the device does not have that of
+/// the other one, as in core::SceneKernel.
 struct PlaneSteps {
   double x_m = 1, y_m = 1;
 };

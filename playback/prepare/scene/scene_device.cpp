@@ -133,23 +133,36 @@ double percent_of(std::size_t part, std::size_t of) {
   return 100.0 * static_cast<double>(part) / static_cast<double>(of);
 }
 
+struct ReachedPlaces {
+  std::vector<Vector> places;
+  std::size_t of = 0;  // of the patch
+};
+
+ReachedPlaces reached_places(const schema::Patch& patch, const Device& device) {
+  const PlaneTravel travel(device);
+  ReachedPlaces reached{places_of(patch, TurnedPatch(patch), travel), 0};
+  reached.of = reached.places.size();
+  std::erase_if(reached.places, [&](Vector place) { return !travel.reaches(place); });
+  return reached;
+}
+
+std::string travel_words(const schema::Patch& patch, const ReachedPlaces& reached) {
+  const std::size_t in = reached.places.size();
+  if (in == 0) return fmt::format("patch '{}' is outside the travel of the device", patch.name);
+  if (in == reached.of) return {};
+  return fmt::format("patch '{}': {:.3g} % of its area is outside the travel of the device", patch.name,
+                     percent_of(reached.of - in, reached.of));
+}
+
 void note_patch(const PreparedScene& alone, const Device& device, const core::ForceSetup& setup,
                 std::vector<std::string>& notes) {
   const schema::Patch& patch = alone.patches.front();
-  const PlaneTravel travel(device);
-  const TurnedPatch turned(patch);
-  std::vector<Vector> places = places_of(patch, turned, travel);
-  const std::size_t all = places.size();
-  std::erase_if(places, [&](Vector place) { return !travel.reaches(place); });
-  if (places.empty()) {
-    notes.push_back(fmt::format("patch '{}' is outside the travel of the device", patch.name));
-    return;
-  }
-  if (places.size() < all)
-    notes.push_back(fmt::format("patch '{}': {:.3g} % of its area is outside the travel of the device",
-                                patch.name, percent_of(all - places.size(), all)));
+  const ReachedPlaces reached = reached_places(patch, device);
+  const std::vector<Vector>& places = reached.places;
+  if (std::string words = travel_words(patch, reached); !words.empty()) notes.push_back(std::move(words));
+  if (places.empty()) return;
   const core::SceneView view = alone.view();
-  std::vector<float> live(view.number_count);
+  std::vector<float> live(view.live_words());
   const auto high =
       std::ranges::count_if(places, [&](Vector place) { return exceeds(view, setup, live.data(), place); });
   if (high > 0)
@@ -259,6 +272,10 @@ double local_stiffness_n_per_m(const schema::ForceLayer& layer) {
         return largest_value(noise.kappa_n) * largest_value(noise.depth_m) * curvature;
       },
       [](const auto& /*other*/) { return 0.0; });
+}
+
+std::string note_of_travel(const schema::Patch& patch, const Device& device) {
+  return travel_words(patch, reached_places(patch, device));
 }
 
 std::vector<std::string> limits_of_device(const PreparedScene& scene, const Device& device,

@@ -21,6 +21,9 @@ schema::Result<core::ForceSetup> force_setup_of(const schema::Device& device, st
 /// the sum of those of its octaves. 0 for other types.
 double local_stiffness_n_per_m(const schema::ForceLayer& layer);
 
+/// A warning with the share of a patch's area that is outside the device's travel; empty if none is.
+std::string note_of_travel(const schema::Patch& patch, const schema::Device& device);
+
 /// Warnings, one line each: an axis x or y that the device does not have; patches beyond its travel, with the
 /// share of their area; patches whose force on a hand at rest exceeds a peak force, with the share of the
 /// places in which it does; patches larger than their height map; where layers that act together are beyond
