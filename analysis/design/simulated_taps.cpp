@@ -91,15 +91,17 @@ schema::Scene with_sliders_at_ends(schema::Scene scene, bool most_damping) {
   const auto raise = [](schema::LayerNumber& number) { number.value = largest_value(number); };
   for (schema::Patch& patch : scene.patches)
     for (schema::ForceLayer& layer : patch.layers)
-      layer.visit([&](schema::SpringLayer& spring) { raise(spring.stiffness_n_per_m); },
-                  [&](schema::DamperLayer& damper) {
-                    schema::LayerNumber& number = damper.damping_n_s_per_m;
-                    if (number.slider) number.value = most_damping ? number.slider->to : number.slider->from;
-                  },
-                  [&](schema::GroovesLayer& grooves) { raise(grooves.kappa_n), raise(grooves.depth_m); },
-                  [&](schema::HeightMapLayer& map) { raise(map.kappa_n); },
-                  [&](schema::NoiseLayer& noise) { raise(noise.kappa_n), raise(noise.depth_m); },
-                  [](auto& /*other*/) {});
+      layer.visit(
+          [&](schema::SpringLayer& spring) { raise(spring.stiffness_n_per_m); },
+          [&](schema::DamperLayer& damper) {
+            schema::LayerNumber& number = damper.damping_n_s_per_m;
+            if (number.slider) number.value = most_damping ? number.slider->to : number.slider->from;
+          },
+          [&](schema::GroovesLayer& grooves) { raise(grooves.kappa_n), raise(grooves.depth_m); },
+          [&](schema::HeightMapLayer& map) { raise(map.kappa_n); },
+          [&](schema::TextureForceLayer& texture) { texture.gain.value = farthest_value(texture.gain); },
+          [&](schema::NoiseLayer& noise) { raise(noise.kappa_n), raise(noise.depth_m); },
+          [](auto& /*other*/) {});
   return scene;
 }
 

@@ -66,12 +66,20 @@ struct NoiseLayer {
   std::string extra_json;
 };
 
-/// A recorded texture, across a direction. Its forces are multiplied by the gain.
+/// The end of its slider that is farther from 0, or its value.
+inline double farthest_value(const LayerNumber& number) {
+  if (!number.slider) return number.value;
+  return -number.slider->from > number.slider->to ? number.slider->from : number.slider->to;
+}
+
+/// A recorded texture, across a direction; its middle is at the centre of the patch. Force on the hand along
+/// the direction: the gain times the stored force, 0 beyond its ends.
 struct TextureForceLayer {
   std::string file;           ///< stem or file name of the texture, from the scene's folder
   LayerNumber direction_deg;  ///< along which the texture's position grows
   LayerNumber gain{1};        ///< 1; its sign may invert the texture
   std::string extra_json;
+  double steepest_n_per_m = 0;  ///< not in the file: of its force at a gain of 1, once it was read
 };
 
 /// A spring to a place.

@@ -209,7 +209,10 @@ Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::si
       },
       [&](const schema::GroovesLayer& grooves) { add_grooves(row, grooves, double{on.setup.rate_hz}); },
       [&](const schema::HeightMapLayer& map) {
-        add_height_map(row, *on.scene.reliefs.at(map.file), double{on.setup.rate_hz});
+        add_height_map(row, on.scene.reliefs.of(map), double{on.setup.rate_hz});
+      },
+      [&](const schema::TextureForceLayer& texture) {
+        add_height_map(row, on.scene.reliefs.of(texture), double{on.setup.rate_hz});
       },
       [&](const schema::NoiseLayer& noise) { add_noise(row, noise, double{on.setup.rate_hz}); },
       [](const auto& /*other*/) {});

@@ -49,6 +49,9 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
         [&](const schema::HeightMapLayer& map) {
           return is_within(folder, schema::height_map_path(schema::texture_in_scene(path, map.file)));
         },
+        [&](const schema::TextureForceLayer& texture) {
+          return serves_texture(folder, schema::texture_in_scene(path, texture.file));
+        },
         [](const auto& /*cannot be played or names no file*/) { return true; });
   };
   for (const schema::Patch& patch : scene->patches)

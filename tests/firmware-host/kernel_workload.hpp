@@ -148,7 +148,7 @@ class SceneWorkload {
     block_.noise.table.gradients = core::shuffled_noise(5);
     for (int i = 0; i < 4; ++i) block_.noise.amplitudes[i] = 0.25F / static_cast<float>(1 << i);
     // 16 x 12 samples 0.5 mm apart, and 8 x 6 of the level that a faster hand feels.
-    block_.relief.table = {1000, 2};
+    block_.relief.table = {1000, 2, 1, 0};
     block_.relief.levels[0] = {{{7, 1U << 31, {{0, 51539607, 0}, {-1, 4226247819U, 0}}},
                                 {5, 1U << 31, {{0, 68719477, 0}, {0, 51539607, 0}}}},
                                {2000, 2000},

@@ -59,7 +59,7 @@ def noise_table(per_count, per_m, amplitudes):
 
 def relief_table(per_m, levels):
     """A level: samples per count along x and y with 32 bits after the point, samples per metre, columns, rows."""
-    table, first, coefficients = struct.pack("<fI", per_m, len(levels)), 0, b""
+    table, first, coefficients = struct.pack("<fIff", per_m, len(levels), 0.8, -0.6), 0, b""
     for x, y, samples_per_m, columns, rows in levels:
         along = struct.pack("<iIiIIiII", 1, 2**31, x >> 32, x & 0xFFFFFFFF, 0, y >> 32, y & 0xFFFFFFFF, 0)
         table += along * 2 + struct.pack("<2f3I", samples_per_m, samples_per_m, columns, rows, first)

@@ -102,7 +102,8 @@ MAY_INCLUDE = {
         "spatial/{dsp/filter dsp/fourier}",
     "playback/prepare/relief": "data-schema/{base height scene} firmware-host/core/scene spatial/dsp/fourier",
     "playback/prepare/scene":
-        "data-schema/{device height scene} firmware-host/core/scene playback/{prepare/relief stability}",
+        "data-schema/{device height scene texture} firmware-host/core/scene playback/{model prepare prepare/relief "
+        "stability}",
     "playback/render":
         "data-schema/{base device recording scene texture transducer} firmware-host/{core/kernel core/scene sim/planar} "
         "playback/{choose model prepare prepare/scene render/reference} spatial/{dsp/filter features}",

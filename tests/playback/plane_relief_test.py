@@ -7,13 +7,15 @@ import zlib
 
 import netCDF4
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
+from scipy.interpolate import CubicSpline, RectBivariateSpline
 
 import tacto
+from made_files import write_texture
 from plane_render_test import MALFORMED, NOT_FOUND, STEP_M, UNSUITABLE, USAGE, counted, patch, write_path, write_scene
 from tacto import run, run_json
 
 PITCH_M, WHITE_M, SIZE = 2e-4, 2e-4, 256
+UNSTABLE = 9
 
 
 def png(name, rows, bits=16, colour=0):
@@ -163,6 +165,69 @@ def a_map_beyond_the_memory_is_refused():
     assert "a pitch 1.0" in err and not list(pathlib.Path().glob("x*")), err
 
 
+def write_noise(name, pitch_m=1e-6, samples=30001, seed=32):
+    """Forces between 0.5 and 10 periods per mm, as `spatial` makes them."""
+    spectrum = np.fft.rfft(np.random.default_rng(seed).standard_normal(samples))
+    f = np.fft.rfftfreq(samples, pitch_m)
+    spectrum[(f < 500) | (f > 10_000)] = 0
+    force = np.fft.irfft(spectrum, samples)
+    force = (0.3 * force / np.abs(force).max()).astype(np.float32)
+    write_texture(pathlib.Path(name), force)
+    return force.astype(np.float64)
+
+
+def a_texture_is_scipys_spline_along_its_direction():
+    force, pitch_m, gain = write_noise("oak"), 1e-6, -1.5
+    write_scene("line", patch(x_m=0.01, y_m=-0.005, angle_deg=20, width_m=0.029, height_m=0.02, layers=[{"type": "texture", "file": "oak", "direction_deg": -50, "gain": {"value": gain, "slider": {"from": -2, "to": 1}}}]))
+    t = np.linspace(0, 2, 81)
+    write_path("path.csv", {"time_s": t, "x_m": 0.01 + 0.007 * np.sin(2 * t), "y_m": -0.005 + 0.006 * np.cos(3 * t)})
+    report = run_json("render", "line.scene.json", "--finger-path", "path.csv", "--device", "sandpaper-1990", "-o", "forces.csv")
+    table = np.genfromtxt("forces.csv", delimiter=",", names=True)
+    place = np.arange(len(force)) * pitch_m
+    length = place[-1]
+    # As on a tray the last mm before each end fades by a raised cosine.
+    faded = force * (0.5 - 0.5 * np.cos(np.pi * np.minimum(np.minimum(place, length - place) / 1e-3, 1)))
+    angle = np.deg2rad(-30)
+    along = np.cos(angle) * (counted(table["x_m"]) - 0.01) + np.sin(angle) * (counted(table["y_m"]) + 0.005)
+    expected = gain * CubicSpline(place, faded)(along + length / 2)
+    assert np.abs(along).max() < length / 2 and np.abs(along).max() > 0.006
+    difference = np.array([table["force_x_n"], table["force_y_n"]]) - np.array([[np.cos(angle)], [np.sin(angle)]]) * expected
+    relative = np.sqrt(np.sum(difference**2) / np.sum(expected**2))
+    print(f"  a path over a texture: within {relative:.2g} of the RMS of SciPy's spline")
+    # Single precision of heights of some 1e-5 m: 1e-12 m on a pitch of 1e-6 m, of forces of 0.1 N.
+    assert relative < 2e-5 and report["largest_rounding_n"] < 1e-6, (relative, report)
+    row = run_json("explain", "line.scene.json", "--device", "sandpaper-1990")["layers"][0]
+    steepest = 2 * np.abs(CubicSpline(place, faded)(np.arange(0, length, pitch_m / 2), 1)).max()
+    assert (row["type"], row["columns"], row["rows"]) == ("texture", len(force) + 1, 1) and abs(row["stiffness_n_per_m"] / steepest - 1) < 1e-3, (row, steepest)
+    assert 0.8e-4 < row["shortest_period_m"] < 1.1e-4 and row["zero_from_mps"] >= 10, row
+    design = run_json("design", "line", "--device", "sandpaper-1990", code=UNSTABLE)
+    assert abs(design["layers"][0]["stiffness_n_per_m"] / row["stiffness_n_per_m"] - 1) < 1e-9, design
+    pathlib.Path("script.csv").write_text("time_s,command\n0.3,set a.texture.gain 1\n0.5,move a 12mm,-3mm\n")
+    played = run_json("play", "line.scene.json", "-d", "sim:planar", "-o", "drawn", "--finger-path", "path.csv", "--script", "script.csv")
+    again = run_json("replay", "drawn")
+    assert again["same_to_the_bit"] is True and again["ticks_compared"] == played["ticks"], again
+
+
+def textures_that_do_not_fit_are_refused_or_warned_of():
+    force = write_noise("oak", samples=5001)
+    layer = {"type": "texture", "file": "oak"}
+    explained = ("explain", "a.scene.json", "--device", "sandpaper-1990")
+    write_scene("a", patch(width_m=0.02, height_m=0.004, layers=[layer]))
+    _, err = run(*explained)
+    assert "larger than its texture 'oak' of 0.005" in err, err
+    # Across its height it is long enough.
+    write_scene("a", patch(width_m=0.02, height_m=0.004, layers=[{**layer, "direction_deg": 90}]))
+    assert "larger" not in run(*explained)[1]
+    small = run_json(*explained, "--device-memory", "1000")
+    assert small["fits"] is False and "shorter" in small["because"], small
+    write_texture(pathlib.Path("deep"), force, quantity="height", unit="m")
+    write_texture(pathlib.Path("drag"), np.full(30001, 2000.0))
+    for file, code, words in (("deep", UNSUITABLE, ("deep", "force")), ("drag", UNSUITABLE, ("drag", "mean")), ("elm", NOT_FOUND, ("elm",))):
+        write_scene("a", patch(layers=[{**layer, "file": file}]))
+        _, err = run(*explained, code=code)
+        assert all(word in err for word in words) and err.strip().count("\n") == 0, err
+
+
 def bad_input_is_refused_with_its_remedy():
     rows = smooth_noise()[:16, :16]
     png("grey.png", rows)
@@ -210,5 +275,6 @@ def bad_input_is_refused_with_its_remedy():
 
 if __name__ == "__main__":
     for test in (a_png_becomes_a_height_map, a_profile_becomes_a_map_of_one_row, forces_are_scipys_spline, explain_says_levels_speeds_and_memory,
-                 a_large_map_is_played_and_replayed, a_map_beyond_the_memory_is_refused, bad_input_is_refused_with_its_remedy):
+                 a_large_map_is_played_and_replayed, a_map_beyond_the_memory_is_refused, a_texture_is_scipys_spline_along_its_direction, textures_that_do_not_fit_are_refused_or_warned_of,
+                 bad_input_is_refused_with_its_remedy):
         tacto.in_folder(test)

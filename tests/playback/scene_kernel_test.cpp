@@ -13,6 +13,7 @@
 #include <random>
 
 #include "data-schema/height/height_map.hpp"
+#include "data-schema/texture/texture.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
@@ -79,6 +80,17 @@ schema::ForceLayer height_map(const std::string& name, std::size_t columns, std:
   const std::string path = schema::height_map_path(testing::TempDir() + name);
   EXPECT_TRUE(schema::write_height_map(path, map, schema::Existing::replace));
   return schema::HeightMapLayer{path, {kappa_n}, "", 0};
+}
+
+// The same; `force_n` by the number of the sample.
+schema::ForceLayer texture(const std::string& name, std::size_t samples, double pitch_m, double direction_deg,
+                           double gain, const std::function<double(double)>& force_n) {
+  schema::Texture made;
+  made.signal.pitch_m = pitch_m;
+  for (std::size_t i = 0; i < samples; ++i) made.signal.values.push_back(force_n(static_cast<double>(i)));
+  const std::string path = testing::TempDir() + name;
+  EXPECT_TRUE(schema::write_texture(path, made));
+  return schema::TextureForceLayer{path, {direction_deg}, {gain}, "", 0};
 }
 
 Patch patch(const std::string& name, std::vector<schema::ForceLayer> layers) {
@@ -375,6 +387,10 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
       patches.back().layers.push_back(height_map("map" + std::to_string(i), 40, 30, pitch_m, kappa_n,
                                                  [&](double, double) { return draw(-white_m, white_m); }));
       scale += kappa_n * white_m / pitch_m * 6;  // coefficients of white heights are within 3 of them
+      const double gain = draw(-2, 2), white_n = draw(0, 0.5);
+      patches.back().layers.push_back(texture("texture" + std::to_string(i), 3000, 2e-5, draw(-360, 360),
+                                              gain, [&](double) { return draw(-white_n, white_n); }));
+      scale += std::abs(gain) * white_n * 3;  // as of the height maps
       patches.back().x_m = draw(-0.05, 0.05);
       patches.back().angle_deg = draw(-360, 360);
       patches.back().order = draw(-1, 1);
@@ -480,17 +496,13 @@ TEST(SceneKernel, AFurtherMoveEndsTheOldest) {
   EXPECT_NEAR(on.at(0, 0).force_n[0], 0.01 + 16 * 1e-4, 1e-7);
 }
 
-// Square grooves of 0.5 mm as a height map, at 1 kHz and steady speeds: all that is no harmonic below half
-// the rate is an image of the spline or was folded by the rate. The harmonic m n falls into bin m n of 512.
-// At its ends the map continues evenly as the same grooves.
-TEST(SceneKernel, AHeightMapAtSteadySpeedHasOnlyHarmonics) {
+// A surface of 0.5 mm at 1 kHz and steady speeds: all that is no harmonic below half the rate is an image of
+// the spline or was folded by the rate. The harmonic m n falls into bin m n of 512. `first_n`: its first
+// harmonic.
+void expect_only_harmonics(const char* name, schema::ForceLayer layer, double first_n) {
   constexpr std::size_t kTicks = 512;
-  const double period_m = 5e-4, top_m = 5e-5;
-  Patch wide = patch("a", {height_map("square", 52 * 280, 1, period_m / 52, 1, [&](double x, double) {
-                       return std::fmod(x + 13, 52) < 26 ? top_m : -top_m;
-                     })});
-  OnDevice on(unlimited(1e-9), {wide});
-  const double first_n = 4 / std::numbers::pi * top_m * 2 * std::numbers::pi / period_m;  // of its slope
+  const double period_m = 5e-4;
+  OnDevice on(unlimited(1e-9), {patch("a", {std::move(layer)})});
   const double whole = std::pow(first_n * kTicks / 2, 2);  // its power in a bin
   spatial::RealFft fft(kTicks);
   for (const std::size_t m : {11U, 21U, 31U, 51U, 77U, 103U, 151U, 205U, 301U, 511U}) {
@@ -507,11 +519,80 @@ TEST(SceneKernel, AHeightMapAtSteadySpeedHasOnlyHarmonics) {
     for (std::size_t bin = 0; bin < spectrum.size(); ++bin)
       (bin % m == 0 && bin > 0 ? harmonics : others) += std::norm(spectrum[bin]);
     const double others_db = 10 * std::log10(others / std::max(harmonics, whole));
-    std::printf("  square grooves at %.3g mm/s: %.1f dB is no harmonic\n", 1e6 * step_m, others_db);
-    EXPECT_LT(others_db, -65) << m;
+    std::printf("  %s at %.3g mm/s: %.1f dB is no harmonic\n", name, 1e6 * step_m, others_db);
+    EXPECT_LT(others_db, -65) << name << ' ' << m;
     // The first harmonic is whole up to 0.8 x 0.354 of the rate.
-    if (100 * m < 28 * kTicks) EXPECT_GT(harmonics, 0.98 * whole) << m;
+    if (100 * m < 28 * kTicks) EXPECT_GT(harmonics, 0.98 * whole) << name << ' ' << m;
   }
+}
+
+// Square grooves; at its ends the map continues evenly as the same grooves.
+TEST(SceneKernel, AHeightMapAtSteadySpeedHasOnlyHarmonics) {
+  const double top_m = 5e-5, first_n = 4 / std::numbers::pi * top_m * 2 * std::numbers::pi / 5e-4;
+  expect_only_harmonics(
+      "square grooves",
+      height_map("square", 52 * 280, 1, 5e-4 / 52, 1,
+                 [&](double x, double) { return std::fmod(x + 13, 52) < 26 ? top_m : -top_m; }),
+      first_n);
+}
+
+TEST(SceneKernel, ATextureAtSteadySpeedHasOnlyHarmonics) {
+  expect_only_harmonics("a square texture",
+                        texture("square", 52 * 400, 5e-4 / 52, 0, 1,
+                                [](double i) { return std::fmod(i, 52) < 26 ? 0.2 : -0.2; }),
+                        4 / std::numbers::pi * 0.2);
+}
+
+// 40 mm of a sine of 2 mm. Its fade at the ends is 1 mm.
+TEST(SceneKernel, ATextureIsItsForceAlongItsDirection) {
+  const double turn = 2 * std::numbers::pi / 2e-3, half_m = 0.5 * 3999 * 1e-5;
+  Patch turned =
+      patch("turned",
+            {texture("sine", 4000, 1e-5, 20, -2, [&](double i) { return 0.5 * std::sin(turn * i * 1e-5); })});
+  turned.x_m = 0.0123;
+  turned.y_m = -0.004;
+  turned.angle_deg = 30;
+  const double c = std::cos(50 * std::numbers::pi / 180), s = std::sin(50 * std::numbers::pi / 180);
+  OnDevice on(unlimited(1e-9), {turned});
+  std::mt19937_64 random(51);
+  std::uniform_real_distribution<double> place(-0.05, 0.05);
+  double worst = 0;
+  int inside = 0, outside = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double x = std::round(place(random) * 1e9) * 1e-9, y = std::round(place(random) * 1e9) * 1e-9;
+    on.kernel.set(on.scene.view(), *force_setup_of(on.device, 1000), on.live.data());
+    const core::ForceOutput output = on.at(x, y);
+    const double along = (x - 0.0123) * c + (y + 0.004) * s;
+    if (std::abs(along) > half_m + 3e-5) {
+      EXPECT_EQ(output.force_n[0], 0);
+      EXPECT_EQ(output.force_n[1], 0);
+      ++outside;
+    }
+    if (std::abs(along) > half_m - 1.1e-3) continue;
+    const double force_n = -2 * 0.5 * std::sin(turn * (along + half_m));
+    worst = std::max(
+        {worst, std::abs(output.force_n[0] - force_n * c), std::abs(output.force_n[1] - force_n * s)});
+    ++inside;
+  }
+  EXPECT_GT(inside, 500);
+  EXPECT_GT(outside, 500);
+  // Of 1 N: single precision of heights of 0.16 mm, 7e-12 m twice on a pitch of 1e-5 m, times the gain of 2.
+  std::printf("  a sine as a texture: within %.2g of its amplitude\n", worst);
+  EXPECT_LT(worst, 4e-6);
+}
+
+// 10 m/s across it: nothing of it changes.
+TEST(SceneKernel, ATextureIsWholeForAHandThatMovesAcrossIt) {
+  Patch line = patch("line", {texture("fine", 400, 1e-5, 90, 1,
+                                      [](double i) { return std::sin(2 * std::numbers::pi * i / 20); })});
+  OnDevice on(unlimited(), {line});
+  const float rests_n = on.at(0, 5.5e-4).force_n[1];
+  EXPECT_GT(std::abs(rests_n), 0.5F);
+  for (int tick = 1; tick < 10; ++tick) EXPECT_EQ(on.at(0.01 * tick, 5.5e-4).force_n[1], rests_n) << tick;
+  float moved_n = 0;
+  for (int tick = 0; tick < 10; ++tick)
+    moved_n = on.at(0, 1e-3 * tick - 4.5e-3).force_n[1];  // 5 periods per tick
+  EXPECT_EQ(moved_n, 0);
 }
 
 TEST(SceneKernel, TheLimitsOfTheReferenceAreTheKernels) {
@@ -670,11 +751,12 @@ TEST(SceneBlock, AHarmfulHeightMapIsRefused) {
   };
   EXPECT_EQ(fault(1, 0), core::SceneFault::structure);  // levels
   EXPECT_EQ(fault(1, 0xFFFFFFFF), core::SceneFault::structure);
-  EXPECT_EQ(fault(2 + 18, 7), core::SceneFault::structure);  // columns
-  EXPECT_EQ(fault(2 + 18, 0x80000000), core::SceneFault::structure);
-  EXPECT_EQ(fault(2 + 19, 0), core::SceneFault::structure);                     // rows
-  EXPECT_EQ(fault(2 + 20, 1), core::SceneFault::structure);                     // first coefficient
-  EXPECT_EQ(fault(2 + 16, 0x7F800000), core::SceneFault::value);                // samples per metre
+  EXPECT_EQ(fault(4 + 18, 7), core::SceneFault::structure);  // columns
+  EXPECT_EQ(fault(4 + 18, 0x80000000), core::SceneFault::structure);
+  EXPECT_EQ(fault(4 + 19, 0), core::SceneFault::structure);                     // rows
+  EXPECT_EQ(fault(4 + 20, 1), core::SceneFault::structure);                     // first coefficient
+  EXPECT_EQ(fault(4 + 16, 0x7F800000), core::SceneFault::value);                // samples per metre
+  EXPECT_EQ(fault(2, 0x3F000000), core::SceneFault::value);                     // cosine
   EXPECT_EQ(fault(0, 0x7FC00000), core::SceneFault::value);                     // highest frequency
   EXPECT_EQ(fault(view.table_words - 1, 0x41300000), core::SceneFault::value);  // a coefficient of 11 m
   EXPECT_EQ(fault(view.table_words - 1, 0x3F800000), core::SceneFault::none);

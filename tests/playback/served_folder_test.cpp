@@ -71,6 +71,19 @@ TEST_F(ServedFolder, TheHeightMapsOfAScene) {
   }
 }
 
+TEST_F(ServedFolder, TheTexturesOfAPatch) {
+  for (const char* file : {"deeper/elm", "../other/secret", "absent"}) {
+    schema::Patch patch;
+    patch.name = "a";
+    patch.width_m = patch.height_m = 0.1;
+    patch.layers = {schema::TextureForceLayer{file, {0}, {1}, "", 0}};
+    schema::Scene scene;
+    scene.patches = {patch};
+    ASSERT_TRUE(schema::write_scene(folder_ / "served/drawn", scene));
+    EXPECT_EQ(served("drawn"), std::string(file) == "deeper/elm") << file;
+  }
+}
+
 TEST_F(ServedFolder, WhatIsElsewhereAndWhatIsMissingHaveOneError) {
   const std::string missing = refusal("elm");
   const std::string outside = folder_ / "other/secret", absent = folder_ / "other/absent";

@@ -19,16 +19,16 @@ constexpr float kUnitRounding = 1e-5F;  // rounding of cosine^2 + sine^2
 constexpr float kDeepest_m = 1, kMostKappa_n = 1000;
 constexpr float kMostPeriods_per_m = 1.001e6F;
 constexpr float kLargestAmplitude = 2;  // of a harmonic; 4 / pi of a square wave
-// Of a height map within 1 m: 3 along each axis if its signs alternate.
-constexpr float kLargestCoefficient_m = 10;
 constexpr float kMostSamples_per_m = 1.001e8F;
 
+bool is_direction(float cosine, float sine) noexcept {
+  return within(cosine * cosine + sine * sine, 1 - kUnitRounding, 1 + kUnitRounding);
+}
+
 bool sound(const ScenePatch& patch) noexcept {
-  const float square = patch.cosine * patch.cosine + patch.sine * patch.sine;
   return within(patch.centre_x_m, -kFarthestPatch_m, kFarthestPatch_m) &&
          within(patch.centre_y_m, -kFarthestPatch_m, kFarthestPatch_m) &&
-         within(square, 1 - kUnitRounding, 1 + kUnitRounding) &&
-         within(patch.half_width_m, 0, kFarthestPatch_m) &&
+         is_direction(patch.cosine, patch.sine) && within(patch.half_width_m, 0, kFarthestPatch_m) &&
          within(patch.half_height_m, 0, kFarthestPatch_m) && patch.adds <= 1;
 }
 
@@ -41,7 +41,7 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
     case SceneLayerKind::damper:
       return within(number[kDamperDamping], 0, kMostDamping_n_s_per_m);
     case SceneLayerKind::height_map:
-      return within(number[kHeightMapKappa], 0, kMostKappa_n);
+      return within(number[kHeightMapKappa], -kMostKappa_n, kMostKappa_n);
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
       break;
@@ -102,7 +102,9 @@ SceneFault check_relief(const SceneView& view, const SceneLayer& layer, uint32_t
   const float* const first = coefficients_of(table, levels_of(table)[0]);
   for (uint64_t i = 0; i < coefficients; ++i)
     if (!within(first[i], -kLargestCoefficient_m, kLargestCoefficient_m)) return SceneFault::value;
-  return within(table.highest_per_m, 0, kMostSamples_per_m) ? SceneFault::none : SceneFault::value;
+  return within(table.highest_per_m, 0, kMostSamples_per_m) && is_direction(table.cosine, table.sine)
+             ? SceneFault::none
+             : SceneFault::value;
 }
 
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,

@@ -101,6 +101,8 @@ struct NoiseSurfaceTable {
 static_assert(sizeof(NoiseSurfaceTable) == 328);
 
 inline constexpr uint32_t kMostReliefLevels = 32;
+/// Of a height map within 1 m: 3 along each axis if its signs alternate.
+inline constexpr float kLargestCoefficient_m = 10;
 
 /// The levels of a height map, from the finest on: this, the levels, then the coefficients of all levels,
 /// f32, one level after the other, row by row.
@@ -108,12 +110,13 @@ struct ReliefTable {
   float highest_per_m =
       0;  ///< spatial frequency, of the first level; half an octave less of each further one
   uint32_t levels = 0;
+  float cosine = 1, sine = 0;  ///< of the angle of the map in the patch
 };
-static_assert(sizeof(ReliefTable) == 8);
+static_assert(sizeof(ReliefTable) == 16);
 
 struct ReliefLevelTable {
-  SceneRow along[2];            ///< along the axes x and y of the patch, in samples
-  float samples_per_m[2] = {};  ///< along these axes
+  SceneRow along[2];            ///< along the columns and rows of the map, in samples
+  float samples_per_m[2] = {};  ///< along them
   uint32_t columns = 0, rows = 0;
   uint32_t first = 0;  ///< of its coefficients, among those of all levels
 };

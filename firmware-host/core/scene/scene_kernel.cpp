@@ -159,11 +159,16 @@ PlaneVector SceneKernel::noise_force(const SceneLayer& layer, const Hand& hand) 
   return {force * at.by_x, force * at.by_y};
 }
 
-// A level is left when its highest frequency reaches half the rate.
-PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand) const noexcept {
+// A level is left when its highest frequency reaches half the rate. A map of one row varies along it only.
+PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand,
+                                      PlaneVector along) const noexcept {
   const auto& table = table_of<ReliefTable>(scene_, layer);
   const PlaneVector v = hand.along_mps;
-  const float cycles_per_tick = __builtin_sqrtf(v.x * v.x + v.y * v.y) * table.highest_per_m / setup_.rate_hz;
+  const float along_row = along.x * table.cosine + along.y * table.sine;
+  const float speed = levels_of(table)->rows > 1 ? __builtin_sqrtf(v.x * v.x + v.y * v.y)
+                      : along_row < 0            ? -along_row
+                                                 : along_row;
+  const float cycles_per_tick = speed * table.highest_per_m / setup_.rate_hz;
   const Detail detail = detail_at(cycles_per_tick * (1 / kWholeReliefPerTick));
   const float weights[2] = {1 - detail.fade, detail.fade};
   PlaneVector slope;
@@ -177,7 +182,8 @@ PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand)
     slope.y += weights[i] * level.samples_per_m[1] * at.by_y;
   }
   const float kappa = live_[layer.first_number + kHeightMapKappa];
-  return {-kappa * slope.x, -kappa * slope.y};
+  return {-kappa * (table.cosine * slope.x - table.sine * slope.y),
+          -kappa * (table.sine * slope.x + table.cosine * slope.y)};
 }
 
 PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) const noexcept {
@@ -203,7 +209,7 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) con
         force = noise_force(layer, hand);
         break;
       case SceneLayerKind::height_map:
-        force = relief_force(layer, hand);
+        force = relief_force(layer, hand, along);
         break;
     }
     sum.x += force.x;

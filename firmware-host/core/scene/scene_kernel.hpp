@@ -65,7 +65,7 @@ class SceneKernel {
   Hand hand_on(uint32_t patch, const Hand& hand) const noexcept;
   PlaneVector groove_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
   PlaneVector noise_force(const SceneLayer& layer, const Hand& hand) const noexcept;
-  PlaneVector relief_force(const SceneLayer& layer, const Hand& hand) const noexcept;
+  PlaneVector relief_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
 
   struct Ramp {
     uint32_t number = 0;  // in the scene's numbers

@@ -21,8 +21,7 @@ constexpr double kLeastPower = 1e-6;  // -60 dB; cubic splines of 12 samples a p
 constexpr double kSamplesPerPeriod = 12, kPassed = 0.8;  // of a level's highest frequency
 constexpr std::size_t kEnoughCoefficients = std::size_t{1} << 23, kMostCoefficients = std::size_t{1} << 29;
 
-std::vector<double> above_mean(const schema::HeightMap& map) {
-  std::vector<double> heights(map.height_m.begin(), map.height_m.end());
+std::vector<double> above_mean(std::vector<double> heights) {
   double sum = 0;
   for (const double height : heights) sum += height;
   for (double& height : heights) height -= sum / static_cast<double>(heights.size());
@@ -132,6 +131,54 @@ double weighted(const double (&weights)[4], const std::vector<double>& values, s
          weights[2] * values[std::min(i + 1, last)] + weights[3] * values[std::min(i + 2, last)];
 }
 
+// Heights with a mean of 0.
+schema::Result<Relief> levels_of(std::vector<double> heights, GridSize whole, double pitch_m, double rate_hz,
+                                 double fastest_mps, const std::string& where) {
+  const double highest = highest_frequency(heights, whole);
+  Relief relief{whole.columns, whole.rows, pitch_m, highest / pitch_m, 0, {}};
+  relief.levels.push_back(
+      {whole.columns, whole.rows, relief_coefficients(heights, whole.columns, whole.rows)});
+  const double fastest = fastest_mps / relief.whole_to_mps(rate_hz);
+  double finer = std::max(1.0, kSamplesPerPeriod * highest);
+  std::vector<LevelPlan> plans = planned_levels(whole, highest, fastest, finer);
+  while (finer > 1 && heights.size() + coefficients_of(plans) > kEnoughCoefficients) {
+    finer = std::max(1.0, finer / std::numbers::sqrt2);
+    plans = planned_levels(whole, highest, fastest, finer);
+  }
+  if (const std::size_t all = heights.size() + coefficients_of(plans); all > kMostCoefficients)
+    return schema::fail(
+        schema::ErrorKind::unsuitable,
+        fmt::format("it has {} coefficients in {} levels", all, plans.size() + 1), where,
+        fmt::format("give it a pitch {:.2g} times as large",
+                    std::sqrt(static_cast<double>(all) / static_cast<double>(kMostCoefficients))));
+  if (plans.empty()) return relief;
+  relief.samples_per_period = std::min(kSamplesPerPeriod, finer / plans.front().highest);
+  to_cosines(heights, whole);
+  for (const LevelPlan& plan : plans) relief.levels.push_back(level_of(heights, whole, plan));
+  return relief;
+}
+
+// Between columns i and i + 1 of the map is sample i of the texture. There the slope of the cubic B-spline is
+// (d[i-1] + 6 d[i] + d[i+1]) / 8 with the differences d of its coefficients, of which those beyond the ends
+// are 0: a quadratic B-spline in d.
+std::vector<double> heights_with_slope(const std::vector<double>& slope, double pitch_m) {
+  const std::size_t n = slope.size();
+  std::vector<double> above(n), d(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    above[i] = 1 / (6 - (i > 0 ? above[i - 1] : 0));
+    d[i] = (8 * pitch_m * slope[i] - (i > 0 ? d[i - 1] : 0)) * above[i];
+  }
+  for (std::size_t i = n - 1; i > 0; --i) d[i - 1] -= above[i - 1] * d[i];
+  std::vector<double> heights(n + 1);
+  double coefficient = 0;
+  for (std::size_t i = 0; i <= n; ++i) {
+    const double before = i > 0 ? d[i - 1] : 0, after = i < n ? d[i] : 0;
+    coefficient += before;
+    heights[i] = coefficient + (after - before) / 6;
+  }
+  return heights;
+}
+
 }  // namespace
 
 // At the samples and halfway between them.
@@ -176,29 +223,16 @@ double Relief::zero_from_mps(double rate_hz) const {
 
 schema::Result<Relief> relief_levels(const schema::HeightMap& map, double rate_hz, double fastest_mps,
                                      const std::string& where) {
-  std::vector<double> heights = above_mean(map);
-  const GridSize whole{map.columns, map.rows};
-  const double highest = highest_frequency(heights, whole);
-  Relief relief{map.columns, map.rows, map.pitch_m, highest / map.pitch_m, 0, {}};
-  relief.levels.push_back({map.columns, map.rows, relief_coefficients(heights, map.columns, map.rows)});
-  const double fastest = fastest_mps / relief.whole_to_mps(rate_hz);
-  double finer = std::max(1.0, kSamplesPerPeriod * highest);
-  std::vector<LevelPlan> plans = planned_levels(whole, highest, fastest, finer);
-  while (finer > 1 && heights.size() + coefficients_of(plans) > kEnoughCoefficients) {
-    finer = std::max(1.0, finer / std::numbers::sqrt2);
-    plans = planned_levels(whole, highest, fastest, finer);
-  }
-  if (const std::size_t all = heights.size() + coefficients_of(plans); all > kMostCoefficients)
-    return schema::fail(
-        schema::ErrorKind::unsuitable,
-        fmt::format("this height map has {} coefficients in {} levels", all, plans.size() + 1), where,
-        fmt::format("give it a pitch {:.2g} times as large",
-                    std::sqrt(static_cast<double>(all) / static_cast<double>(kMostCoefficients))));
-  if (plans.empty()) return relief;
-  relief.samples_per_period = std::min(kSamplesPerPeriod, finer / plans.front().highest);
-  to_cosines(heights, whole);
-  for (const LevelPlan& plan : plans) relief.levels.push_back(level_of(heights, whole, plan));
-  return relief;
+  return levels_of(above_mean({map.height_m.begin(), map.height_m.end()}), {map.columns, map.rows},
+                   map.pitch_m, rate_hz, fastest_mps, where);
+}
+
+schema::Result<Relief> texture_levels(const schema::SpaceSignal& force_n, double rate_hz, double fastest_mps,
+                                      const std::string& where) {
+  std::vector<double> slope;
+  for (const double value_n : force_n.values) slope.push_back(-value_n);
+  return levels_of(above_mean(heights_with_slope(slope, force_n.pitch_m)), {slope.size() + 1, 1},
+                   force_n.pitch_m, rate_hz, fastest_mps, where);
 }
 
 }  // namespace tacto::playback

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/signal.hpp"
 #include "data-schema/height/height_map.hpp"
 
 namespace tacto::playback {
@@ -41,5 +42,11 @@ struct Relief {
 /// unsuitable: levels of more than 2 GB.
 schema::Result<Relief> relief_levels(const schema::HeightMap& map, double rate_hz, double fastest_mps,
                                      const std::string& where);
+
+/// A texture as a map of one row: the slope of its first level is minus the force (in N, as m/m),
+/// interpolated between the samples by a quadratic B-spline. Its middle is that of the texture; beyond the
+/// ends the slope is 0. Precondition: at least 2 samples. Errors: as relief_levels.
+schema::Result<Relief> texture_levels(const schema::SpaceSignal& force_n, double rate_hz, double fastest_mps,
+                                      const std::string& where);
 
 }  // namespace tacto::playback

@@ -11,8 +11,11 @@
 #include <utility>
 
 #include "data-schema/height/height_map.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "playback/model/texture_lookup.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
+#include "playback/prepare/texture_check.hpp"
 #include "playback/stability/free_limit.hpp"
 #include "playback/stability/hand_limit.hpp"
 
@@ -35,10 +38,9 @@ struct KindInBlock {
 
 // Named one by one: a new kind of layer does not compile until it is here or has data.
 template <class L>
-concept NotPlayedYet = std::same_as<L, schema::TextureForceLayer> || std::same_as<L, schema::MassLayer> ||
-                       std::same_as<L, schema::BodyLayer> || std::same_as<L, schema::LassoLayer> ||
-                       std::same_as<L, schema::MoverLayer> || std::same_as<L, schema::ForceMapLayer> ||
-                       std::same_as<L, schema::FieldLayer>;
+concept NotPlayedYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::BodyLayer> ||
+                       std::same_as<L, schema::LassoLayer> || std::same_as<L, schema::MoverLayer> ||
+                       std::same_as<L, schema::ForceMapLayer> || std::same_as<L, schema::FieldLayer>;
 
 template <class T>
 void append(Words& words, const T* parts, std::size_t count) {
@@ -108,10 +110,13 @@ Words table_of(const schema::NoiseLayer& noise, const schema::Patch& patch, cons
   return words;
 }
 
-// The centre of the map is the centre of the patch.
-Words table_of(const Relief& relief, const schema::Patch& patch, const PlaneSteps& steps) {
-  const core::ReliefTable table{static_cast<float>(relief.highest_per_m),
-                                static_cast<std::uint32_t>(relief.levels.size())};
+// The centre of the map is the centre of the patch; its columns grow along `angle_deg` from the patch's axis
+// x.
+Words table_of(const Relief& relief, double angle_deg, const schema::Patch& patch, const PlaneSteps& steps) {
+  const double angle_rad = angle_deg * std::numbers::pi / 180;
+  const core::ReliefTable table{
+      static_cast<float>(relief.highest_per_m), static_cast<std::uint32_t>(relief.levels.size()),
+      static_cast<float>(std::cos(angle_rad)), static_cast<float>(std::sin(angle_rad))};
   Words words;
   append(words, &table, 1);
   std::uint32_t first = 0;
@@ -121,7 +126,7 @@ Words table_of(const Relief& relief, const schema::Patch& patch, const PlaneStep
     for (int i = 0; i < 2; ++i) {
       const auto count = static_cast<double>(places[i]);
       const double pitch_m = relief.pitch_m * static_cast<double>(of_map[i]) / count;
-      row.along[i] = row_of(patch, patch.angle_deg + 90 * i, pitch_m, steps, (count - 1) / 2);
+      row.along[i] = row_of(patch, patch.angle_deg + angle_deg + 90 * i, pitch_m, steps, (count - 1) / 2);
       row.samples_per_m[i] = static_cast<float>(1 / pitch_m);
     }
     row.columns = static_cast<std::uint32_t>(level.columns);
@@ -137,7 +142,10 @@ Words table_of(const Relief& relief, const schema::Patch& patch, const PlaneStep
 Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneSteps& steps,
                const Reliefs& reliefs) {
   return layer.visit(
-      [&](const schema::HeightMapLayer& map) { return table_of(*reliefs.at(map.file), patch, steps); },
+      [&](const schema::HeightMapLayer& map) { return table_of(reliefs.of(map), 0, patch, steps); },
+      [&](const schema::TextureForceLayer& texture) {
+        return table_of(reliefs.of(texture), texture.direction_deg.value, patch, steps);
+      },
       [&](const schema::GroovesLayer& grooves) { return table_of(grooves, patch, steps); },
       [&](const schema::NoiseLayer& noise) { return table_of(noise, patch, steps); },
       [](const auto& /*without a table*/) { return Words(); });
@@ -161,6 +169,9 @@ std::optional<KindInBlock> kind_of(const ForceLayer& layer) {
       [](const schema::HeightMapLayer& /*map*/) -> Kind {
         return {{SceneLayerKind::height_map, {"kappa_n"}}};
       },
+      [](const schema::TextureForceLayer& /*texture*/) -> Kind {
+        return {{SceneLayerKind::height_map, {"gain"}}};
+      },
       [](const NotPlayedYet auto& /*layer*/) -> Kind { return std::nullopt; });
 }
 
@@ -168,10 +179,10 @@ Result<void> check_types(const schema::Scene& scene, const std::string& where) {
   for (std::size_t i = 0; i < scene.patches.size(); ++i)
     for (std::size_t j = 0; j < scene.patches[i].layers.size(); ++j)
       if (const ForceLayer& layer = scene.patches[i].layers[j]; !kind_of(layer))
-        return fail(ErrorKind::unsuitable,
-                    fmt::format("layers of the type {} cannot be played yet", type_of(layer)),
-                    fmt::format("{}#/patches/{}/layers/{}/type", where, i, j),
-                    "the types that can be played are spring, damper, grooves, noise and height_map");
+        return fail(
+            ErrorKind::unsuitable, fmt::format("layers of the type {} cannot be played yet", type_of(layer)),
+            fmt::format("{}#/patches/{}/layers/{}/type", where, i, j),
+            "the types that can be played are spring, damper, grooves, noise, height_map and texture");
   return {};
 }
 
@@ -195,6 +206,31 @@ core::ScenePatch patch_data(const schema::Patch& patch) {
   data.half_height_m = static_cast<float>(patch.height_m / 2);
   data.adds = patch.combine == schema::PatchCombine::add ? 1 : 0;
   return data;
+}
+
+Result<Relief> levels_of_map(const std::string& file, double rate_hz) {
+  const auto map = schema::read_height_map(file);
+  TACTO_TRY(map);
+  return relief_levels(*map, rate_hz, kFastestHandMps, schema::height_map_path(file));
+}
+
+Result<Relief> levels_of_texture(const std::string& file, double rate_hz) {
+  const auto texture = schema::read_texture(file);
+  TACTO_TRY(texture);
+  if (auto playable = check_playable(*texture); !playable)
+    return fail(ErrorKind::unsuitable, playable.error().what, file, playable.error().remedy);
+  const TextureLookup faded(texture->signal, 0);
+  schema::SpaceSignal force_n{texture->signal.pitch_m, 0, {}};
+  for (std::size_t i = 0; i < texture->signal.values.size(); ++i)
+    force_n.values.push_back(faded(force_n.position_m(i)));
+  auto levels = texture_levels(force_n, rate_hz, kFastestHandMps, file);
+  TACTO_TRY(levels);
+  for (const ReliefLevel& level : levels->levels)
+    if (std::ranges::any_of(level.coefficients,
+                            [](float c) { return std::abs(c) > core::kLargestCoefficient_m; }))
+      return fail(ErrorKind::unsuitable, "its mean force is too large for its length", file,
+                  "subtract the mean of its forces, or make it shorter");
+  return levels;
 }
 
 Words block_of(const std::vector<schema::Patch>& from, const PlaneSteps& steps, const Reliefs& reliefs) {
@@ -257,13 +293,15 @@ std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLa
 }
 
 std::string PreparedScene::remedy_for(std::size_t room) const {
-  std::size_t maps = 0;
+  std::size_t maps = 0, textures = 0;
   for (const schema::Patch& patch : patches)
     for (const ForceLayer& layer : patch.layers)
-      if (layer.visit([](const schema::HeightMapLayer& /*map*/) { return true; },
-                      [](const auto& /*other*/) { return false; }))
-        maps += layer_bytes(patch, layer);
+      layer.visit(
+          [&](const schema::HeightMapLayer& /*map*/) { maps += layer_bytes(patch, layer); },
+          [&](const schema::TextureForceLayer& /*texture*/) { textures += layer_bytes(patch, layer); },
+          [](const auto& /*other*/) {});
   const std::size_t others = bytes() - maps;
+  if (textures > 0 && others >= room) return "make its textures shorter";
   if (maps == 0 || others >= room) return {};
   const double factor = std::sqrt(static_cast<double>(maps) / static_cast<double>(room - others));
   return fmt::format("give its height maps a pitch {:.2f} times as large", std::ceil(100 * factor) / 100);
@@ -271,24 +309,37 @@ std::string PreparedScene::remedy_for(std::size_t room) const {
 
 Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, double rate_hz) {
   Reliefs reliefs;
-  const auto read = [&](const schema::Patch& patch, schema::HeightMapLayer& layer) -> Result<void> {
-    auto& relief = reliefs[layer.file];
+  const auto map_in = [&](const schema::Patch& patch, schema::HeightMapLayer& layer) -> Result<void> {
+    auto& relief = reliefs.height_maps[layer.file];
     if (!relief) {
-      const std::string file = schema::texture_in_scene(where, layer.file);
-      const auto map = schema::read_height_map(file);
-      TACTO_TRY(map);
-      auto levels = relief_levels(*map, rate_hz, kFastestHandMps, schema::height_map_path(file));
+      auto levels = levels_of_map(schema::texture_in_scene(where, layer.file), rate_hz);
       TACTO_TRY(levels);
       relief = std::make_shared<const Relief>(std::move(*levels));
     }
     layer.curvature_per_m = relief->curvature_per_m(patch.width_m, patch.height_m);
     return {};
   };
+  const auto texture_in = [&](const schema::Patch& patch, schema::TextureForceLayer& layer) -> Result<void> {
+    auto& relief = reliefs.textures[layer.file];
+    if (!relief) {
+      auto levels = levels_of_texture(schema::texture_in_scene(where, layer.file), rate_hz);
+      TACTO_TRY(levels);
+      relief = std::make_shared<const Relief>(std::move(*levels));
+    }
+    layer.steepest_n_per_m = relief->curvature_per_m(length_across(patch, layer.direction_deg.value), 0);
+    return {};
+  };
   for (schema::Patch& patch : scene.patches)
     for (ForceLayer& layer : patch.layers)
-      TACTO_TRY(layer.visit([&](schema::HeightMapLayer& map) { return read(patch, map); },
+      TACTO_TRY(layer.visit([&](schema::HeightMapLayer& map) { return map_in(patch, map); },
+                            [&](schema::TextureForceLayer& texture) { return texture_in(patch, texture); },
                             [](auto& /*other*/) { return Result<void>(); }));
   return reliefs;
+}
+
+double length_across(const schema::Patch& patch, double direction_deg) {
+  const double angle_rad = direction_deg * std::numbers::pi / 180;
+  return patch.width_m * std::abs(std::cos(angle_rad)) + patch.height_m * std::abs(std::sin(angle_rad));
 }
 
 double stiffness_limit_of(const schema::Device& device, double rate_hz,

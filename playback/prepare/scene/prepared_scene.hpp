@@ -28,8 +28,13 @@ struct PlaneSteps {
 /// A hand that is faster is a jump of the encoder.
 inline constexpr double kFastestHandMps = 10;
 
-/// The height maps of a scene, by the names in their layers.
-using Reliefs = std::map<std::string, std::shared_ptr<const Relief>>;
+/// The height maps and textures of a scene, by the names in their layers.
+struct Reliefs {
+  std::map<std::string, std::shared_ptr<const Relief>> height_maps, textures;
+
+  const Relief& of(const schema::HeightMapLayer& layer) const { return *height_maps.at(layer.file); }
+  const Relief& of(const schema::TextureForceLayer& layer) const { return *textures.at(layer.file); }
+};
 
 /// The block for one device, and the patches from which it was made, both from the topmost patch on.
 struct PreparedScene {
@@ -44,7 +49,8 @@ struct PreparedScene {
   core::SceneView view() const;
   /// Other patches for the same device, each of them once part of such a scene.
   PreparedScene with(std::vector<schema::Patch> others) const;
-  /// What makes a scene with height maps small enough for this many bytes, in words; empty if nothing does.
+  /// What makes a scene with height maps or textures small enough for this many bytes, in words; empty if
+  /// nothing does.
   std::string remedy_for(std::size_t room) const;
   /// The bytes of a layer in the block.
   std::size_t layer_bytes(const schema::Patch& patch, const schema::ForceLayer& layer) const;
@@ -64,9 +70,14 @@ double stiffness_limit_of(const schema::Device& device, double rate_hz,
 /// scene's file. Errors: unsuitable: the limit is 0, by JSON pointer.
 schema::Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::string& where);
 
-/// Reads the height maps of all layers, and sets their curvature. `where` is the scene's file. Errors: as
-/// read_height_map, relief_levels.
+/// Reads the height maps and textures of all layers, and sets their curvature and steepest_n_per_m. Textures
+/// fade at their ends as on a tray (TextureLookup). `where` is the scene's file. Errors: as read_height_map,
+/// relief_levels, read_texture, check_playable; unsuitable: a texture whose mean force is too large for its
+/// length.
 schema::Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, double rate_hz);
+
+/// Of a patch along a direction in it: the length of its shadow.
+double length_across(const schema::Patch& patch, double direction_deg);
 
 /// Builds what the scene names and nothing else. Equal orders: the later patch is above. `where` is the
 /// scene's file. Preconditions: a scene as read_scene() gives it; the device has this rate, and an axis x or

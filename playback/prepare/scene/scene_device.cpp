@@ -177,7 +177,7 @@ void note_maps(const PreparedScene& scene, const schema::Patch& patch, std::vect
   for (const schema::ForceLayer& layer : patch.layers)
     layer.visit(
         [&](const schema::HeightMapLayer& map) {
-          const Relief& relief = *scene.reliefs.at(map.file);
+          const Relief& relief = scene.reliefs.of(map);
           const double width_m = static_cast<double>(relief.columns) * relief.pitch_m,
                        height_m = static_cast<double>(relief.rows) * relief.pitch_m;
           const bool wide = patch.width_m > (1 + 1e-9) * width_m,
@@ -188,6 +188,15 @@ void note_maps(const PreparedScene& scene, const schema::Patch& patch, std::vect
                             "the edges of the "
                             "map its outermost heights continue",
                             patch.name, map.file, width_m, height_m));
+        },
+        [&](const schema::TextureForceLayer& texture) {
+          const Relief& relief = scene.reliefs.of(texture);
+          const double length_m = static_cast<double>(relief.columns) * relief.pitch_m;
+          if (length_across(patch, texture.direction_deg.value) > (1 + 1e-9) * length_m)
+            notes.push_back(
+                fmt::format("patch '{}' is larger than its texture '{}' of {:.4g} m: beyond the ends of the "
+                            "texture its force is 0",
+                            patch.name, texture.file, length_m));
         },
         [](const auto& /*other*/) {});
 }
@@ -263,6 +272,9 @@ double local_stiffness_n_per_m(const schema::ForceLayer& layer) {
                largest_curvature(amplitudes) / (period_m * period_m);
       },
       [](const schema::HeightMapLayer& map) { return largest_value(map.kappa_n) * map.curvature_per_m; },
+      [](const schema::TextureForceLayer& texture) {
+        return std::abs(farthest_value(texture.gain)) * texture.steepest_n_per_m;
+      },
       [](const schema::NoiseLayer& noise) {
         double curvature = 0, cells_per_m = 1 / noise.period_m.value;
         for (const double amplitude : octave_amplitudes(noise)) {

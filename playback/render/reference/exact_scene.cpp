@@ -56,11 +56,12 @@ std::pair<double, double> slope_of(const ReliefLevel& level, double x, double y)
 }  // namespace
 
 // The levels are half octaves apart; the highest frequency of a level reaches half the rate when it is left.
-ExactScene::Vector ExactScene::relief_force(const schema::HeightMapLayer& map, double angle_rad,
+ExactScene::Vector ExactScene::relief_force(const Relief& relief, double kappa_n, double angle_rad,
                                             Vector from_centre, Vector speed) const {
-  const Relief& relief = *scene_.reliefs.at(map.file);
   const double c = std::cos(angle_rad), s = std::sin(angle_rad);
-  const double per_tick = std::hypot(speed.x, speed.y) * relief.highest_per_m / rate_hz_;
+  const double passed_mps =
+      relief.rows > 1 ? std::hypot(speed.x, speed.y) : std::abs(c * speed.x + s * speed.y);
+  const double per_tick = passed_mps * relief.highest_per_m / rate_hz_;
   const core::Detail detail = core::detail_at(static_cast<float>(per_tick * 2 * std::numbers::sqrt2));
   double u = 0, v = 0;
   for (std::size_t n = 0; n < relief.levels.size(); ++n) {
@@ -80,7 +81,7 @@ ExactScene::Vector ExactScene::relief_force(const schema::HeightMapLayer& map, d
     v += weight * by_row * static_cast<double>(level.rows) /
          (static_cast<double>(relief.rows) * relief.pitch_m);
   }
-  const double force = -map.kappa_n.value;
+  const double force = -kappa_n;
   return {force * (c * u - s * v), force * (s * u + c * v)};
 }
 
@@ -210,7 +211,14 @@ ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vec
             sum.x += slope.x, sum.y += slope.y;
           },
           [&](const schema::HeightMapLayer& map) {
-            const Vector slope = relief_force(map, angle, {place.x - patch.x_m, place.y - patch.y_m}, speed);
+            const Vector slope = relief_force(scene_.reliefs.of(map), map.kappa_n.value, angle,
+                                              {place.x - patch.x_m, place.y - patch.y_m}, speed);
+            sum.x += slope.x, sum.y += slope.y;
+          },
+          [&](const schema::TextureForceLayer& texture) {
+            const double along = angle + texture.direction_deg.value * std::numbers::pi / 180;
+            const Vector slope = relief_force(scene_.reliefs.of(texture), texture.gain.value, along,
+                                              {place.x - patch.x_m, place.y - patch.y_m}, speed);
             sum.x += slope.x, sum.y += slope.y;
           },
           [](const auto& /*not prepared*/) {});

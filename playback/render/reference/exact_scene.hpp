@@ -46,7 +46,7 @@ class ExactScene {
                       Vector speed) const;
   Vector noise_force(const schema::NoiseLayer& noise, double angle_rad, Vector from_centre,
                      Vector speed) const;
-  Vector relief_force(const schema::HeightMapLayer& map, double angle_rad, Vector from_centre,
+  Vector relief_force(const Relief& relief, double kappa_n, double angle_rad, Vector from_centre,
                       Vector speed) const;
   Vector force(Vector place, core::PlaneVector single, Vector speed) const;
   std::vector<double> limited(std::vector<double> force_n);
