@@ -156,11 +156,17 @@ def a_scene_of_forces_is_played_and_set():
         refused(client, 1, request="load", file="bench.scene.json")
         refused(client, 3, request="set", number=number)
         assert "'spring'" in tacto.run("ctl", "set", "bench.sprng.stiffness_n_per_m", "20", "--socket", "control", code=2)[1]
+        watcher = Client()
+        watcher.must(request="watch")
         moved = client.must(request="move", patch="bench", x_m=0.01, y_m=0)
-        assert moved["over_s"] == 0.01 and "note_1" not in moved and watcher.next_event("move")["x_m"] == 0.01, moved
+        event_of_move = watcher.next_event("move")
+        # 10 mm of the patch of 200 mm, on a grid of 101 columns.
+        assert moved["over_s"] == 0.01 and " 4.95 % " in moved["note_1"] and (event_of_move["x_m"], event_of_move["over_s"]) == (0.01, 0.01), moved
+        assert client.must(request="raise", patch="bench")["patch"] == watcher.next_event("raise")["patch"] == "bench"
+        assert "note_1" not in client.must(request="move", patch="bench", x_m=0, y_m=0)
+        client.must(request="move", patch="bench", x_m=0.01, y_m=0)
         steady_force(client, -0.6)
         tacto.run("ctl", "move", "bench", "-10mm,0mm", "--over", "0s", "--socket", "control")
-        assert (watcher.next_event("move")["over_s"], client.must(request="raise", patch="bench")["patch"], watcher.next_event("raise")["patch"]) == (0, "bench", "bench")
         steady_force(client, -1)
         assert "outside the travel" in client.must(request="move", patch="bench", x_m=0.15, y_m=0)["note_1"]
         steady_force(client, 0)

@@ -117,10 +117,11 @@ class TextureWorkload {
   float samples_[kTextureSamples], taps_[kTextureTaps];
 };
 
-inline constexpr uint32_t kSceneFingerprint = 2715716053;
+inline constexpr uint32_t kSceneFingerprint = 1888569271;
 
-/// A scene of three overlapping patches with springs, dampers, grooves, noise and a height map, and a hand in
-/// the plane whose speed varies between rest and 60 counts per tick; all limits are reached.
+/// A scene of three overlapping patches with springs, dampers, grooves, noise and a height map, which move
+/// and change their order, and a hand in the plane whose speed varies between rest and 60 counts per tick;
+/// all limits are reached.
 class SceneWorkload {
  public:
   SceneWorkload() noexcept {
@@ -187,6 +188,8 @@ class SceneWorkload {
       if (counts_[i] < -5000) speed_[i] = -speed_[i] > 0 ? -speed_[i] : speed_[i];
       counts_[i] += speed_[i];
     }
+    if (ticks_ % 701 == 700) kernel_.move(ticks_ % 3, {next_() / 16, next_() / 16}, 40);
+    if (ticks_ % 901 == 900) kernel_.raise(ticks_ % 3);
     const auto output = kernel_.tick(counts_, ++ticks_ < kWorkloadTicks - 400);
     flags_ |= output.flags;
     return output.force_n[0] + output.force_n[1];
