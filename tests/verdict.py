@@ -6,7 +6,8 @@ import pathlib
 import re
 import sys
 
-LINE = re.compile(r"^ *\d+/\d+ Test +#\d+: (\S+) \.*.*?(Passed|Failed|Skipped|Timeout|Exception|Not Run)")
+# The line of a second try has no "6/11" at its beginning.
+LINE = re.compile(r"^ *(?:\d+/\d+ +)?Test +#\d+: (\S+) \.*.*?(Passed|Failed|Skipped|Timeout|Exception|Not Run)")
 NOT_JUDGED = re.compile(r"not judged: .*")
 
 
