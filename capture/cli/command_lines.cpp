@@ -44,7 +44,10 @@ void CommandLines::obey(const std::string& line) {
 }
 
 bool CommandLines::stopped() {
-  if (!std::exchange(begun_, true)) print(cli::Report().add("event", "recording"));
+  if (!std::exchange(begun_, true)) {  // also a program that stops at once gets a recording, of one block
+    print(cli::Report().add("event", "recording"));
+    return false;
+  }
   char bytes[4096];
   while (!stopped_ && ready(STDIN_FILENO, POLLIN)) {
     const auto got = ::read(STDIN_FILENO, bytes, sizeof bytes);

@@ -15,7 +15,8 @@ namespace tacto::capture {
 /// Answers never wait for their reader: if the pipe is full, they are dropped. One thread.
 class CommandLines {
  public:
-  /// Reads what has come, without waiting. Returns true from the command "stop" on.
+  /// Reads what has come, without waiting. Returns true from the command "stop" on, but not at the first
+  /// call.
   bool stopped();
   /// The labels of the marks since the last call.
   std::vector<std::string> take_labels();

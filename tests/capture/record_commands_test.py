@@ -57,6 +57,12 @@ def it_ends_with_the_program_that_steers_it():
     tacto.run("validate", "oak")
 
 
+def a_stop_at_once_leaves_a_recording():
+    done = subprocess.run([tacto.COMMAND, "record", *PACED, "-o", "oak", "--commands"], input="stop\n", text=True, capture_output=True, timeout=600)
+    assert done.returncode == 0 and tacto.run_json("info", "oak")["frames"] > 0, done
+    tacto.run("record", *PACED, "-o", "oak", "--commands", code=2)
+
+
 def the_python_client():
     import tactograph
     with tactograph.Recorder("oak", *PACED, "--subject", "S01", command=tacto.COMMAND) as recorder:
@@ -83,5 +89,6 @@ def the_python_client():
 
 
 if __name__ == "__main__":
-    for test in (marks_by_lines, it_ends_with_the_program_that_steers_it, the_python_client):
+    for test in (marks_by_lines, it_ends_with_the_program_that_steers_it, a_stop_at_once_leaves_a_recording,
+                 the_python_client):
         tacto.in_folder(test)

@@ -21,7 +21,7 @@ constexpr NumberKey kNumbers[] = {
     {"strokes", "number of strokes, alternately forth and back, 2; when recorded, until the recording ends",
      Dimension::none, 0, 1e6, true, [](P& p, double v) { p.strokes.strokes = static_cast<int>(v); }},
     {"seed",
-     "of the surface, the finger's way and the noise: another seed is another sample; to keep the sample, "
+     "of the surface, the finger's motion and the noise: another seed is another sample; to keep the sample, "
      "give "
      "surface_seed, too; 1",
      Dimension::none, 0, kLargestSeed, true, [](P& p, double v) { p.seed = static_cast<std::uint64_t>(v); }},
