@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "data-schema/base/creation_time.hpp"
+#include "data-schema/base/lagrange.hpp"
 #include "data-schema/base/quantity.hpp"
 
 namespace tacto::schema {
@@ -31,15 +32,9 @@ double value_at(const SpaceSignal& texture, double position_m) {
   const double at = position_m / texture.pitch_m;
   const auto last = static_cast<std::ptrdiff_t>(f.size()) - 4;
   const auto first = std::clamp(static_cast<std::ptrdiff_t>(std::floor(at)) - 1, std::ptrdiff_t{0}, last);
-  const double u = at - static_cast<double>(first);  // 1 to 2 inside
-  double sum = 0;
-  for (int i = 0; i < 4; ++i) {
-    double weight = f[static_cast<std::size_t>(first + i)];
-    for (int j = 0; j < 4; ++j)
-      if (j != i) weight *= (u - j) / (i - j);
-    sum += weight;
-  }
-  return sum;
+  const auto sample = [&](int i) { return f[static_cast<std::size_t>(first + i)]; };
+  return lagrange<4>({0, 1, 2, 3}, {sample(0), sample(1), sample(2), sample(3)},
+                     at - static_cast<double>(first));
 }
 
 // Slopes at the points. Two slopes are extrapolated beyond each end. Where the curve is straight on both

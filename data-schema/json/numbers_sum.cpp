@@ -50,7 +50,7 @@ std::optional<std::string> numbers_sum(std::string_view kind, const Json& docume
   Covered covered;
   add("", listed, covered);
   Sha256 sum;
-  for (const auto& [pointer, bytes] : covered) sum.add(pointer + "\n" + bytes);
+  for (const auto& [pointer, bytes] : covered) sum.add(pointer), sum.add("\n"), sum.add(bytes);
   return sum.hexadecimal();
 }
 

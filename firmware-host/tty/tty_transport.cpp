@@ -94,7 +94,7 @@ Result<void> TtyTransport::configure(unsigned baud) {
   return {};
 }
 
-// Bytes that nobody takes would delay the closing of the port.
+// close() waits for bytes that the device has not taken yet, so they are discarded.
 TtyTransport::~TtyTransport() {
   ::tcflush(port_.get(), TCOFLUSH);
   ::tcsetattr(port_.get(), TCSANOW, &before_);

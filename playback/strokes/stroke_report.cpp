@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 #include "data-schema/base/decibels.hpp"
+#include "data-schema/base/lagrange.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/base/stroke_rule.hpp"
 #include "firmware-host/core/firmware/encoder_watch.hpp"
@@ -35,16 +35,8 @@ double over_db(double value_m, double of_m) {
 
 // The polynomial through the five values around the minimum, at `u` steps from the middle one: its error for
 // a signal sampled 24 times per period of 500 Hz is below 2e-6 of the measured value (Lagrange).
-double between_five(std::span<const double, 5> e, double u) {
-  double sum = 0;
-  constexpr std::array<double, 5> kAt = {-2, -1, 0, 1, 2};
-  for (std::size_t i = 0; i < kAt.size(); ++i) {
-    double weight = 1;
-    for (std::size_t j = 0; j < kAt.size(); ++j)
-      if (j != i) weight *= (u - kAt[j]) / (kAt[i] - kAt[j]);
-    sum += weight * e[i];
-  }
-  return sum;
+double between_five(const std::array<double, 5>& e, double u) {
+  return schema::lagrange({-2, -1, 0, 1, 2}, e, u);
 }
 
 struct LeastError {
@@ -56,7 +48,8 @@ LeastError least_error(const std::array<double, kShifts>& difference_m2) {
   constexpr int kParts = 100;
   const auto least = std::ranges::min_element(difference_m2) - difference_m2.begin();
   const auto middle = std::clamp<std::ptrdiff_t>(least, 2, kShifts - 3);
-  const std::span<const double, 5> around(&difference_m2[static_cast<std::size_t>(middle - 2)], 5);
+  std::array<double, 5> around{};
+  std::copy_n(difference_m2.begin() + (middle - 2), around.size(), around.begin());
   LeastError found{static_cast<double>(least), difference_m2[static_cast<std::size_t>(least)]};
   for (int part = -2 * kParts; part <= 2 * kParts; ++part) {
     const double u = static_cast<double>(part) / kParts, difference = between_five(around, u);

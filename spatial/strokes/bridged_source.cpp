@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "data-schema/base/lagrange.hpp"
 #include "spatial/strokes/position_jumps.hpp"
 
 namespace tacto::spatial {
@@ -57,19 +58,6 @@ class BridgedSource : public TouchSource {
   const Bridge none_ = {};
 };
 
-// Lagrange's formula through y at -1, 0, missing + 1 and missing + 2.
-double on_cubic(const std::array<double, 2 * kBeside>& y, double missing, double x) {
-  const std::array<double, 2 * kBeside> nodes = {-1, 0, missing + 1, missing + 2};
-  double sum = 0;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    double weight = 1;
-    for (std::size_t j = 0; j < nodes.size(); ++j)
-      if (j != i) weight *= (x - nodes[j]) / (nodes[i] - nodes[j]);
-    sum += weight * y[i];
-  }
-  return sum;
-}
-
 Result<Bridge> filled(TouchSource& source, const schema::Gap& gap, std::size_t before) {
   Bridge bridge{gap.frame + before, gap.count, gap.frame};
   const auto missing = static_cast<double>(gap.count);
@@ -80,7 +68,8 @@ Result<Bridge> filled(TouchSource& source, const schema::Gap& gap, std::size_t b
     for (std::size_t i = 1; i <= gap.count; ++i) {
       const auto x = static_cast<double>(i);
       bridge.values[static_cast<std::size_t>(track)].push_back(
-          track == Track::value ? on_cubic(y, missing, x) : std::lerp(y[1], y[2], x / (missing + 1)));
+          track == Track::value ? schema::lagrange({-1, 0, missing + 1, missing + 2}, y, x)
+                                : std::lerp(y[1], y[2], x / (missing + 1)));
     }
   }
   return bridge;

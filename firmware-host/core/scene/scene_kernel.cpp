@@ -73,7 +73,8 @@ void SceneKernel::move(uint32_t patch, const int32_t (&counts)[2], float ramp_ti
     place = next_move_;
     next_move_ = (next_move_ + 1) % kMostRamps;
     const Move& oldest = moves_[place];
-    for (int i = 0; oldest.left > 0 && i < 2; ++i) moved_[oldest.patch][i] = oldest.ways[i].to;
+    if (oldest.left > 0)
+      for (int i = 0; i < 2; ++i) moved_[oldest.patch][i] = oldest.ways[i].to;
   }
   const auto ticks = ramp_ticks > 1 ? static_cast<uint32_t>(ramp_ticks) : UINT32_C(1);
   Move& move = moves_[place];

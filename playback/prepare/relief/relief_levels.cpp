@@ -57,9 +57,12 @@ double highest_frequency(std::vector<double> heights, GridSize size) {
     power[std::min(static_cast<std::size_t>(frequency * std::numbers::sqrt2 * kBins), kBins - 1)] += of_slope;
     all += of_slope;
   }
+  double above = 0;
   std::size_t bins = kBins;
-  for (double above = 0; bins > 0; --bins)
-    if ((above += power[bins - 1]) > kLeastPower * all) break;
+  for (; bins > 0; --bins) {
+    above += power[bins - 1];
+    if (above > kLeastPower * all) break;
+  }
   return static_cast<double>(bins) / kBins / std::numbers::sqrt2;
 }
 
