@@ -35,7 +35,8 @@ std::vector<std::string> force_layer_types() {
 std::vector<NamedLayerNumber> numbers_of(const ForceLayer& layer) {
   std::vector<NamedLayerNumber> numbers;
   layer.visit([&]<class L>(const L& of) {
-    for (const auto& member : LayerMembers<L>::kNumbers) numbers.push_back({member.name, of.*member.number});
+    for (const auto& member : LayerMembers<L>::kNumbers)
+      numbers.push_back({member.name, of.*member.number, member.whole});
     if constexpr (IsGrooves<L>)
       if (of.filter_m) numbers.push_back({"filter_m", *of.filter_m});
   });

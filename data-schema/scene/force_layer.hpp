@@ -156,6 +156,7 @@ std::vector<std::string> force_layer_types();
 struct NamedLayerNumber {
   std::string_view name;
   LayerNumber number;
+  bool whole = false;  ///< a whole number
 };
 
 /// The numbers of a layer, in the order of the file. `filter_m` is absent where it is "auto".
