@@ -10,11 +10,11 @@
 #include "analysis/cli/identify_report.hpp"
 #include "analysis/cli/stopped.hpp"
 #include "analysis/cli/verbs.hpp"
+#include "analysis/identify/fit/hysteresis_loop.hpp"
 #include "analysis/identify/fit/plausibility.hpp"
 #include "analysis/identify/measure/record_response.hpp"
 #include "analysis/identify/report/bode_figure.hpp"
 #include "analysis/identify/report/identify_results.hpp"
-#include "analysis/identify/report/loop_figure.hpp"
 #include "data-schema/base/error.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/command/stop_signals.hpp"
@@ -22,6 +22,7 @@
 #include "data-schema/files/files.hpp"
 #include "data-schema/report/progress.hpp"
 #include "playback/player/player_device.hpp"
+#include "spatial/picture/line_plot.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -311,6 +312,33 @@ Result<JointFit> joint_fit_of(const IdentifyOptions& o, SweepAndLoops& both, con
   TACTO_TRY(check_upright(fit->loops, data.source));
   TACTO_TRY(check_fitted(o, fit->response, base));
   return fit;
+}
+
+constexpr double kMicrometresAMetre = 1e6;
+
+spatial::Series loop_series(const char* name, const LoopFit& fit, const std::vector<double>& displacement_m,
+                            std::size_t colour) {
+  spatial::Series series{name, fit.loop_v, displacement_m, spatial::series_colour(colour)};
+  for (double& value : series.y) value *= kMicrometresAMetre;
+  return series;
+}
+
+// Displacement over drive, without the linear model's lag. `found` is the resulting transducer.
+spatial::LineFigure loop_figure(const LoopFit& fit, const schema::Transducer& found) {
+  spatial::LineFigure figure;
+  figure.title = found.identification->usable() ? "Hysteresis" : "Hysteresis: THE MODEL DOES NOT FIT";
+  figure.subtitle = fmt::format(
+      "a loop of {:.3g} %; the operator leaves {:.2g} % of the displacement, a line "
+      "{:.3g} %",
+      100 * fit.opening, 100 * fit.residual_part, 100 * fit.linear_residual_part);
+  figure.x_label = "drive (V)";
+  figure.y_label = "displacement (\u00b5m)";
+  figure.simulated = found.identification->simulated;
+  figure.series = {loop_series("measured", fit, fit.loop_m, 0),
+                   loop_series("operator", fit, fit.loop_model_m, 1)};
+  figure.series[1].dashed = true;
+  figure.size = {480, 440};
+  return figure;
 }
 
 // Identifies the hysteresis alone, from a device or a table.
