@@ -37,11 +37,6 @@ struct HeightPng {
   std::vector<float> of_full{};  // row by row, from the lowest row of the picture: 0 black, 1 white
 };
 
-// The stored samples; gamma and colour profiles are not applied. Errors: not_found; malformed, with libpng's
-// message; unsuitable: colour, transparency, more than schema::kMostHeights samples, fewer than 16 bits
-// unless `allow_8bit`.
-schema::Result<HeightPng> read_height_png(const std::string& file, bool allow_8bit);
-
 // libpng reports an error by a jump out of its functions: nothing with a destructor lives in a function that
 // sets a jump.
 class PngReader {
@@ -143,6 +138,9 @@ bool is_png(const std::string& file) {
          png_sig_cmp(reinterpret_cast<png_const_bytep>(beginning), 0, sizeof beginning) == 0;
 }
 
+// The stored samples; gamma and colour profiles are not applied. Errors: not_found; malformed, with libpng's
+// message; unsuitable: colour, transparency, more than schema::kMostHeights samples, fewer than 16 bits
+// unless `allow_8bit`.
 Result<HeightPng> read_height_png(const std::string& file, bool allow_8bit) try {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(std::fopen(file.c_str(), "rb"), std::fclose);
   if (!opened) return fail(ErrorKind::not_found, "cannot be read", file);

@@ -201,11 +201,6 @@ Result<void> check_free(const std::string& stem, bool replace) {
   return {};
 }
 
-// DATA/DATAFILE: UNITS (a length, of heights and of the spacing), NUMPOINTS, SPACING, DATA_POINT_VALUES;
-// DATA/PART: name, manufacturer and description, kept as surface and notes. Errors: not_found; malformed,
-// with the byte or the element; unsuitable, for profiles that are not 2D.
-schema::Result<HeightProfile> read_profile_xml(const std::string& file);
-
 constexpr std::string_view kBlanks = " \t\r\n";
 
 std::string_view stripped(std::string_view text) {
@@ -295,6 +290,9 @@ Result<HeightProfile> profile_in(const Reader& reader) {
   return profile;
 }
 
+// DATA/DATAFILE: UNITS (a length, of heights and of the spacing), NUMPOINTS, SPACING, DATA_POINT_VALUES;
+// DATA/PART: name, manufacturer and description, kept as surface and notes. Errors: not_found; malformed,
+// with the byte or the element; unsuitable, for profiles that are not 2D.
 Result<HeightProfile> read_profile_xml(const std::string& file) try {
   const auto bytes = schema::read_file(file);
   TACTO_TRY(bytes);

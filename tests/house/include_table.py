@@ -51,12 +51,12 @@ MAY_INCLUDE = {
     "firmware-host/usb": "data-schema/base firmware-host/{core/firmware link}",
     "capture/calibrate": "capture/record data-schema/{base calibration recording transducer} firmware-host/link",
     "capture/cli":
-        "capture/{calibrate doctor import record table} data-schema/{base cli command files height recording report} "
+        "capture/{calibrate doctor import record table} data-schema/{base cli command files height kinds recording report} "
         "firmware-host/{. sim/device}",
     "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. link}",
     "capture/import": "capture/{calibrate record table} data-schema/{base calibration files height recording texture}",
     "capture/record":
-        "capture/table data-schema/{base calibration files kinds recording} firmware-host/link spatial/strokes",
+        "capture/table data-schema/{base calibration files recording} firmware-host/link spatial/strokes",
     "capture/table": "data-schema/{base files recording wav}",
     "spatial/certificate": "data-schema/{base texture} spatial/features",
     "spatial/cli":
