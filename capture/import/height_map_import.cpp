@@ -148,46 +148,46 @@ Result<HeightPng> read_height_png(const std::string& file, bool allow_8bit) try 
   return read_with(reader, file, allow_8bit);
 } catch (const std::bad_alloc&) {
   return fail(ErrorKind::malformed, "is too large to be read", file);
+}
 
-  Result<HeightMap> map_of_png(const ImportRequest& request) {
-    if (!request.pitch_m || !request.full_height_m)
-      return fail(ErrorKind::usage, "a PNG says neither the distance of its pixels nor the height of white",
-                  request.file, "give both, for example --pitch 50um --height 200um");
-    if (!(*request.full_height_m > 0 && *request.full_height_m <= schema::kLargestHeight_m))
-      return fail(ErrorKind::usage, "the height of white is above 0 and at most 1 m", "--height");
-    if (!request.channels.empty() || request.rate_hz || !request.time_column.empty() || request.speed_mps)
-      return fail(ErrorKind::usage, "a PNG is a height map: it has no channels and no times", request.file,
-                  "omit --channel, --rate, --time-column and --speed");
-    auto png = read_height_png(request.file, request.allow_8bit);
-    TACTO_TRY(png);
-    HeightMap map;
-    map.columns = png->columns, map.rows = png->rows;
-    map.pitch_m = *request.pitch_m;
-    map.height_m = std::move(png->of_full);
-    const auto full_m = static_cast<float>(*request.full_height_m);
-    for (float& height : map.height_m) height *= full_m;
-    if (png->bits < 16) map.notes = fmt::format("from {} bits: {} levels", png->bits, 1 << png->bits);
-    return map;
-  }
+Result<HeightMap> map_of_png(const ImportRequest& request) {
+  if (!request.pitch_m || !request.full_height_m)
+    return fail(ErrorKind::usage, "a PNG says neither the distance of its pixels nor the height of white",
+                request.file, "give both, for example --pitch 50um --height 200um");
+  if (!(*request.full_height_m > 0 && *request.full_height_m <= schema::kLargestHeight_m))
+    return fail(ErrorKind::usage, "the height of white is above 0 and at most 1 m", "--height");
+  if (!request.channels.empty() || request.rate_hz || !request.time_column.empty() || request.speed_mps)
+    return fail(ErrorKind::usage, "a PNG is a height map: it has no channels and no times", request.file,
+                "omit --channel, --rate, --time-column and --speed");
+  auto png = read_height_png(request.file, request.allow_8bit);
+  TACTO_TRY(png);
+  HeightMap map;
+  map.columns = png->columns, map.rows = png->rows;
+  map.pitch_m = *request.pitch_m;
+  map.height_m = std::move(png->of_full);
+  const auto full_m = static_cast<float>(*request.full_height_m);
+  for (float& height : map.height_m) height *= full_m;
+  if (png->bits < 16) map.notes = fmt::format("from {} bits: {} levels", png->bits, 1 << png->bits);
+  return map;
+}
 
-  Result<HeightMap> map_of_profile(const ImportRequest& request,
-                                   const std::function<void(double)>& progress) {
-    if (request.full_height_m || request.allow_8bit)
-      return fail(ErrorKind::usage, "--height and --allow-8bit are for a PNG", request.file,
-                  "the scale of a profile is that of its height channel");
-    if (!is_profile_request(request))
-      return fail(ErrorKind::usage, "a height map is made from a greyscale PNG or a height profile",
-                  request.file,
-                  "of a table give --channel height=2*1um, and --pitch or --channel position=1*1mm");
-    auto profile = read_height_profile(request, progress);
-    TACTO_TRY(profile);
-    HeightMap map;
-    map.columns = profile->height_m.size(), map.rows = 1;
-    map.pitch_m = profile->pitch_m;
-    map.height_m.assign(profile->height_m.begin(), profile->height_m.end());
-    map.surface = profile->surface, map.notes = profile->notes;
-    return map;
-  }
+Result<HeightMap> map_of_profile(const ImportRequest& request, const std::function<void(double)>& progress) {
+  if (request.full_height_m || request.allow_8bit)
+    return fail(ErrorKind::usage, "--height and --allow-8bit are for a PNG", request.file,
+                "the scale of a profile is that of its height channel");
+  if (!is_profile_request(request))
+    return fail(ErrorKind::usage, "a height map is made from a greyscale PNG or a height profile",
+                request.file,
+                "of a table give --channel height=2*1um, and --pitch or --channel position=1*1mm");
+  auto profile = read_height_profile(request, progress);
+  TACTO_TRY(profile);
+  HeightMap map;
+  map.columns = profile->height_m.size(), map.rows = 1;
+  map.pitch_m = profile->pitch_m;
+  map.height_m.assign(profile->height_m.begin(), profile->height_m.end());
+  map.surface = profile->surface, map.notes = profile->notes;
+  return map;
+}
 
 }  // namespace
 

@@ -306,6 +306,7 @@ Result<HeightProfile> read_profile_xml(const std::string& file) try {
   return profile_in(reader);
 } catch (const std::bad_alloc&) {
   return fail(ErrorKind::malformed, "is too large to be read", file);
+}
 
 }  // namespace
 
