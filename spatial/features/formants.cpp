@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "data-schema/base/decibels.hpp"
-#include "spatial/features/ridge_tracker.hpp"
+#include "spatial/features/formant_points.hpp"
 #include "spatial/numbers/robust_statistics.hpp"
 #include "spatial/spectrogram/known_bins.hpp"
 #include "spatial/spectrogram/spectrogram_background.hpp"
@@ -37,6 +38,72 @@ Result<void> check(const Spectrogram& spectrogram, const FormantOptions& options
   if (spectrogram.position_m.empty() || spectrogram.bins < 3)
     return schema::fail(ErrorKind::unsuitable, "the spectrogram is too small for formants", spectrogram.name);
   return {};
+}
+
+using Ridge = std::vector<RidgePoint>;
+
+// Input: rows in order. A point continues the ridge whose last frequency is nearest, nearest pairs first, at
+// most `tolerance_per_m` away. A ridge without a point for more than `bridge_rows` rows ends.
+class RidgeTracker {
+ public:
+  RidgeTracker(double tolerance_per_m, std::size_t bridge_rows);
+  void add_row(std::size_t row, const std::vector<RidgePoint>& points);
+  // Ends all ridges and returns them.
+  std::vector<Ridge> finish();
+
+ private:
+  void end_stale(std::size_t row);
+
+  double tolerance_per_m_;
+  std::size_t bridge_rows_;
+  std::vector<Ridge> open_, ended_;
+};
+
+struct Pair {
+  double distance_per_m;
+  std::size_t ridge, point;
+};
+
+std::vector<Pair> near_pairs(const std::vector<Ridge>& ridges, const std::vector<RidgePoint>& points,
+                             double tolerance_per_m) {
+  std::vector<Pair> pairs;
+  for (std::size_t r = 0; r < ridges.size(); ++r)
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const double distance = std::abs(ridges[r].back().frequency_per_m - points[p].frequency_per_m);
+      if (distance <= tolerance_per_m) pairs.push_back({distance, r, p});
+    }
+  std::ranges::sort(pairs, {}, &Pair::distance_per_m);
+  return pairs;
+}
+
+RidgeTracker::RidgeTracker(double tolerance_per_m, std::size_t bridge_rows)
+    : tolerance_per_m_(tolerance_per_m), bridge_rows_(bridge_rows) {}
+
+void RidgeTracker::end_stale(std::size_t row) {
+  const auto stale = [&](const Ridge& ridge) { return row - ridge.back().row > bridge_rows_ + 1; };
+  const auto first_stale =
+      std::stable_partition(open_.begin(), open_.end(), [&](const Ridge& r) { return !stale(r); });
+  std::move(first_stale, open_.end(), std::back_inserter(ended_));
+  open_.erase(first_stale, open_.end());
+}
+
+void RidgeTracker::add_row(std::size_t row, const std::vector<RidgePoint>& points) {
+  end_stale(row);
+  std::vector<bool> ridge_used(open_.size(), false);
+  std::vector<bool> point_used(points.size(), false);
+  for (const Pair& pair : near_pairs(open_, points, tolerance_per_m_)) {
+    if (ridge_used[pair.ridge] || point_used[pair.point]) continue;
+    ridge_used[pair.ridge] = point_used[pair.point] = true;
+    open_[pair.ridge].push_back(points[pair.point]);
+  }
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (!point_used[p]) open_.push_back({points[p]});
+}
+
+std::vector<Ridge> RidgeTracker::finish() {
+  std::move(open_.begin(), open_.end(), std::back_inserter(ended_));
+  open_.clear();
+  return std::move(ended_);
 }
 
 std::vector<Ridge> all_ridges(const Spectrogram& spectrogram, const FormantOptions& options) {
