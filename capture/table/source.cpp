@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <exception>
+#include <memory>
 #include <string_view>
+#include <thread>
 
 #include "capture/table/input_file.hpp"
-#include "capture/table/table_stages.hpp"
+#include "data-schema/base/bounded_queue.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/wav/wav.hpp"
 
@@ -253,6 +256,163 @@ Result<void> refuse_own(const std::string& file, std::string_view head) {
   if (file.ends_with(".wav") && schema::open_recording(file))
     return fail(ErrorKind::unsuitable, "is already a recording", file, "see 'tactograph info'");
   return {};
+}
+
+// Reads one table once, from its beginning to its end. The blocks of rows depend on the file alone, and an
+// error follows the rows before it, as with one thread. Memory: a few pieces of the file and their numbers,
+// for a file of any length.
+class TableStages {
+ public:
+  // `sum`, if given, receives the file's bytes; it is complete after run() has returned without an error.
+  TableStages(const Source& source, std::span<const std::size_t> columns, schema::Sha256* sum);
+  TableStages(const TableStages&) = delete;
+  TableStages& operator=(const TableStages&) = delete;
+  ~TableStages() = default;
+
+  // Calls `take` and `progress` in the caller's thread. To be called once. Errors: those of read_source().
+  schema::Result<void> run(const RowHandler& take, const std::function<void(double)>& progress);
+
+ private:
+  struct Piece {
+    std::shared_ptr<const char[]> bytes;
+    std::size_t size = 0;
+  };
+  // The rows that end in one piece.
+  struct Rows {
+    NumberStore numbers;
+    std::uint64_t first_row = 0;
+    std::deque<CsvReader::Landmark> landmarks;
+    char decimal_mark = 0;
+    std::size_t bytes = 0;  // of the piece
+  };
+
+  void read_pieces(InputFile input);
+  void parse_pieces();
+  schema::Result<void> parse();
+  bool hand_over(std::size_t bytes);
+  schema::Result<void> take_all(const RowHandler& take, const std::function<void(double)>& progress,
+                                std::size_t file_bytes);
+  void close_all();
+  struct CloseAll {
+    void operator()(TableStages* stages) const { stages->close_all(); }
+  };
+  schema::Result<void> run_stages(InputFile input, const RowHandler& take,
+                                  const std::function<void(double)>& progress);
+
+  const Source& source_;
+  const std::size_t columns_;
+  schema::Sha256* const sum_;
+  CsvReader reader_;  // of the thread that parses
+  schema::BoundedQueue<schema::Result<Piece>> pieces_;
+  schema::BoundedQueue<schema::Result<Rows>> rows_;
+  schema::BoundedQueue<NumberStore> spare_;
+  std::exception_ptr reading_failed_, parsing_failed_;  // out of memory; thrown again in the caller's thread
+};
+
+constexpr std::size_t kTablePieceBytes = std::size_t{1} << 17;  // fits the cache together with its numbers
+constexpr std::size_t kWaiting = 4;                             // pieces between two threads
+
+TableStages::TableStages(const Source& source, std::span<const std::size_t> columns, schema::Sha256* sum)
+    : source_(source),
+      columns_(columns.size()),
+      sum_(sum),
+      reader_(*source.csv, {columns.begin(), columns.end()}, source.file),
+      pieces_(kWaiting),
+      rows_(kWaiting),
+      spare_(2 * kWaiting) {}
+
+// The checksum is computed after the piece was passed on, so that the parser does not wait for it.
+void TableStages::read_pieces(InputFile input) try {
+  for (;;) {
+    auto bytes = std::make_shared_for_overwrite<char[]>(kTablePieceBytes);
+    const auto got = input.read({bytes.get(), kTablePieceBytes});
+    if (!got) {
+      pieces_.push(schema::forward_error(got));
+      break;
+    }
+    if (*got == 0 || !pieces_.push(Piece{bytes, *got})) break;
+    if (sum_ != nullptr) sum_->add({bytes.get(), *got});
+  }
+  pieces_.close();
+} catch (...) {
+  reading_failed_ = std::current_exception();
+  close_all();
+}
+
+void TableStages::parse_pieces() try {
+  if (const auto parsed = parse(); !parsed) rows_.push(schema::forward_error(parsed));
+  rows_.close();
+  pieces_.close();  // after an error the rest is not needed
+} catch (...) {
+  parsing_failed_ = std::current_exception();
+  close_all();
+}
+
+Result<void> TableStages::parse() {
+  std::size_t skipped = source_.csv->data_offset;
+  while (const auto piece = pieces_.pop()) {
+    TACTO_TRY(*piece);
+    std::string_view bytes((*piece)->bytes.get(), (*piece)->size);
+    const std::size_t passed = std::min(skipped, bytes.size());
+    bytes.remove_prefix(passed);
+    skipped -= passed;
+    TACTO_TRY(reader_.feed(bytes));
+    if (!hand_over((*piece)->size)) return {};
+  }
+  TACTO_TRY(reader_.finish());
+  hand_over(0);
+  return {};
+}
+
+// Returns false if the caller receives no further rows.
+bool TableStages::hand_over(std::size_t bytes) {
+  Rows rows;
+  rows.numbers = spare_.try_pop().value_or(NumberStore{});
+  rows.first_row = reader_.first_row();
+  rows.landmarks = reader_.landmarks();
+  rows.decimal_mark = reader_.decimal_mark();
+  rows.bytes = bytes;
+  reader_.exchange_rows(rows.numbers);
+  return rows_.push(std::move(rows));
+}
+
+Result<void> TableStages::take_all(const RowHandler& take, const std::function<void(double)>& progress,
+                                   std::size_t file_bytes) {
+  std::size_t done = 0;
+  while (auto next = rows_.pop()) {
+    TACTO_TRY(*next);
+    Rows& rows = **next;
+    if (rows.numbers.count > 0)
+      TACTO_TRY(take({rows.numbers.span(), columns_, rows.first_row, &rows.landmarks, rows.decimal_mark}));
+    done += rows.bytes;
+    if (rows.bytes > 0) progress(static_cast<double>(done) / static_cast<double>(std::max(file_bytes, done)));
+    rows.numbers.count = 0;
+    spare_.push(std::move(rows.numbers));
+  }
+  return {};
+}
+
+void TableStages::close_all() {
+  pieces_.close();
+  rows_.close();
+}
+
+Result<void> TableStages::run_stages(InputFile input, const RowHandler& take,
+                                     const std::function<void(double)>& progress) {
+  const std::size_t file_bytes = input.size();
+  const std::jthread reading(&TableStages::read_pieces, this, std::move(input));
+  const std::jthread parsing(&TableStages::parse_pieces, this);
+  const std::unique_ptr<TableStages, CloseAll> closing(this);  // wakes threads that wait, so that they end
+  return take_all(take, progress, file_bytes);
+}
+
+Result<void> TableStages::run(const RowHandler& take, const std::function<void(double)>& progress) {
+  auto input = InputFile::open(source_.file);
+  TACTO_TRY(input);
+  const auto done = run_stages(std::move(*input), take, progress);
+  for (const auto& failed : {reading_failed_, parsing_failed_})
+    if (failed) std::rethrow_exception(failed);
+  return done;
 }
 
 }  // namespace
