@@ -21,6 +21,11 @@ using schema::ErrorKind;
 using schema::for_people;
 using schema::Result;
 
+bool share_places(const schema::Formant& a, const schema::Formant& b) {
+  const double common = std::min(a.to_m, b.to_m) - std::max(a.from_m, b.from_m);
+  return common >= std::min(a.to_m - a.from_m, b.to_m - b.from_m) / 2;
+}
+
 constexpr double kShortestCompareWindow = 16;  // samples
 constexpr double kHannBandwidth = 1.5;         // bins
 constexpr double kLeastCoherence = 0.5;        // of two copies; two gratings with common lines have less
@@ -193,6 +198,31 @@ void note_units(Comparison& comparison) {
 }
 
 }  // namespace
+
+FormantMatch match_formants(std::span<const schema::Formant> a, std::span<const schema::Formant> b,
+                            double resolution_per_m, bool by_place) {
+  FormantMatch match;
+  std::vector<bool> taken(b.size(), false);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    double nearest = resolution_per_m / 2;
+    std::size_t found = b.size();
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const double apart = std::abs(b[j].frequency_per_m - a[i].frequency_per_m);
+      if (taken[j] || apart > nearest || (by_place && !share_places(a[i], b[j]))) continue;
+      nearest = apart;
+      found = j;
+    }
+    if (found == b.size()) {
+      match.missed.push_back(i);
+      continue;
+    }
+    taken[found] = true;
+    match.matched.emplace_back(i, found);
+  }
+  for (std::size_t j = 0; j < b.size(); ++j)
+    if (!taken[j]) match.extra.push_back(j);
+  return match;
+}
 
 Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b, const CompareOptions& options,
                            const std::function<void(double)>& progress) {

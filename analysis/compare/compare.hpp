@@ -2,13 +2,15 @@
 // Compares two textures: by band, by coherence, by formants; the verdict is one word.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/compare/cross_spectrum.hpp"
-#include "analysis/compare/formant_match.hpp"
 #include "analysis/compare/simulated_sides.hpp"
 #include "analysis/compare/texture_pair.hpp"
 #include "analysis/compare/verdict.hpp"
@@ -43,6 +45,18 @@ struct BandComparison {
   std::optional<double> residual_db;  ///< power of B - gain A over that of B
   std::optional<double> coherence;    ///< magnitude-squared, weighted by A's power
 };
+
+struct FormantMatch {
+  std::vector<std::pair<std::size_t, std::size_t>> matched;  ///< indices in A and in B
+  std::vector<std::size_t> missed;                           ///< in A, not in B
+  std::vector<std::size_t> extra;                            ///< in B, not in A
+};
+
+/// Goes through A's formants, strongest first, and matches each with the nearest unmatched frequency in B
+/// within half the resolution (1.7268 / window, as for linking ridges). If `by_place`, their extents must
+/// also overlap by half of the shorter one. Both lists use one position axis.
+FormantMatch match_formants(std::span<const schema::Formant> a, std::span<const schema::Formant> b,
+                            double resolution_per_m, bool by_place);
 
 struct Comparison {
   TexturePair pair;
