@@ -33,7 +33,7 @@ bool in_both_bands(const schema::StrokeFigures& stroke) {
 }
 
 // Figures of the strokes that the sidecar stores.
-void add_strokes(cli::Report& row, const schema::RecordingHeader& header) {
+void add_stroke_figures(cli::Report& row, const schema::RecordingHeader& header) {
   if (header.strokes.empty()) return;
   const auto count = static_cast<double>(header.strokes.size());
   double speed_mps = 0, normal_n = 0;
@@ -122,7 +122,7 @@ cli::Report row_of(const ListedRecording& one) {
   if (one.take) row.add("take", *one.take);
   row.add("name", std::filesystem::path(one.stem).filename().string()).add("finger", header.finger);
   row.add("duration_s", schema::duration_s(header));
-  add_strokes(row, header);
+  add_stroke_figures(row, header);
   row.add("lost_frames", missing).add("gaps", header.gaps.size()).add("marks", header.marks.size());
   return row.add("created", header.created).add("ended", header.ended);
 }

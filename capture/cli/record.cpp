@@ -160,8 +160,9 @@ std::size_t terminal_columns() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1U : 79;
 }
 
-// Commands: "mark LABEL", "stop". The end of the input is "stop", too, so that a recording ends with the
-// program that steers it. A line that is no command is answered by an event "error" and changes nothing.
+// The commands by which another program steers a recording: lines on stdin, answers as lines of JSON on
+// stdout. Commands: "mark LABEL", "stop". The end of the input is "stop", too, so that a recording ends with
+// the program that steers it. A line that is no command is answered by an event "error" and changes nothing.
 // Answers never wait for their reader: if the pipe is full, they are dropped. One thread.
 class CommandLines {
  public:
@@ -301,10 +302,11 @@ std::string finger(const LiveView& view) {
   return text;
 }
 
-// "12.3 s  CLIP net_force   48 mm/s ok  load 0.90 N LESS  3 strokes  0 lost  normal_force [###-----]
-// net_force [########]  12.4 GB left": the clipped channels; speed and load compared with their target
-// bands, with the correction; levels as fractions of the converter's range ("peaks 37/100 %" if there is no
-// room for bars: 80 columns). Without colours, for every terminal; at most one line of `columns` characters.
+// The state of a running recording as one line of a terminal: "12.3 s  CLIP net_force   48 mm/s ok  load 0.90
+// N LESS  3 strokes  0 lost  normal_force [###-----] net_force [########]  12.4 GB left": the clipped
+// channels; speed and load compared with their target bands, with the correction; levels as fractions of the
+// converter's range ("peaks 37/100 %" if there is no room for bars: 80 columns). Without colours, for every
+// terminal; at most one line of `columns` characters.
 std::string live_line(const LiveView& view, const schema::RecordingHeader& header, std::size_t columns) {
   std::string line = fmt::format("{:.1f} s  ", view.time_s);
   line += clipping(view, header);
@@ -316,8 +318,8 @@ std::string live_line(const LiveView& view, const schema::RecordingHeader& heade
   return line.substr(0, columns);
 }
 
-// While this object exists, a terminal on stdin delivers each key at once and without echo; Ctrl-C remains a
-// signal. If stdin is not a terminal, no key is ever delivered.
+// Single key presses, read without blocking. While this object exists, a terminal on stdin delivers each key
+// at once and without echo; Ctrl-C remains a signal. If stdin is not a terminal, no key is ever delivered.
 class TerminalKeys {
  public:
   TerminalKeys();

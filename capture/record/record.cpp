@@ -99,8 +99,9 @@ struct FrameBlock {
   bool last = false;  // the last block of the recording
 };
 
-// A ring of preallocated blocks with one producer and one consumer thread. With a slow disk all blocks fill
-// and the producer waits; the device then loses frames and reports them.
+// Blocks between the capturing thread and the writing thread: a ring of preallocated blocks with one producer
+// and one consumer thread. With a slow disk all blocks fill and the producer waits; the device then loses
+// frames and reports them.
 class BlockQueue {
  public:
   BlockQueue(std::size_t blocks, std::size_t codes) : free_(static_cast<std::ptrdiff_t>(blocks)), filled_(0) {
@@ -132,9 +133,9 @@ class BlockQueue {
   std::counting_semaphore<> free_, filled_;
 };
 
-// Writes the blocks of the capturing thread; gaps and marks are written before the frames of their block.
-// Only the capturing thread calls to_fill(), filled(), end() and failed(); after end() it may use the
-// recording again. After a write error, which is kept, all further blocks are dropped.
+// The thread that writes the blocks of the capturing thread to the disk; gaps and marks are written before
+// the frames of their block. Only the capturing thread calls to_fill(), filled(), end() and failed(); after
+// end() it may use the recording again. After a write error, which is kept, all further blocks are dropped.
 class DiskWriter {
  public:
   // `live` must exist as long as this object; `codes` is the size of a block.

@@ -109,6 +109,7 @@ Result<Source> open_sound(const std::string& file, std::size_t skip) {
   return fail(ErrorKind::usage, "has no lines to skip", file, "omit --skip: this is not a table");
 }
 
+// A file of another program that import does not read.
 struct ForeignFormat {
   std::string_view what;      // "a TDMS file of LabVIEW"
   std::string_view remedy;    // the export to use, until there is a reader for the format
@@ -258,9 +259,10 @@ Result<void> refuse_own(const std::string& file, std::string_view head) {
   return {};
 }
 
-// Reads one table once, from its beginning to its end. The blocks of rows depend on the file alone, and an
-// error follows the rows before it, as with one thread. Memory: a few pieces of the file and their numbers,
-// for a file of any length.
+// Reads a table with three threads: one reads the file and computes its checksum, one parses, and the
+// caller's thread receives the rows. Reads one table once, from its beginning to its end. The blocks of rows
+// depend on the file alone, and an error follows the rows before it, as with one thread. Memory: a few pieces
+// of the file and their numbers, for a file of any length.
 class TableStages {
  public:
   // `sum`, if given, receives the file's bytes; it is complete after run() has returned without an error.

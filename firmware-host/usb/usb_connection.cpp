@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "firmware-host/core/firmware/usb_identity.hpp"
@@ -79,8 +80,9 @@ std::vector<UsbFound> ours_among(std::span<libusb_device*> devices) {
   return found;
 }
 
-}  // namespace
-
+// The first interface with the wire's class and subclass (core/firmware/usb_identity.hpp) and one bulk
+// endpoint in each direction. With any protocol number, so that a device of another version can be refused
+// by name.
 std::optional<UsbInterface> wire_interface(const libusb_config_descriptor& configuration) {
   for (const auto& interface : std::span(configuration.interface, configuration.bNumInterfaces))
     for (const auto& setting :
@@ -91,6 +93,8 @@ std::optional<UsbInterface> wire_interface(const libusb_config_descriptor& confi
     }
   return std::nullopt;
 }
+
+}  // namespace
 
 schema::Result<std::vector<UsbFound>> find_usb(libusb_context* context) {
   libusb_device** list = nullptr;

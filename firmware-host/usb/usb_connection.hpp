@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +16,7 @@ namespace tacto::firmware_host {
 /// A session with libusb. It scans the bus at the start, which takes milliseconds. Errors: device.
 schema::Result<std::shared_ptr<libusb_context>> begin_usb();
 
+/// Owning pointers for objects of libusb.
 struct UsbDeleter {
   void operator()(libusb_context* context) const { libusb_exit(context); }
   void operator()(libusb_device* device) const { libusb_unref_device(device); }
@@ -28,15 +28,11 @@ struct UsbDeleter {
 template <class Lent>
 using UsbPointer = std::unique_ptr<Lent, UsbDeleter>;
 
+/// The interface of the wire among those of a device.
 struct UsbInterface {
   std::uint8_t number = 0, setting = 0;
   std::uint8_t in = 0, out = 0;  ///< addresses of the bulk endpoints
 };
-
-/// The first interface with the wire's class and subclass (core/firmware/usb_identity.hpp) and one bulk
-/// endpoint in each direction. With any protocol number, so that a device of another version can be refused
-/// by name.
-std::optional<UsbInterface> wire_interface(const libusb_config_descriptor& configuration);
 
 struct UsbFound {
   UsbName name;

@@ -13,8 +13,8 @@
 
 namespace tacto::firmware_host {
 
-/// A transfer ends with a short packet, or an empty one if its size is a multiple of the packet size. For one
-/// thread.
+/// Bytes to a device, one transfer after the other. A transfer ends with a short packet, or an empty one if
+/// its size is a multiple of the packet size. For one thread.
 class UsbOutflow {
  public:
   /// The connection must outlive this object.
@@ -42,9 +42,10 @@ class UsbOutflow {
   int done_ = 0;
 };
 
-/// Transfers complete in libusb's event loop, which the caller runs; their bytes are queued here, in order.
-/// After a stall, an overflow or a cable error all transfers are cancelled, the endpoint is cleared, and all
-/// are submitted again; bytes that were lost in between are gaps for the reader of frames. For one thread.
+/// Bytes from a device: many transfers are pending at once, so that the device never waits. Transfers
+/// complete in libusb's event loop, which the caller runs; their bytes are queued here, in order. After a
+/// stall, an overflow or a cable error all transfers are cancelled, the endpoint is cleared, and all are
+/// submitted again; bytes that were lost in between are gaps for the reader of frames. For one thread.
 class UsbInflow {
  public:
   /// 1 MiB in all: 0.3 s of the fastest stream (100 kHz x 8 channels, 3.2 MB/s) or 64 bursts of a slow one

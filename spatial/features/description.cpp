@@ -47,8 +47,9 @@ double usual_window_m(const Texture& texture, double low_per_m) {
 
 constexpr std::size_t kShortestWelchWindow = 8;
 
-// One-sided density of evenly spaced values, each window without its mean, the same as scipy.signal.welch(x,
-// 1 / pitch, 'hann', W). Values after the last whole window are not used.
+// Welch's power spectral density: the mean over half-overlapping Hann windows (Welch 1967, IEEE Trans. Audio
+// Electroacoustics 15(2)). One-sided density of evenly spaced values, each window without its mean, the same
+// as scipy.signal.welch(x, 1 / pitch, 'hann', W). Values after the last whole window are not used.
 class WelchSpectrum {
  public:
   // Precondition: kShortestWelchWindow <= window <= values.size(). `pitch` in metres or seconds.

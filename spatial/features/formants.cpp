@@ -40,6 +40,7 @@ Result<void> check(const Spectrogram& spectrogram, const FormantOptions& options
   return {};
 }
 
+// A peak of one row of the spectrogram that exceeds its background.
 struct RidgePoint {
   std::size_t row = 0;
   double frequency_per_m = 0;
@@ -141,8 +142,9 @@ std::vector<RidgePoint> ridge_points(const Spectrogram& spectrogram, std::size_t
 
 using Ridge = std::vector<RidgePoint>;
 
-// Input: rows in order. A point continues the ridge whose last frequency is nearest, nearest pairs first, at
-// most `tolerance_per_m` away. A ridge without a point for more than `bridge_rows` rows ends.
+// Links the peaks of neighbouring rows to ridges. Input: rows in order. A point continues the ridge whose
+// last frequency is nearest, nearest pairs first, at most `tolerance_per_m` away. A ridge without a point for
+// more than `bridge_rows` rows ends.
 class RidgeTracker {
  public:
   RidgeTracker(double tolerance_per_m, std::size_t bridge_rows);

@@ -67,11 +67,11 @@ MAY_INCLUDE = {
     "spatial/dsp/resample": "spatial/dsp/fourier",
     "spatial/dsp/spectrum": "data-schema/base spatial/{dsp/filter dsp/fourier dsp/resample}",
     "spatial/features":
-        "data-schema/{base spectrogram texture} spatial/{dsp/filter dsp/fourier numbers spectrogram texture}",
+        "data-schema/{base spectrogram texture} spatial/{dsp/filter dsp/fourier dsp/spectrum numbers spectrogram texture}",
     "spatial/job":
         "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter spectrogram strokes "
         "texture}",
-    "spatial/numbers": "data-schema/{base texture} spatial/dsp/{fourier spectrum}",
+    "spatial/numbers": "data-schema/{base texture} spatial/dsp/fourier",
     "spatial/picture": "data-schema/{base files spectrogram texture} spatial/{numbers picture/draw spectrogram}",
     "spatial/picture/draw": "data-schema/base",
     "spatial/picture/engine": "spatial/picture/draw",

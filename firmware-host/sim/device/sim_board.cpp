@@ -18,9 +18,9 @@ constexpr std::uint32_t kClockHz = 1'000'000;
 constexpr std::size_t kForceChannel = 2;   // as in ScriptedRun
 constexpr std::size_t kMessageBytes = 40;  // the bytes of a samples message without its codes: core/WIRE.md
 
-// The encoder follows a script: frame i is at (i + 1) x period, without the frames in which the script is
-// held at its beginning. Only the channels of position and normal force, the second and third of the
-// emulated device, have values; the others are zero.
+// A finger that follows a given position. The encoder follows a script: frame i is at (i + 1) x period,
+// without the frames in which the script is held at its beginning. Only the channels of position and normal
+// force, the second and third of the emulated device, have values; the others are zero.
 class ScriptedRun final : public FrameSource {
  public:
   // `held` must outlive this object; null: never held.
@@ -58,7 +58,8 @@ class ScriptedRun final : public FrameSource {
   std::int32_t count_;
 };
 
-// The code of channel c in frame i is 16 i + c, modulo 2^32: it wraps after 2^28 frames, 45 min at 100 kHz.
+// Frames with consecutive numbers as codes, so that each lost or repeated frame is detected. The code of
+// channel c in frame i is 16 i + c, modulo 2^32: it wraps after 2^28 frames, 45 min at 100 kHz.
 // No physics, and almost no computation.
 class CounterRun final : public FrameSource {
  public:

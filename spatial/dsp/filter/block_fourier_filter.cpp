@@ -61,6 +61,7 @@ struct KernelSpectrum {
   std::size_t length, reach;               // taps -reach ... reach, 2 reach < length
 };
 
+// Convolution of an endless signal with a long kernel, in blocks of Fourier transforms (Stockham 1966).
 class OverlapSave {
  public:
   using Sink = std::function<void(std::span<const double>)>;
