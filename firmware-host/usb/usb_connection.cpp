@@ -14,6 +14,8 @@
 namespace tacto::firmware_host {
 namespace {
 
+using schema::Result;
+
 bool is_wire(const libusb_interface_descriptor& descriptor) {
   return descriptor.bInterfaceClass == usb::kInterfaceClass &&
          descriptor.bInterfaceSubClass == usb::kInterfaceSubclass;
@@ -61,6 +63,20 @@ std::string serial_of(libusb_device* device) {
   return size > 0 ? std::string(text, text + size) : std::string();
 }
 
+// The first interface with the wire's class and subclass (core/firmware/usb_identity.hpp) and one bulk
+// endpoint in each direction. With any protocol number, so that a device of another version can be refused
+// by name.
+std::optional<UsbInterface> wire_interface(const libusb_config_descriptor& configuration) {
+  for (const auto& interface : std::span(configuration.interface, configuration.bNumInterfaces))
+    for (const auto& setting :
+         std::span(interface.altsetting, static_cast<std::size_t>(interface.num_altsetting))) {
+      if (!is_wire(setting)) continue;
+      const UsbInterface found = described_by(setting);
+      if (found.in != 0 && found.out != 0) return found;
+    }
+  return std::nullopt;
+}
+
 std::optional<UsbInterface> interface_of(libusb_device* device) {
   libusb_config_descriptor* descriptor = nullptr;
   if (libusb_get_active_config_descriptor(device, &descriptor) != 0) return std::nullopt;
@@ -80,23 +96,9 @@ std::vector<UsbFound> ours_among(std::span<libusb_device*> devices) {
   return found;
 }
 
-// The first interface with the wire's class and subclass (core/firmware/usb_identity.hpp) and one bulk
-// endpoint in each direction. With any protocol number, so that a device of another version can be refused
-// by name.
-std::optional<UsbInterface> wire_interface(const libusb_config_descriptor& configuration) {
-  for (const auto& interface : std::span(configuration.interface, configuration.bNumInterfaces))
-    for (const auto& setting :
-         std::span(interface.altsetting, static_cast<std::size_t>(interface.num_altsetting))) {
-      if (!is_wire(setting)) continue;
-      const UsbInterface found = described_by(setting);
-      if (found.in != 0 && found.out != 0) return found;
-    }
-  return std::nullopt;
-}
-
 }  // namespace
 
-schema::Result<std::vector<UsbFound>> find_usb(libusb_context* context) {
+Result<std::vector<UsbFound>> find_usb(libusb_context* context) {
   libusb_device** list = nullptr;
   const auto count = libusb_get_device_list(context, &list);
   if (count < 0) return usb_failure(static_cast<int>(count), "looking for devices on USB", "device");
@@ -111,8 +113,6 @@ std::vector<UsbName> names_of(const std::vector<UsbFound>& found) {
   for (const UsbFound& one : found) names.push_back(one.name);
   return names;
 }
-
-using schema::Result;
 
 Result<std::shared_ptr<libusb_context>> begin_usb() {
   libusb_context* context = nullptr;
