@@ -22,6 +22,7 @@ namespace {
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
+using std::string_view_literals::operator""sv;
 
 constexpr std::size_t kPieceBytes = std::size_t{1} << 17;  // fits into the cache with its numbers
 
@@ -115,8 +116,6 @@ struct ForeignFormat {
   std::string_view remedy;    // the export to use, until there is a reader for the format
   bool may_be_sound = false;  // libsndfile writes and reads audio in files of this kind
 };
-
-using std::string_view_literals::operator""sv;
 
 constexpr std::string_view kMatlab =
     "in MATLAB: writematrix([t f x], 'trial.csv'), or writetable(T, 'trial.csv'); then import the CSV";

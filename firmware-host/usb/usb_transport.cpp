@@ -216,8 +216,6 @@ Result<void> UsbOutflow::clear() {
   return {};
 }
 
-using schema::Result;
-
 UsbTransport::UsbTransport(UsbConnection connection)
     : connection_(std::move(connection)), inflow_(connection_), outflow_(connection_) {}
 

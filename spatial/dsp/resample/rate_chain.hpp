@@ -10,7 +10,7 @@ namespace tacto::spatial {
 
 /// A symmetric low-pass at a quarter of the higher rate: its middle tap is 1/2, all other even taps are 0,
 /// and the taps at distance 2k + 1 on both sides are c_k. Windowed sinc (Kaiser); 1 at 0 Hz, 0 at half the
-/// higher rate.
+/// higher rate (Crochiere and Rabiner, "Multirate Digital Signal Processing", 1983).
 class HalfBand {
  public:
   /// Passes up to `passed` and stops from 1/2 - passed on, in cycles per sample of the higher rate, 0 <
