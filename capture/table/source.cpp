@@ -310,8 +310,7 @@ class TableStages {
   std::exception_ptr reading_failed_, parsing_failed_;  // out of memory; thrown again in the caller's thread
 };
 
-constexpr std::size_t kTablePieceBytes = std::size_t{1} << 17;  // fits the cache together with its numbers
-constexpr std::size_t kWaiting = 4;                             // pieces between two threads
+constexpr std::size_t kWaiting = 4;  // pieces between two threads
 
 TableStages::TableStages(const Source& source, std::span<const std::size_t> columns, schema::Sha256* sum)
     : source_(source),
@@ -325,8 +324,8 @@ TableStages::TableStages(const Source& source, std::span<const std::size_t> colu
 // The checksum is computed after the piece was passed on, so that the parser does not wait for it.
 void TableStages::read_pieces(InputFile input) try {
   for (;;) {
-    auto bytes = std::make_shared_for_overwrite<char[]>(kTablePieceBytes);
-    const auto got = input.read({bytes.get(), kTablePieceBytes});
+    auto bytes = std::make_shared_for_overwrite<char[]>(kPieceBytes);
+    const auto got = input.read({bytes.get(), kPieceBytes});
     if (!got) {
       pieces_.push(schema::forward_error(got));
       break;
