@@ -15,7 +15,6 @@
 #include "analysis/compare/compare.hpp"
 #include "analysis/compare/compare_page.hpp"
 #include "analysis/compare/surfaces.hpp"
-#include "analysis/compare/surfaces_page.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/files/files.hpp"
