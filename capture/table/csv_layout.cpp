@@ -86,6 +86,16 @@ bool is_units_row(const Fields& fields) {
          std::ranges::count_if(fields, schema::may_be_unit) * 2 > std::ranges::ssize(fields);
 }
 
+Fields fields_in(const TableLine& line, char delimiter) {
+  return fields_of(to_utf8(line.text), delimiter);
+}
+
+// Whether two lines have the same number of fields, and text in the same fields.
+bool has_text_where(const Fields& a, const Fields& b) {
+  return std::ranges::equal(
+      a, b, [](const auto& one, const auto& other) { return is_name(one) == is_name(other); });
+}
+
 // The number of rows of the same form from line `first` on, at most kRowsToTrust.
 std::size_t rows_from(std::span<const TableLine> lines, std::size_t first, char delimiter, Rows kind) {
   Fields like;
@@ -146,16 +156,6 @@ bool units_under_names(const TableStart& start, std::span<const TableLine> lines
   if (start.first_row < 2) return false;
   const Fields units = fields_in(lines[start.first_row - 1], start.delimiter);
   return is_units_row(units) && names_for(units, start) && names_columns(start, lines[start.first_row - 2]);
-}
-
-// Whether two lines have the same number of fields, and text in the same fields.
-bool has_text_where(const Fields& a, const Fields& b) {
-  return std::ranges::equal(
-      a, b, [](const auto& one, const auto& other) { return is_name(one) == is_name(other); });
-}
-
-Fields fields_in(const TableLine& line, char delimiter) {
-  return fields_of(to_utf8(line.text), delimiter);
 }
 
 // The fields as column names: a surplus field is dropped if it is empty or "Comment", as LabVIEW writes it.

@@ -143,8 +143,7 @@ MAY_INCLUDE = {
         "features texture}",
     "analysis/identify/fit": "analysis/identify/measure data-schema/{base transducer} playback/model",
     "analysis/identify/measure":
-        "capture/table data-schema/{base files recording transducer} firmware-host/link playback/model "
-        "spatial/dsp/fourier",
+        "capture/table data-schema/{base files recording} firmware-host/link spatial/dsp/fourier",
     "analysis/identify/report":
         "analysis/{identify/fit identify/measure} data-schema/{base report results} firmware-host/sim/physics "
         "spatial/{picture picture/draw}",
