@@ -6,13 +6,15 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <condition_variable>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include "capture/table/input_file.hpp"
-#include "data-schema/base/bounded_queue.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/wav/wav.hpp"
 
@@ -258,6 +260,58 @@ Result<void> refuse_own(const std::string& file, std::string_view head) {
   return {};
 }
 
+// Values in the order in which they were pushed. Each function is safe in every thread.
+template <class T>
+class BoundedQueue {
+ public:
+  explicit BoundedQueue(std::size_t most) : most_(most) {}
+
+  // Waits while the queue is full. Returns false and drops the value if the queue is closed.
+  bool push(T value) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return closed_ || values_.size() < most_; });
+    if (closed_) return false;
+    values_.push_back(std::move(value));
+    changed_.notify_all();
+    return true;
+  }
+
+  // Waits for a value; returns none if the queue is closed and empty.
+  std::optional<T> pop() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return closed_ || !values_.empty(); });
+    return taken();
+  }
+
+  // As pop(), without waiting.
+  std::optional<T> try_pop() {
+    const std::lock_guard lock(mutex_);
+    return taken();
+  }
+
+  // Later values are dropped; those in the queue can still be popped.
+  void close() {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  std::optional<T> taken() {
+    if (values_.empty()) return std::nullopt;
+    std::optional<T> value(std::move(values_.front()));
+    values_.pop_front();
+    changed_.notify_all();
+    return value;
+  }
+
+  const std::size_t most_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<T> values_;
+  bool closed_ = false;
+};
+
 // Reads a table with three threads: one reads the file and computes its checksum, one parses, and the
 // caller's thread receives the rows. Reads one table once, from its beginning to its end. The blocks of rows
 // depend on the file alone, and an error follows the rows before it, as with one thread. Memory: a few pieces
@@ -304,9 +358,9 @@ class TableStages {
   const std::size_t columns_;
   schema::Sha256* const sum_;
   CsvReader reader_;  // of the thread that parses
-  schema::BoundedQueue<schema::Result<Piece>> pieces_;
-  schema::BoundedQueue<schema::Result<Rows>> rows_;
-  schema::BoundedQueue<NumberStore> spare_;
+  BoundedQueue<schema::Result<Piece>> pieces_;
+  BoundedQueue<schema::Result<Rows>> rows_;
+  BoundedQueue<NumberStore> spare_;
   std::exception_ptr reading_failed_, parsing_failed_;  // out of memory; thrown again in the caller's thread
 };
 
