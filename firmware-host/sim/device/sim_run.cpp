@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "firmware-host/sim/bench/force_bench.hpp"
 #include "firmware-host/sim/physics/lugre_friction.hpp"
@@ -13,6 +14,11 @@
 
 namespace tacto::firmware_host {
 namespace {
+
+constexpr int kLoadCellBits = 16;
+constexpr double kNoiseN = 1.0 / 320;   // ATI Nano17, SI-12-0.12: resolution
+constexpr double kNativeRateHz = 1000;  // ours
+constexpr double kCutoffHz = 200;       // ours: well below half of the native rate
 
 enum Stream : std::uint64_t {
   kSpeedStream = 100,
@@ -163,6 +169,22 @@ std::unique_ptr<Bench> bench_for(const SimParameters& p, const schema::Transduce
 }
 
 }  // namespace
+
+LoadCell::LoadCell(double range_n, double sample_rate_hz, bool noise, Random random)
+    : converter_(kLoadCellBits, range_n),
+      random_(random),
+      every_(std::max(1, static_cast<int>(std::lround(sample_rate_hz / kNativeRateHz)))),
+      native_rate_hz_(sample_rate_hz / every_),
+      follow_(1 / (1 + sample_rate_hz / (2 * std::numbers::pi * kCutoffHz))),
+      noise_n_(noise ? kNoiseN : 0) {}
+
+std::int32_t LoadCell::step(double force_n) {
+  filtered_n_ += follow_ * (force_n - filtered_n_);
+  if (until_next_-- > 0) return held_;
+  until_next_ = every_ - 1;
+  held_ = converter_.convert(filtered_n_ + noise_n_ * random_.normal());
+  return held_;
+}
 
 SimRun::SimRun(const SimParameters& p, const schema::Transducer& transducer, const HeightProfile& profile)
     : parameters_(p),
