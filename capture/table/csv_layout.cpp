@@ -146,6 +146,16 @@ bool is_after_rows(const TableStart& start, std::span<const TableLine> lines, co
   });
 }
 
+// The fields as column names: a surplus field is dropped if it is empty or "Comment", as LabVIEW writes it.
+// nullopt if there are too many or too few.
+std::optional<Fields> names_for(Fields fields, const TableStart& start) {
+  while (fields.size() > start.columns && (fields.back().empty() || fields.back() == "Comment"))
+    fields.pop_back();
+  if (fields.size() > start.columns || fields.size() < start.least_names) return std::nullopt;
+  fields.resize(start.columns);
+  return fields;
+}
+
 bool names_columns(const TableStart& start, const TableLine& line) {
   const Fields fields = fields_in(line, start.delimiter);
   return is_names_alone(fields) && names_for(fields, start).has_value();
@@ -156,16 +166,6 @@ bool units_under_names(const TableStart& start, std::span<const TableLine> lines
   if (start.first_row < 2) return false;
   const Fields units = fields_in(lines[start.first_row - 1], start.delimiter);
   return is_units_row(units) && names_for(units, start) && names_columns(start, lines[start.first_row - 2]);
-}
-
-// The fields as column names: a surplus field is dropped if it is empty or "Comment", as LabVIEW writes it.
-// nullopt if there are too many or too few.
-std::optional<Fields> names_for(Fields fields, const TableStart& start) {
-  while (fields.size() > start.columns && (fields.back().empty() || fields.back() == "Comment"))
-    fields.pop_back();
-  if (fields.size() > start.columns || fields.size() < start.least_names) return std::nullopt;
-  fields.resize(start.columns);
-  return fields;
 }
 
 // Finds the first five consecutive rows of numbers with the same number of fields (fewer if the lines end

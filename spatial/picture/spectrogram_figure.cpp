@@ -201,13 +201,6 @@ void PanelPainter::paint_notes() {
   note("formants");
 }
 
-// Name, surface, method and, for simulated data, their source.
-Heading panel_heading(const schema::Texture& texture, const schema::Spectrogram& spectrogram) {
-  const std::string title =
-      spectrogram.name + (texture.surface.empty() ? "" : ", surface " + texture.surface);
-  return heading_of(title, method_facts(texture, spectrogram), texture.simulated, heading_width());
-}
-
 // Window, hop, bins, speed, direction and band in one line.
 std::string method_facts(const schema::Texture& texture, const schema::Spectrogram& spectrogram) {
   std::string facts =
@@ -220,6 +213,13 @@ std::string method_facts(const schema::Texture& texture, const schema::Spectrogr
   if (!source.filter.empty() && source.filter != "none")
     facts += fmt::format(", {:g}\u2013{:g} Hz ({})", source.low_hz, source.high_hz, source.filter);
   return facts;
+}
+
+// Name, surface, method and, for simulated data, their source.
+Heading panel_heading(const schema::Texture& texture, const schema::Spectrogram& spectrogram) {
+  const std::string title =
+      spectrogram.name + (texture.surface.empty() ? "" : ", surface " + texture.surface);
+  return heading_of(title, method_facts(texture, spectrogram), texture.simulated, heading_width());
 }
 
 }  // namespace
