@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds the band in which two textures differ most, and compares that difference with chance.
+// Finds the band in which two textures differ most, and the spectral line that only one of them has, over
+// their whole length; compares both with chance.
 #pragma once
 
 #include <optional>

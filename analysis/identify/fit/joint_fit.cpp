@@ -47,7 +47,6 @@ class PlaysInStep {
   std::vector<double> thresholds_v_, v_, real_, imag_;
 };
 
-using Complex = std::complex<double>;
 using schema::Result;
 
 constexpr int kMostRounds = 10;
