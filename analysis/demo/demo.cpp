@@ -34,8 +34,10 @@
 namespace tacto::analysis {
 namespace {
 
+namespace fs = std::filesystem;
 using schema::Dimension;
 using schema::for_people;
+using schema::Result;
 
 using Spectrum = std::vector<std::complex<double>>;
 
@@ -173,9 +175,6 @@ constexpr std::string_view kIntroduction =
     "would exceed the transducer's 5 V), through the inverse of the modelled actuator, to the drive in "
     "volts. The emulated transducer, integrated from its equations of motion, independently of that inverse, "
     "then moved its tray.</p>\n";
-
-namespace fs = std::filesystem;
-using schema::Result;
 
 constexpr const char* kNotes = "made by tactograph demo";
 // The recording has the paper's speed; the replay is slower and reverses its direction.

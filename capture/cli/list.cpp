@@ -18,6 +18,7 @@
 namespace tacto::capture {
 namespace {
 
+namespace fs = std::filesystem;
 using schema::ErrorKind;
 using schema::Result;
 
@@ -56,8 +57,6 @@ struct ListedRecording {
   std::optional<int> take;  // the number at the end of its name, as in S01_oak_2
   std::string trouble;  // the reason why it cannot be opened, or that it was never closed; otherwise empty
 };
-
-namespace fs = std::filesystem;
 
 constexpr std::string_view kEvents = ".events.jsonl";
 

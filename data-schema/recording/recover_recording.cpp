@@ -24,6 +24,8 @@
 namespace tacto::schema {
 namespace {
 
+namespace fs = std::filesystem;
+
 Result<void> check_recoverable(const std::string& stem) {
   if (is_file(events_path(stem))) return {};
   if (is_file(stem + ".json"))
@@ -140,8 +142,6 @@ struct WavRemains {
   std::uint64_t frames = 0;
   std::vector<std::string> notes;  // what was repaired, what was cut off, what may be lost
 };
-
-namespace fs = std::filesystem;
 
 constexpr double kOnItsWay_s = 0.1;         // events are in the journal before their frames are in the WAV
 constexpr std::size_t kFormatBytes = 48;    // "fmt " with its size and content

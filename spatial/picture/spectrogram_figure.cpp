@@ -20,6 +20,9 @@
 namespace tacto::spatial {
 namespace {
 
+using schema::ErrorKind;
+using schema::Result;
+
 // The inputs and steps of the drawing. Axes in mm and 1/mm, placed on the panel's spectrogram.
 struct PanelPainter {
   Canvas& canvas;
@@ -223,9 +226,6 @@ Heading panel_heading(const schema::Texture& texture, const schema::Spectrogram&
 }
 
 }  // namespace
-
-using schema::ErrorKind;
-using schema::Result;
 
 SpectrogramFigure::SpectrogramFigure(std::vector<SpectrogramPanel> panels, SpectrogramPictureOptions options)
     : panels_(std::move(panels)), options_(options) {

@@ -16,6 +16,7 @@
 namespace tacto::analysis {
 namespace {
 
+using schema::Result;
 using Complex = std::complex<double>;
 
 // Play operators of one input, computed together, and their sums with exp(-i w t).
@@ -46,8 +47,6 @@ class PlaysInStep {
  private:
   std::vector<double> thresholds_v_, v_, real_, imag_;
 };
-
-using schema::Result;
 
 constexpr int kMostRounds = 10;
 constexpr double kPoleStep = 1e-3;  // relative step of the finite difference

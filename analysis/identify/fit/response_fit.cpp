@@ -47,11 +47,11 @@ std::vector<double> sums_of_squares(std::span<const std::complex<double>> residu
   return sums;
 }
 
-struct Comparison {
+struct ModelComparison {
   double statistic = 0, times = 1;
 };
 
-Comparison part_and_rest(std::span<const double> sums, std::size_t begin, std::size_t length) {
+ModelComparison part_and_rest(std::span<const double> sums, std::size_t begin, std::size_t length) {
   const double values = 2 * static_cast<double>(length), all = 2 * static_cast<double>(sums.size() - 1),
                squares = sums[begin + length] - sums[begin];
   const PartSize part{values, squares}, rest{all - values, sums.back() - squares};
@@ -285,7 +285,7 @@ NoiseEvenness evenness_of(std::span<const std::complex<double>> residuals,
   for (const std::size_t fraction : kFractions) {
     const std::size_t length = std::max(n / fraction, kShortest);
     for (std::size_t begin = 0; begin + length <= n; ++begin) {
-      const Comparison compared = part_and_rest(sums, begin, length);
+      const ModelComparison compared = part_and_rest(sums, begin, length);
       if (compared.statistic <= most) continue;
       most = compared.statistic;
       found = {true, frequency_hz[begin], frequency_hz[begin + length - 1], compared.times};
