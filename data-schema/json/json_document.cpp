@@ -77,8 +77,8 @@ void add(const std::string& pointer, const Json& value, Covered& covered) {
 }
 
 // SHA-256 of a recording or texture (`data.numbers_sha256`); nothing for other kinds. Covers the members
-// that covered_members() lists for the kind: all their numbers, quantities and units, but no other text and no
-// member x_... For each of them, ordered by the bytes of its JSON pointer: pointer, line feed, then the
+// that covered_members() lists for the kind: all their numbers, quantities and units, but no other text and
+// no member x_... For each of them, ordered by the bytes of its JSON pointer: pointer, line feed, then the
 // number as a little-endian float64, or the text and a line feed.
 std::optional<std::string> numbers_sum(std::string_view kind, const Json& document) {
   const auto members = covered_members(kind);
