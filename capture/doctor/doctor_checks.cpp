@@ -7,9 +7,6 @@
 #include <vector>
 
 #include "capture/doctor/doctor.hpp"
-#include "capture/doctor/realtime_limits.hpp"
-#include "capture/doctor/udev_rule.hpp"
-#include "capture/record/disk_speed.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/files/files.hpp"

@@ -8,9 +8,6 @@
 #include <fstream>
 
 #include "capture/calibrate/tare.hpp"
-#include "capture/doctor/realtime_limits.hpp"
-#include "capture/doctor/udev_rule.hpp"
-#include "capture/record/disk_speed.hpp"
 #include "tests/capture/sim_take.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 

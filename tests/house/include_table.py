@@ -51,12 +51,12 @@ MAY_INCLUDE = {
     "firmware-host/usb": "data-schema/base firmware-host/{core/firmware link}",
     "capture/calibrate": "capture/record data-schema/{base calibration recording transducer} firmware-host/link",
     "capture/cli":
-        "capture/{calibrate doctor import record table} data-schema/{base cli command files height recording report} "
+        "capture/{calibrate doctor import record table} data-schema/{base cli command files height kinds recording report} "
         "firmware-host/{. sim/device}",
     "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. link}",
     "capture/import": "capture/{calibrate record table} data-schema/{base calibration files height recording texture}",
     "capture/record":
-        "capture/table data-schema/{base calibration files kinds recording} firmware-host/link spatial/strokes",
+        "capture/table data-schema/{base calibration files recording} firmware-host/link spatial/strokes",
     "capture/table": "data-schema/{base files recording wav}",
     "spatial/certificate": "data-schema/{base texture} spatial/features",
     "spatial/cli":
@@ -67,11 +67,11 @@ MAY_INCLUDE = {
     "spatial/dsp/resample": "spatial/dsp/fourier",
     "spatial/dsp/spectrum": "data-schema/base spatial/{dsp/filter dsp/fourier dsp/resample}",
     "spatial/features":
-        "data-schema/{base spectrogram texture} spatial/{dsp/filter dsp/fourier numbers spectrogram texture}",
+        "data-schema/{base spectrogram texture} spatial/{dsp/filter dsp/fourier dsp/spectrum numbers spectrogram texture}",
     "spatial/job":
         "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter spectrogram strokes "
         "texture}",
-    "spatial/numbers": "data-schema/{base texture} spatial/dsp/{fourier spectrum}",
+    "spatial/numbers": "data-schema/{base texture} spatial/dsp/fourier",
     "spatial/picture": "data-schema/{base files spectrogram texture} spatial/{numbers picture/draw spectrogram}",
     "spatial/picture/draw": "data-schema/base",
     "spatial/picture/engine": "spatial/picture/draw",
@@ -143,8 +143,7 @@ MAY_INCLUDE = {
         "features texture}",
     "analysis/identify/fit": "analysis/identify/measure data-schema/{base transducer} playback/model",
     "analysis/identify/measure":
-        "capture/table data-schema/{base files recording transducer} firmware-host/link playback/model "
-        "spatial/dsp/fourier",
+        "capture/table data-schema/{base files recording} firmware-host/link spatial/dsp/fourier",
     "analysis/identify/report":
         "analysis/{identify/fit identify/measure} data-schema/{base report results} firmware-host/sim/physics "
         "spatial/{picture picture/draw}",
