@@ -29,6 +29,7 @@ cli::Report row_of(const ForceLayer& layer) {
     }
   });
   for (const auto& [name, number] : numbers_of(layer)) row.add(std::string(name), number.value);
+  if (is_adaptive(layer)) row.add("adaptive", true);
   return row;
 }
 
