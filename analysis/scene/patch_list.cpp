@@ -52,6 +52,7 @@ std::string layer_words(const schema::ForceLayer& layer) {
     words += fmt::format("{}{} {}", before, name_words(name), value_words(name, number.value));
     before = ", ";
   }
+  if (schema::is_adaptive(layer)) words += ", adaptive";
   return words;
 }
 

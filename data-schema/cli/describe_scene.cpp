@@ -34,6 +34,7 @@ cli::Report row_of(const ForceLayer& layer) {
     else
       row.add(std::string(name), number.value);
   }
+  if (is_adaptive(layer)) row.add("adaptive", true);
   return row;
 }
 

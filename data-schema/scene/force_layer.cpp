@@ -43,6 +43,18 @@ std::vector<NamedLayerNumber> numbers_of(const ForceLayer& layer) {
   return numbers;
 }
 
+bool is_adaptive(const ForceLayer& layer) {
+  return layer.visit([]<class L>(const L& of) {
+    if constexpr (MayBeAdaptive<L>) return of.adaptive;
+    return false;
+  });
+}
+
+bool is_added(const ForceLayer& layer) {
+  return layer.visit([](const DamperLayer& damper) { return damper.added; },
+                     [](const auto& /*other*/) { return false; });
+}
+
 std::string file_of(const ForceLayer& layer) {
   return layer.visit([]<class L>(const L& of) -> std::string {
     if constexpr (NamesFile<L>) return of.file;

@@ -74,7 +74,8 @@ Result<std::int32_t> counts_to(double to_m, double from_m, double step_m) {
 
 Result<std::size_t> layer_place(const schema::Patch& patch, const std::string& name) {
   Words types;
-  for (const schema::ForceLayer& layer : patch.layers) types.emplace_back(type_of(layer));
+  for (const schema::ForceLayer& layer : patch.layers)
+    if (!is_added(layer)) types.emplace_back(type_of(layer));
   for (std::size_t i = 0; i < types.size(); ++i)
     if (name == std::to_string(i)) return i;
   if (std::ranges::count(types, name) > 1)

@@ -122,8 +122,8 @@ MAY_INCLUDE = {
     "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":
         "analysis/{compare demo design experiment extremes fidelity identify/fit identify/measure identify/report live page report scene "
-        "trade trade/rows} data-schema/{base command files kinds report results scene texture} playback/{model "
-        "player prepare/scene session stability} spatial/{cli picture}",
+        "trade trade/rows} data-schema/{base command files kinds report results scene texture} playback/{cli "
+        "model player prepare/scene session stability} spatial/{cli picture}",
     "analysis/compare":
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
         "dsp/fourier dsp/resample dsp/spectrum features numbers spectrogram strokes texture}",
