@@ -104,11 +104,12 @@ def an_unbroken_run_equals_the_verbs():
 
 def options_are_those_of_the_verbs():
     """Also an average, which has other names; and the window of the description."""
-    init("mean", "--spatial", "--average --band 30Hz..200Hz", "--describe", "--window 4mm", recordings="raw/E0.json")
+    run("record", "-d", "sim:surface=E,speed=60mm/s,seed=3", "--time", "3s", "-o", "F")
+    init("mean", "--spatial", "--average --band 30Hz..200Hz", "--describe", "--window 4mm", recordings="F.json")
     job("mean")
     found = {result["step"]: pathlib.Path(result["folder"]) for result in run_json("corpus", "status", "mean")["results"]}
-    run("spatial", "raw/E0", "--average", "--band", "30Hz..200Hz", "-o", "by-verbs/mean/")
-    run("describe", "by-verbs/mean", "--window", "4mm", "-o", "by-verbs/mean-described/E0")
+    run("spatial", "F", "--average", "--band", "30Hz..200Hz", "-o", "by-verbs/mean/")
+    run("describe", "by-verbs/mean", "--window", "4mm", "-o", "by-verbs/mean-described/F")
     for step, wanted in (("spatial", "by-verbs/mean"), ("describe", "by-verbs/mean-described")):
         for path in pathlib.Path(wanted).iterdir():
             assert (found[step] / path.name).read_bytes() == path.read_bytes(), (step, path)
