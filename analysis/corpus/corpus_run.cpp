@@ -175,9 +175,9 @@ class CorpusRun {
     return counts_.stopped || failure_.has_value();
   }
 
-  void add_one(std::size_t CorpusRunCounts::*count) {
+  void add_one(std::size_t CorpusRunCounts::*which) {
     const std::lock_guard lock(mutex_);
-    ++(counts_.*count);
+    ++(counts_.*which);
   }
 
   void keep(const Result<void>& result) {
