@@ -29,8 +29,8 @@ const cli::VerbGroup kGroups[] = {
       &playback::kReplayVerb, &playback::kExplainVerb, &analysis::kLiveVerb}},
     {"Ask",
      {&analysis::kIdentifyVerb, &analysis::kFidelityVerb, &analysis::kCompareVerb, &analysis::kExperimentVerb,
-      &analysis::kReportVerb, &analysis::kDesignVerb, &analysis::kTradeVerb, &analysis::kExtremesVerb,
-      &analysis::kDemoVerb}},
+      &analysis::kReportVerb, &analysis::kCorpusVerb, &analysis::kDesignVerb, &analysis::kTradeVerb,
+      &analysis::kExtremesVerb, &analysis::kDemoVerb}},
 };
 
 constexpr std::array<const cli::HelpTopic*, 2> kTopics = {&firmware_host::kDevicesTopic,

@@ -130,11 +130,15 @@ Result<Json> read_json(const std::string& path) {
   return parse_json(*text, path);
 }
 
-// JSON has no NaN and no infinity; the library would write null.
-std::optional<std::string> first_not_finite(const Json& node) {
-  const Json flat = node.flatten();  // a variable: items() would outlive a temporary
-  for (const auto& [pointer, value] : flat.items())
-    if (value.is_number_float() && !std::isfinite(value.get<double>())) return pointer;
+// JSON has no NaN and no infinity; the library would write null. `at` is the pointer of `node`, an object or
+// array.
+std::optional<std::string> first_not_finite(const Json& node,
+                                            const Json::json_pointer& at = Json::json_pointer()) {
+  for (const auto& [name, value] : node.items()) {
+    if (value.is_number_float() && !std::isfinite(value.get<double>())) return (at / name).to_string();
+    if (!value.is_structured()) continue;
+    if (auto found = first_not_finite(value, at / name)) return found;
+  }
   return std::nullopt;
 }
 

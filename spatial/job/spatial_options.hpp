@@ -30,6 +30,7 @@ struct SpatialOptions {
   bool list = false, finger_up = false, average = false, both_ways = false;
   bool mix = false;  ///< averages different surfaces, or measured with simulated recordings
   schema::Existing existing = schema::Existing::keep;
+  schema::Sync sync = schema::Sync::now;
   Align align = Align::position;
   double align_range_m = 0.5e-3;
   int jobs = 1;

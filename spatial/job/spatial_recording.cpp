@@ -331,7 +331,7 @@ Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& 
     first->what = "no stroke makes a texture; reason for the first: " + first->what;
     return tl::unexpected(*first);
   }
-  TACTO_TRY(pending.commit(options_.existing));
+  TACTO_TRY(pending.commit(options_.existing, options_.sync));
   head->add("textures", std::move(rows));
   return std::move(*head);
 }
@@ -362,7 +362,7 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
   if (!head)
     return schema::fail(ErrorKind::unsuitable, "no two strokes can be averaged", maker.record().where(),
                         "the warnings give the reasons");
-  TACTO_TRY(pending.commit(options_.existing));
+  TACTO_TRY(pending.commit(options_.existing, options_.sync));
   head->add("averages", std::move(rows));
   return std::move(*head);
 }

@@ -104,7 +104,7 @@ TEST(ScenePatches, EveryKindIsReadWithItsNumbersAndDefaults) {
     EXPECT_EQ(type_of(patch.layers[i]), kLayers[i]["type"].get<std::string>());
     EXPECT_EQ(type_of(patch.layers[i]), force_layer_types()[i]);
     EXPECT_EQ(file_of(patch.layers[i]), kLayers[i].value("file", ""));
-    for (const auto& [name, number] : numbers_of(patch.layers[i])) {
+    for (const auto& [name, number, whole] : numbers_of(patch.layers[i])) {
       EXPECT_FALSE(number.slider);
       if (kLayers[i].contains(std::string(name)))
         EXPECT_EQ(number.value, kLayers[i][std::string(name)].get<double>()) << name;
@@ -236,7 +236,7 @@ TEST(ScenePatches, EveryNumberMayHaveASlider) {
   ASSERT_TRUE(scene) << message(scene.error());
   std::size_t with_slider = 0;
   for (const ForceLayer& each : scene->patches[0].layers)
-    for (const auto& [name, number] : numbers_of(each)) with_slider += number.slider.has_value();
+    for (const auto& [name, number, whole] : numbers_of(each)) with_slider += number.slider.has_value();
   EXPECT_EQ(with_slider, numbers);
   EXPECT_EQ(numbers, 24U);
 }
@@ -466,7 +466,7 @@ TEST(ScenePatches, SchemaAndTypesHaveTheSameMembers) {
   const auto scene = parsed(all_kinds());
   ASSERT_TRUE(scene);
   for (const ForceLayer& each : scene->patches[0].layers)
-    for (const auto& [name, number] : numbers_of(each)) known.emplace(name);
+    for (const auto& [name, number, whole] : numbers_of(each)) known.emplace(name);
   std::set<std::string> in_schema;
   const auto file = std::ranges::find(embedded_files(), "scene.schema.json", &EmbeddedFile::name);
   const Body layer_rule = Body::parse(file->content)["definitions"]["force_layer"];

@@ -7,13 +7,14 @@ MAY_INCLUDE = {
     "data-schema/base": "",
     "data-schema/calibration": "data-schema/{base files json}",
     "data-schema/check":
-        "data-schema/{base device files height json kinds recording results scene session spectrogram texture transducer "
+        "data-schema/{base corpus device files height json kinds recording results scene session spectrogram texture transducer "
         "wav}",
     "data-schema/cli":
-        "data-schema/{base calibration check command device exchange files height kinds recording report results scene session spectrogram "
+        "data-schema/{base calibration check command corpus device exchange files height kinds recording report results scene session spectrogram "
         "texture transducer}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
+    "data-schema/corpus": "data-schema/{base json}",
     "data-schema/device": "data-schema/{base json}",
     "data-schema/exchange": "data-schema/{base texture}",
     "data-schema/files": "data-schema/base",
@@ -69,7 +70,7 @@ MAY_INCLUDE = {
     "spatial/features":
         "data-schema/{base spectrogram texture} spatial/{dsp/filter dsp/fourier dsp/spectrum numbers spectrogram texture}",
     "spatial/job":
-        "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter spectrogram strokes "
+        "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter features spectrogram strokes "
         "texture}",
     "spatial/numbers": "data-schema/{base texture} spatial/dsp/fourier",
     "spatial/picture": "data-schema/{base files spectrogram texture} spatial/{numbers picture/draw spectrogram}",
@@ -121,12 +122,14 @@ MAY_INCLUDE = {
         "render/reference session} spatial/features",
     "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":
-        "analysis/{compare demo design experiment extremes fidelity identify/fit identify/measure identify/report live page report scene "
+        "analysis/{compare corpus demo design experiment extremes fidelity identify/fit identify/measure identify/report live page report scene "
         "trade trade/rows} data-schema/{base command files kinds report results scene texture} playback/{cli "
         "model player prepare/scene session stability} spatial/{cli picture}",
     "analysis/compare":
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
         "dsp/fourier dsp/resample dsp/spectrum features numbers spectrogram strokes texture}",
+    "analysis/corpus":
+        "data-schema/{base command corpus files kinds texture} spatial/{features job}",
     "analysis/demo":
         "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
         "sim/bench sim/physics} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
@@ -154,7 +157,7 @@ MAY_INCLUDE = {
     "analysis/page": "data-schema/{base results} spatial/picture",
     "analysis/psychometrics": "data-schema/base",
     "analysis/report":
-        "analysis/{identify/measure page} data-schema/{base calibration check device files height kinds recording results "
+        "analysis/{identify/measure page} data-schema/{base calibration check corpus device files height kinds recording results "
         "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
         "texture}",
     "analysis/scene":
