@@ -213,7 +213,10 @@ std::vector<BandPoint> stretched_band(const Texture& texture, const Course& cour
     const double end = std::min(course.end, way - before);
     const auto add = [&](double place) {
       const BandPoint here = band_at(band, place * pitch_m);
-      result.push_back({(before + place) * factor * pitch_m, std::min(here.low_per_m, high_per_m) / factor,
+      // At a joint rounding must not make positions decrease.
+      const double position_m = (before + place) * factor * pitch_m;
+      result.push_back({result.empty() ? position_m : std::max(position_m, result.back().position_m),
+                        std::min(here.low_per_m, high_per_m) / factor,
                         std::min(here.high_per_m, high_per_m) / factor});
     };
     add(begin);
