@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "data-schema/base/quantity.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/texture/texture_wav.hpp"
 #include "spatial/dsp/resample/windowed_sinc.hpp"
