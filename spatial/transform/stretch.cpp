@@ -228,6 +228,20 @@ std::vector<BandPoint> stretched_band(const Texture& texture, const Course& cour
   return result;
 }
 
+// The values without what is above `high_per_m`, a frequency of the source.
+Result<BandLimited> held_by_grid(const Texture& texture, double factor, double high_per_m, bool repeats) {
+  const double pitch_m = texture.signal.pitch_m;
+  auto limited =
+      band_limited(texture.signal.values, pitch_m, high_per_m, repeats ? Edges::none : Edges::treated);
+  if (!limited || limited->removed_share <= kAllRemoved) return limited;
+  return schema::fail(
+      ErrorKind::unsuitable,
+      fmt::format("the grid of {} cannot hold it: all but {:.2g} % of its power would be above {}",
+                  schema::length_for_people(pitch_m), 100 * (1 - std::pow(limited->removed_share, 2)),
+                  schema::for_people(high_per_m / factor, schema::Dimension::spatial_frequency)),
+      {}, "use a larger factor, or a texture on a finer grid");
+}
+
 }  // namespace
 
 Result<Texture> stretch(const Texture& texture, const Stretch& stretch) {
@@ -237,16 +251,8 @@ Result<Texture> stretch(const Texture& texture, const Stretch& stretch) {
   const double factor = stretch.factor, pitch_m = texture.signal.pitch_m;
   const bool repeats = *repetition && (*repetition)->repeats;
   const double high_per_m = kInterpolatedShare * std::min(1.0, factor) / pitch_m;
-  const auto limited =
-      band_limited(texture.signal.values, pitch_m, high_per_m, repeats ? Edges::none : Edges::treated);
+  const auto limited = held_by_grid(texture, factor, high_per_m, repeats);
   TACTO_TRY(limited);
-  if (limited->removed_share > kAllRemoved)
-    return schema::fail(
-        ErrorKind::unsuitable,
-        fmt::format("the grid of {} cannot hold it: all but {:.2g} % of its power would be above {}",
-                    schema::length_for_people(pitch_m), 100 * (1 - std::pow(limited->removed_share, 2)),
-                    schema::for_people(high_per_m / factor, schema::Dimension::spatial_frequency)),
-        {}, "use a larger factor, or a texture on a finer grid");
 
   const Course course = course_of(limited->values, *repetition, factor);
   const std::size_t count = stretched_count(limited->values.size(), *repetition, course, factor);
