@@ -351,6 +351,7 @@ const UsualOptions kUsualOptions[] = {
     {"formants", {"output", "force", "prominence", "go-on", "shortest", "bridge", "window", "max-frequency"}},
     {"sheet",
      {"output", "title", "columns", "formants", "window", "min-frequency", "max-frequency", "dynamic-range"}},
+    {"transform", {"output", "stretch", "keep-slope", "period", "gain", "band", "weights", "force"}},
     {"render", {"finger-path", "output", "transducer", "device", "gain", "rate", "at", "ends"}},
     {"explain",
      {"speed", "transducer", "device", "rate", "ends", "quality", "device-memory", "interpolation"}},

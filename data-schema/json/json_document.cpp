@@ -53,7 +53,8 @@ static_assert(std::endian::native == std::endian::little);
 std::vector<std::string> covered_members(std::string_view kind) {
   if (kind == "recording") return {"sample_rate_hz", "channels", "gaps", "transducer"};
   if (kind == "texture")
-    return {"pitch_m", "quantity", "unit", "direction", "source_origin_m", "valid_band", "source", "average"};
+    return {"pitch_m",    "quantity", "unit",      "direction", "source_origin_m",
+            "valid_band", "source",   "transform", "average"};
   return {};
 }
 

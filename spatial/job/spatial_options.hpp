@@ -36,6 +36,13 @@ struct SpatialOptions {
   int jobs = 1;
 };
 
+struct BandLimits {
+  double low, high;
+};
+
+/// The text of --band: LOW..HIGH, in Hz or in cycles per length. Errors: usage.
+schema::Result<BandLimits> parse_band(const std::string& text, schema::Dimension dimension);
+
 /// Declares the options on the verb's parser; `options` must outlive it.
 void declare_spatial(CLI::App& app, SpatialOptions& options);
 

@@ -61,8 +61,8 @@ MAY_INCLUDE = {
     "capture/table": "data-schema/{base files recording wav}",
     "spatial/certificate": "data-schema/{base texture} spatial/features",
     "spatial/cli":
-        "data-schema/{base command files kinds recording report spectrogram texture} spatial/{certificate features "
-        "job picture spectrogram texture}",
+        "data-schema/{base cli command files kinds recording report spectrogram texture} spatial/{certificate features "
+        "job picture spectrogram texture transform}",
     "spatial/dsp/filter": "data-schema/base spatial/{dsp/fourier dsp/resample}",
     "spatial/dsp/fourier": "data-schema/files",
     "spatial/dsp/resample": "spatial/dsp/fourier",
@@ -81,8 +81,10 @@ MAY_INCLUDE = {
         "data-schema/{base results spectrogram texture} spatial/{dsp/resample dsp/spectrum numbers texture}",
     "spatial/strokes": "data-schema/{base recording} spatial/numbers",
     "spatial/texture":
-        "data-schema/{base recording spectrogram texture transducer} spatial/{dsp/filter dsp/fourier dsp/resample "
-        "numbers strokes}",
+        "data-schema/{base recording spectrogram texture transducer} spatial/{dsp/filter dsp/resample numbers "
+        "strokes}",
+    "spatial/transform":
+        "data-schema/{base files texture} spatial/{dsp/filter dsp/resample numbers texture}",
     "playback/choose": "data-schema/{results scene} playback/{model prepare}",
     "playback/cli":
         "data-schema/{base command control device files recording report scene session texture} "
