@@ -326,11 +326,15 @@ Result<void> SceneTrader::add_rates(const std::vector<HandPath>& paths) {
   const schema::Device& device = request_.design.device;
   if (device.rates_hz.size() < 2) return {};
   const double most_hz = device.rates_hz.back();
-  const auto setup = playback::force_setup_of(device, most_hz);
-  TACTO_TRY(setup);
-  auto prepared = playback::prepare_scene(scene_, where_, device, most_hz, request_.design.hand);
-  TACTO_TRY(prepared);
-  const SceneBench best(scene_, std::move(*prepared), *setup, device, paths);
+  std::optional<SceneBench> finest;
+  if (trade_.rate_hz < most_hz) {
+    const auto setup = playback::force_setup_of(device, most_hz);
+    TACTO_TRY(setup);
+    auto prepared = playback::prepare_scene(scene_, where_, device, most_hz, request_.design.hand);
+    TACTO_TRY(prepared);
+    finest.emplace(scene_, std::move(*prepared), *setup, device, paths);
+  }
+  const SceneBench& best = finest ? *finest : bench_;
   for (const double rate_hz : device.rates_hz) TACTO_TRY(add_rate(rate_hz, paths, best));
   return {};
 }

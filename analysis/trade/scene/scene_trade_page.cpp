@@ -46,6 +46,12 @@ TradeCells cells_of(const SceneTradeRow& row, const Worth& worth) {
           {"note", row.row.note}};
 }
 
+std::vector<std::string> column_keys() {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : cells_of({}, {})) keys.push_back(key);
+  return keys;
+}
+
 cli::Report report_row(const TradeCells& cells) {
   cli::Report report;
   for (const auto& [key, value] : cells)
@@ -167,13 +173,10 @@ std::string scene_trade_csv(const SceneTrade& trade) {
     return '"' + text + '"';
   };
   const auto worth = worth_of(trade_rows(trade));
-  std::string csv;
+  std::string csv = fmt::format("{}", fmt::join(column_keys(), ","));
   for (std::size_t i = 0; i < trade.rows.size(); ++i) {
-    const TradeCells cells = cells_of(trade.rows[i], worth[i]);
-    if (i == 0)
-      for (const auto& [key, value] : cells) csv += (csv.empty() ? "" : ",") + key;
     char separator = '\n';
-    for (const auto& [key, value] : cells) {
+    for (const auto& [key, value] : cells_of(trade.rows[i], worth[i])) {
       csv += separator;
       separator = ',';
       if (const auto* number = std::get_if<double>(&value); number == nullptr)
@@ -192,10 +195,7 @@ schema::Result<std::string> scene_trade_page(const SceneTrade& trade) {
   std::erase_if(figures, [](const auto& figure) { return figure.name == "answer"; });
   const auto worth = worth_of(trade_rows(trade));
   std::vector<TradeCells> rows;
-  std::vector<std::string> keys;
   for (std::size_t i = 0; i < trade.rows.size(); ++i) rows.push_back(cells_of(trade.rows[i], worth[i]));
-  if (!rows.empty())
-    for (const auto& [key, value] : rows.front()) keys.push_back(key);
   const auto cell = [&](std::size_t row, std::size_t column) {
     const auto& [key, value] = rows[row][column];
     if (const auto* text = std::get_if<std::string>(&value)) return *text;
@@ -205,8 +205,8 @@ schema::Result<std::string> scene_trade_page(const SceneTrade& trade) {
   return html_document("Speed for accuracy: " + trade.scene,
                        fmt::format("<h1>{}</h1>\n", escaped(trade.scene + " on " + trade.device)) +
                            answer(answer_words(trade)) + figures_html(figures) + *drawn +
-                           "<h2>Choices</h2>\n" + html_table(cli::labels_of(keys), rows.size(), cell) +
-                           kSceneTradeNotes);
+                           "<h2>Choices</h2>\n" +
+                           html_table(cli::labels_of(column_keys()), rows.size(), cell) + kSceneTradeNotes);
 }
 
 }  // namespace tacto::analysis
