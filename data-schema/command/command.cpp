@@ -360,7 +360,7 @@ const UsualOptions kUsualOptions[] = {
     {"compare", {"a", "b", "output", "tolerance", "align", "max-shift", "stroke-a", "stroke-b"}},
     {"design", {"device", "hand", "rate", "speed", "output", "table", "z-width", "force"}},
     {"fidelity", {"device", "transducer", "speed", "time", "gain", "output", "force", "rate"}},
-    {"trade", {"output", "transducer", "stroke", "force", "calibrate"}},
+    {"trade", {"output", "transducer", "stroke", "force", "calibrate", "device", "hand", "finger-path"}},
     {"identify",
      {"device", "output", "start-from", "method", "picture", "results", "second-mode", "replace"}},
 };

@@ -125,8 +125,8 @@ MAY_INCLUDE = {
     "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":
         "analysis/{compare corpus demo design experiment extremes fidelity identify/fit identify/measure identify/report live page report scene "
-        "trade trade/rows} data-schema/{base command files kinds report results scene texture} playback/{cli "
-        "model player prepare/scene session stability} spatial/{cli picture}",
+        "trade trade/rows trade/scene} data-schema/{base command files kinds report results scene texture} playback/{cli "
+        "model player prepare/scene render session stability} spatial/{cli picture}",
     "analysis/compare":
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
         "dsp/fourier dsp/resample dsp/spectrum features numbers spectrogram strokes texture}",
@@ -171,6 +171,9 @@ MAY_INCLUDE = {
     "analysis/trade/offline":
         "analysis/trade/rows data-schema/{base results spectrogram texture} playback/{choose model} "
         "spatial/{dsp/spectrum reference spectrogram texture}",
+    "analysis/trade/scene":
+        "analysis/{design page trade/rows} data-schema/{base device report} firmware-host/{core/scene sim/planar} "
+        "playback/{model prepare/relief prepare/scene render render/reference stability}",
     "analysis/trade/rows":
         "data-schema/{base texture} firmware-host/sim/physics playback/{model prepare render/reference} "
         "spatial/{dsp/fourier dsp/resample strokes texture}",
