@@ -270,9 +270,9 @@ void declare_hold_stable(CLI::App& app, bool& hold_stable) {
   app.add_flag(
       "--hold-stable", hold_stable,
       fmt::format("Of a scene of forces: where layers that act together are beyond the computed limit of "
-                  "the device, with --hand or the hand of sim:planar of that hand, scale their stiffness "
-                  "and its sliders to the limit divided by {:g}, and list them. It does not see places to "
-                  "which patches are moved later",
+                  "the device, or of the device in the hand that holds it, scale their stiffness and its "
+                  "sliders to the limit divided by {:g}, and list them. Places to which patches are moved "
+                  "later are not considered",
                   kStableMargin));
 }
 
