@@ -225,7 +225,7 @@ def a_failure_is_noted_and_stops_nothing():
     assert (status["done"], status["failed"], status["missing"]) == (1, 4, 0) and "not_made" not in status, status
     because = {pathlib.Path(row["recording"]).stem: row["because"] for row in status["failures"]}
     assert set(because) == {"rest", "broken", "changed", "torn"} and all(row["step"] == "spatial" for row in status["failures"])
-    assert "stroke" in because["rest"] and "SHA-256" in because["broken"] and "SHA-256" in because["changed"], because
+    assert "position" in because["rest"] and "SHA-256" in because["broken"] and "SHA-256" in because["changed"], because
     assert all("/" not in reason.split(":")[0] for reason in because.values()), because  # the same on every machine
     fine = identity("odd-study")
     # What its key covers will not change: a finger at rest is not tried again. The others are.
