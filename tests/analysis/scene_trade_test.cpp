@@ -19,11 +19,11 @@ namespace {
 
 using SceneRandom = std::mt19937;
 
-double drawn(SceneRandom& random, double low, double high) {
+double drawn_between(SceneRandom& random, double low, double high) {
   return std::uniform_real_distribution<>(low, high)(random);
 }
 double drawn_by_logs(SceneRandom& random, double low, double high) {
-  return std::exp(drawn(random, std::log(low), std::log(high)));
+  return std::exp(drawn_between(random, std::log(low), std::log(high)));
 }
 bool one_of(SceneRandom& random, unsigned count) {
   return random() % count == 0;
@@ -62,7 +62,7 @@ schema::ForceLayer random_layer(SceneRandom& random) {
     case 0: {
       schema::SpringLayer spring;
       spring.stiffness_n_per_m = {drawn_by_logs(random, 1, 1e3)};
-      spring.centre_x_m = {drawn(random, -0.02, 0.02)};
+      spring.centre_x_m = {drawn_between(random, -0.02, 0.02)};
       return spring;
     }
     case 1:
@@ -70,7 +70,7 @@ schema::ForceLayer random_layer(SceneRandom& random) {
     case 2: {
       schema::HeightMapLayer map;
       map.file = "hills";
-      map.kappa_n = perhaps_sliding(random, drawn(random, 0.5, 4));
+      map.kappa_n = perhaps_sliding(random, drawn_between(random, 0.5, 4));
       return map;
     }
     case 3: {
@@ -78,10 +78,10 @@ schema::ForceLayer random_layer(SceneRandom& random) {
       grooves.profile = static_cast<schema::GrooveProfile>(random() % 3);
       grooves.period_m = {drawn_by_logs(random, 1e-3, 2e-2)};
       grooves.depth_m = perhaps_sliding(random, depth_m);
-      grooves.kappa_n = perhaps_sliding(random, drawn(random, 0.5, 4));
-      grooves.direction_deg = {drawn(random, 0, 180)};
+      grooves.kappa_n = perhaps_sliding(random, drawn_between(random, 0.5, 4));
+      grooves.direction_deg = {drawn_between(random, 0, 180)};
       if (one_of(random, 2))
-        grooves.filter_m = schema::LayerNumber{grooves.period_m.value * drawn(random, 0, 0.1)};
+        grooves.filter_m = schema::LayerNumber{grooves.period_m.value * drawn_between(random, 0, 0.1)};
       return grooves;
     }
     default:
@@ -90,10 +90,10 @@ schema::ForceLayer random_layer(SceneRandom& random) {
   schema::NoiseLayer noise;
   noise.period_m = {drawn_by_logs(random, 2e-3, 5e-2)};
   noise.octaves = {static_cast<double>(1 + random() % 8)};
-  noise.roughness = {drawn(random, 0.2, 1)};
+  noise.roughness = {drawn_between(random, 0.2, 1)};
   noise.seed = {static_cast<double>(random() % 1000)};
   noise.depth_m = perhaps_sliding(random, depth_m);
-  noise.kappa_n = {drawn(random, 0.5, 4)};
+  noise.kappa_n = {drawn_between(random, 0.5, 4)};
   return noise;
 }
 
@@ -103,11 +103,11 @@ schema::Scene random_scene(SceneRandom& random) {
   for (unsigned i = 0; i < patches; ++i) {
     schema::Patch patch;
     patch.name = std::string(1, static_cast<char>('a' + i));
-    patch.x_m = drawn(random, -0.06, 0.06);
-    patch.y_m = drawn(random, -0.06, 0.06);
-    patch.width_m = drawn(random, 0.02, 0.12);
-    patch.height_m = drawn(random, 0.02, 0.12);
-    patch.angle_deg = drawn(random, -90, 90);
+    patch.x_m = drawn_between(random, -0.06, 0.06);
+    patch.y_m = drawn_between(random, -0.06, 0.06);
+    patch.width_m = drawn_between(random, 0.02, 0.12);
+    patch.height_m = drawn_between(random, 0.02, 0.12);
+    patch.angle_deg = drawn_between(random, -90, 90);
     patch.order = static_cast<double>(random() % 3);
     patch.combine = one_of(random, 2) ? schema::PatchCombine::add : schema::PatchCombine::topmost;
     const unsigned layers = 1 + random() % 3;
@@ -121,7 +121,8 @@ schema::Scene random_scene(SceneRandom& random) {
 CountRows random_path(SceneRandom& random, const schema::Patch& patch, const schema::Device& device) {
   constexpr int kTicks = 500;
   const double speed_mps = drawn_by_logs(random, 0.002, 2);
-  const double turn = drawn(random, 0, 2 * std::numbers::pi), phase = drawn(random, 0, 6), span_m = 0.03;
+  const double turn = drawn_between(random, 0, 2 * std::numbers::pi), phase = drawn_between(random, 0, 6),
+               span_m = 0.03;
   CountRows counts;
   for (int tick = 0; tick < kTicks; ++tick) {
     const double way_m = span_m * std::sin(phase + speed_mps / span_m * tick / device.rates_hz[0]);
@@ -209,8 +210,10 @@ TEST_F(ScenePromiseTest, FiveHundredRandomScenesKeepWhatWasAsked) {
     for (const schema::Patch& patch : scene.patches)
       for (int path = 0; path < 2; ++path) {
         const CountRows counts = random_path(random, patch, device);
-        const double error_n = largest_difference_n(kernel_forces(chosen, *setup, counts),
-                                                    exact_forces(*prepared, device, 1000, counts));
+        ForceSizes error;
+        add_differences(kernel_forces(chosen, *setup, counts), exact_forces(*prepared, device, 1000, counts),
+                        1, error);
+        const double error_n = error.largest_n;
         ASSERT_LE(error_n, promise.error_n(places)) << "asked: " << asked_n;
         if (places != promise.unchanged()) nearest = std::max(nearest, error_n / promise.error_n(places));
       }
@@ -274,8 +277,12 @@ TEST(SceneKnobs, TheOctavesThatStayDoNotChange) {
 
 TEST(SceneRuns, AHeldForceLagsBehind) {
   const ForceRows reference = {{0}, {1}, {2}, {3}, {4}}, held = {{0}, {2}, {4}};
-  EXPECT_DOUBLE_EQ(largest_difference_n(held, reference, 0.5), 1);
-  EXPECT_DOUBLE_EQ(largest_difference_n(reference, reference), 0);
+  ForceSizes late, none;
+  add_differences(held, reference, 0.5, late);
+  EXPECT_DOUBLE_EQ(late.largest_n, 1);
+  EXPECT_DOUBLE_EQ(late.rms_n(), std::sqrt(2.0 / 5));  // late in two of five ticks
+  add_differences(reference, reference, 1, none);
+  EXPECT_DOUBLE_EQ(none.largest_n, 0);
 }
 
 }  // namespace

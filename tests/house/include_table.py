@@ -141,7 +141,7 @@ MAY_INCLUDE = {
         "playback/{prepare/scene stability}",
     "analysis/extremes":
         "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/{base recording} "
-        "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram strokes}",
+        "firmware-host/core/scene playback/{prepare prepare/scene render/reference stability} spatial/{dsp/filter dsp/resample features reference spectrogram strokes}",
     "analysis/fidelity":
         "analysis/{compare page} data-schema/{base results texture transducer} firmware-host/{sim/bench "
         "sim/device sim/physics} playback/{model player render/reference session} spatial/{dsp/filter "

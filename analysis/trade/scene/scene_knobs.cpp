@@ -30,7 +30,7 @@ double largest_size(const schema::LayerNumber& number) {
   return size;
 }
 
-schema::LayerNumber scaled(schema::LayerNumber number, double factor) {
+schema::LayerNumber scaled_number(schema::LayerNumber number, double factor) {
   number.value *= factor;
   if (number.slider)
     number.slider = schema::SliderRange{number.slider->from * factor, number.slider->to * factor};
@@ -53,7 +53,7 @@ std::vector<LayerChoice> octave_choices(const schema::NoiseLayer& noise) {
     if (n < amplitudes.size()) {
       left_out += amplitudes[n] * std::exp2(static_cast<double>(n));
       changed.octaves = {static_cast<double>(n)};
-      changed.depth_m = scaled(noise.depth_m, amplitudes[0] / playback::octave_amplitudes(changed)[0]);
+      changed.depth_m = scaled_number(noise.depth_m, amplitudes[0] / playback::octave_amplitudes(changed)[0]);
     }
     choices.push_back(
         {fmt::format("{} octave{}", n, n == 1 ? "" : "s"), changed, force_n * kNoiseSlope * left_out});
@@ -66,7 +66,7 @@ std::vector<double> series_of(const schema::GroovesLayer& grooves) {
 }
 
 // The sum of n |a - b|.
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+double slope_difference(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i)
     sum += static_cast<double>(i + 1) * std::abs((i < a.size() ? a[i] : 0) - (i < b.size() ? b[i] : 0));
@@ -89,7 +89,7 @@ std::vector<LayerChoice> filter_choices(const schema::GroovesLayer& grooves) {
     const auto series = series_of(changed);
     if (changed.filter_m->value <= grooves.filter_m->value || series.size() >= harmonics) continue;
     harmonics = series.size();
-    choices.push_back({words(changed), changed, force_n * largest_difference(whole, series)});
+    choices.push_back({words(changed), changed, force_n * slope_difference(whole, series)});
   }
   return choices;
 }

@@ -17,13 +17,7 @@ namespace {
 
 constexpr std::size_t kTimedTicks = 1000;
 
-double norm_of(const std::vector<double>& force_n) {
-  double square = 0;
-  for (const double each : force_n) square += each * each;
-  return std::sqrt(square);
-}
-
-HandPath stroke_over(const schema::Patch& patch, const schema::Device& device, double speed_mps) {
+HandPath stroke_across(const schema::Patch& patch, const schema::Device& device, double speed_mps) {
   constexpr double kPart = 0.49;  // of the patch, from its centre
   const double angle = patch.angle_deg * std::numbers::pi / 180;
   const double u = kPart * patch.width_m, v = kPart * patch.height_m;
@@ -66,7 +60,7 @@ class TimedKernel {
 std::vector<HandPath> strokes_over(const std::vector<schema::Patch>& patches, const schema::Device& device) {
   std::vector<HandPath> paths;
   for (const schema::Patch& patch : patches)
-    for (const double speed_mps : kTradeSpeeds_mps) paths.push_back(stroke_over(patch, device, speed_mps));
+    for (const double speed_mps : kTradeSpeeds_mps) paths.push_back(stroke_across(patch, device, speed_mps));
   return paths;
 }
 
@@ -105,22 +99,26 @@ ForceRows exact_forces(const playback::PreparedScene& scene, const schema::Devic
   return forces;
 }
 
-double largest_difference_n(const ForceRows& forces, const ForceRows& reference, double part) {
-  double largest = 0;
+void ForceSizes::add(const std::vector<double>& force_n) {
+  double square = 0;
+  for (const double each : force_n) square += each * each;
+  largest_n = std::max(largest_n, std::sqrt(square));
+  square_sum += square;
+  ++ticks;
+}
+
+double ForceSizes::rms_n() const {
+  return ticks > 0 ? std::sqrt(square_sum / static_cast<double>(ticks)) : 0;
+}
+
+void add_differences(const ForceRows& forces, const ForceRows& reference, double part, ForceSizes& sizes) {
   for (std::size_t i = 0; i < reference.size(); ++i) {
     const auto held = static_cast<std::size_t>(static_cast<double>(i) * part + 1e-6);
     std::vector<double> off = reference[i];
     for (std::size_t axis = 0; axis < off.size(); ++axis)
       off[axis] -= forces[std::min(held, forces.size() - 1)][axis];
-    largest = std::max(largest, norm_of(off));
+    sizes.add(off);
   }
-  return largest;
-}
-
-double largest_force_n(const ForceRows& forces) {
-  double largest = 0;
-  for (const auto& force_n : forces) largest = std::max(largest, norm_of(force_n));
-  return largest;
 }
 
 std::vector<double> tick_costs_ns(const std::vector<TimedScene>& scenes) {

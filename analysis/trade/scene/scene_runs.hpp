@@ -28,10 +28,17 @@ ForceRows kernel_forces(const playback::PreparedScene& scene, const core::ForceS
 ForceRows exact_forces(const playback::PreparedScene& scene, const schema::Device& device, double rate_hz,
                        const CountRows& counts);
 
-/// Of the vectors; the forces of a lower rate are held until their next tick. `part`: their rate relative to
-/// that of the reference.
-double largest_difference_n(const ForceRows& forces, const ForceRows& reference, double part = 1);
-double largest_force_n(const ForceRows& forces);
+/// Lengths of force vectors over ticks.
+struct ForceSizes {
+  double largest_n = 0, square_sum = 0;
+  std::size_t ticks = 0;
+  void add(const std::vector<double>& force_n);
+  double rms_n() const;
+};
+
+/// Adds the differences to `sizes`; the forces of a lower rate are held until their next tick. `part`: their
+/// rate relative to that of the reference.
+void add_differences(const ForceRows& forces, const ForceRows& reference, double part, ForceSizes& sizes);
 
 /// CPU time of a tick of each scene with its own counts, on this computer: the median of 15 runs, in turns.
 struct TimedScene {

@@ -60,7 +60,7 @@ std::size_t flat_index(const std::vector<schema::Patch>& patches, std::size_t pa
   return index;
 }
 
-double bytes_of(const PreparedScene& scene) {
+double memory_of(const PreparedScene& scene) {
   return static_cast<double>(scene.bytes() + scene.view().live_words() * sizeof(float) +
                              sizeof(core::SceneKernel));
 }
@@ -74,26 +74,23 @@ class SceneBench {
     for (const HandPath& path : paths) {
       counts_.push_back(counts_along(path, device, double{setup.rate_hz}));
       reference_.push_back(exact_forces(prepared_, device, double{setup.rate_hz}, counts_.back()));
+      for (const auto& force_n : reference_.back()) forces_.add(force_n);
     }
   }
 
   const PreparedScene& prepared() const { return prepared_; }
   const std::vector<schema::Patch>& patches() const { return patches_; }
-  double largest_force() const {
-    double largest = 0;
-    for (const ForceRows& forces : reference_) largest = std::max(largest, largest_force_n(forces));
-    return largest;
-  }
+  const ForceSizes& forces() const { return forces_; }
   // Of a scene on the same device, perhaps at a lower rate, along the paths' counts at that rate.
-  double error_n(const PreparedScene& scene, const core::ForceSetup& setup,
-                 const std::vector<CountRows>& counts) const {
-    double largest = 0;
+  ForceSizes error(const PreparedScene& scene, const core::ForceSetup& setup,
+                   const std::vector<CountRows>& counts) const {
+    ForceSizes sizes;
     for (std::size_t i = 0; i < counts.size(); ++i)
-      largest = std::max(largest, largest_difference_n(kernel_forces(scene, setup, counts[i]), reference_[i],
-                                                       double{setup.rate_hz} / double{setup_.rate_hz}));
-    return largest;
+      add_differences(kernel_forces(scene, setup, counts[i]), reference_[i],
+                      double{setup.rate_hz} / double{setup_.rate_hz}, sizes);
+    return sizes;
   }
-  double error_n(const PreparedScene& scene) const { return error_n(scene, setup_, counts_); }
+  ForceSizes error(const PreparedScene& scene) const { return error(scene, setup_, counts_); }
   TimedScene timed(PreparedScene scene, std::size_t patch) const {
     return {std::move(scene), setup_, &counts_[counts_.size() == 1 ? 0 : middle_path(patch)]};
   }
@@ -116,18 +113,20 @@ class SceneBench {
   core::ForceSetup setup_;
   std::vector<CountRows> counts_;
   std::vector<ForceRows> reference_;
+  ForceSizes forces_;  // of the reference
 };
 
 // A row whose cost is not measured yet.
-SceneTradeRow row_with(const std::string& knob, const std::string& choice, double error_n, double largest_n,
-                       const PreparedScene& scene, const ActingLimit& limit) {
+SceneTradeRow row_with(const std::string& knob, const std::string& choice, const ForceSizes& error,
+                       const ForceSizes& reference, const PreparedScene& scene, const ActingLimit& limit) {
   SceneTradeRow row;
   row.row.knob = knob;
   row.row.choice = choice;
   row.row.per = "tick";
-  row.row.error = largest_n > 0 ? error_n / largest_n : 0;
-  row.row.memory_bytes = bytes_of(scene);
-  row.error_n = error_n;
+  row.row.error = reference.rms_n() > 0 ? error.rms_n() / reference.rms_n() : 0;
+  row.row.memory_bytes = memory_of(scene);
+  row.error_n = error.largest_n;
+  row.error_rms_n = error.rms_n();
   row.stiffness_n_per_m = limit.stiffness_n_per_m;
   row.limit_n_per_m = limit.limit_n_per_m;
   row.verdict = limit.verdict;
@@ -165,7 +164,7 @@ class SceneTrader {
     trade_.device = request.design.device.name;
     trade_.machine = schema::machine_words();
     trade_.rate_hz = request.design.rate_hz;
-    trade_.largest_force_n = bench_.largest_force();
+    trade_.largest_force_n = bench_.forces().largest_n;
     trade_.rounding_n = promise_.error_n(promise_.unchanged());
     trade_.paths = request.path
                        ? "the given path"
@@ -229,8 +228,8 @@ Result<void> SceneTrader::add_layers() {
       patches[knob.patch].layers[knob.index] = knob.choices[place].layer;
       const auto limit = limit_with(patches, flat_index(patches, knob.patch, knob.index));
       TACTO_TRY(limit);
-      trade_.rows.push_back(row_with(knob.name, knob.choices[place].choice, bench_.error_n(changed),
-                                     trade_.largest_force_n, changed, *limit));
+      trade_.rows.push_back(row_with(knob.name, knob.choices[place].choice, bench_.error(changed),
+                                     bench_.forces(), changed, *limit));
       trade_.rows.back().promised_n = promise_.error_n(places);
       if (place == 0) trade_.rows.back().row.note = "as it is";
       timed_.push_back(bench_.timed(std::move(changed), knob.patch));
@@ -268,10 +267,12 @@ Result<void> SceneTrader::add_levels_of(std::size_t patch, std::size_t index) {
             [](auto& /*other*/) {});
     const auto limit = limit_with(patches, flat_index(patches, patch, index));
     TACTO_TRY(limit);
-    trade_.rows.push_back(row_with(
-        fmt::format("finest level of {} '{}'", type_of(layer), file),
-        left_out == 0 ? "as it is" : fmt::format("{:g} octaves coarser", 0.5 * static_cast<double>(left_out)),
-        bench_.error_n(changed), trade_.largest_force_n, changed, *limit));
+    trade_.rows.push_back(
+        row_with(fmt::format("finest level of {} '{}'", type_of(layer), file),
+                 left_out == 0 ? "as it is"
+                               : fmt::format("{:g} octave{} coarser", 0.5 * static_cast<double>(left_out),
+                                             left_out > 2 ? "s" : ""),
+                 bench_.error(changed), bench_.forces(), changed, *limit));
     if (left_out == 0)
       trade_.rows.back().promised_n = trade_.rounding_n;
     else
@@ -311,11 +312,10 @@ Result<void> SceneTrader::add_rate(double rate_hz, const std::vector<HandPath>& 
   const auto design = design_scene(scene, where_, request);
   const ActingLimit limit = design ? limit_of(*design, design->first) : ActingLimit{NAN, NAN, "not known"};
   trade_.rows.push_back(row_with("rate", for_people(rate_hz, Dimension::frequency),
-                                 best.error_n(*prepared, *setup, counts), best.largest_force(), *prepared,
-                                 limit));
+                                 best.error(*prepared, *setup, counts), best.forces(), *prepared, limit));
   trade_.rows.back().row.per = "ms";
   trade_.rows.back().row.note =
-      design ? "measured only: the error of held forces grows with the speed" : design.error().what;
+      design ? "measured only: forces are held, at the edge of a patch its whole one" : design.error().what;
   counts_.push_back(std::make_unique<CountRows>(std::move(counts[counts.size() / 2])));
   timed_.push_back({std::move(*prepared), *setup, counts_.back().get()});
   return {};
@@ -373,9 +373,9 @@ Result<void> SceneTrader::choose() {
   SceneChoice choice{scene_,
                      {},
                      promise_.error_n(places),
-                     bench_.error_n(changed),
+                     bench_.error(changed).largest_n,
                      tick_s,
-                     static_cast<std::size_t>(bytes_of(changed)),
+                     static_cast<std::size_t>(memory_of(changed)),
                      {}};
   if (request_.max_tick_s && tick_s > *request_.max_tick_s)
     return schema::fail(

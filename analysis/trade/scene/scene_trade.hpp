@@ -21,8 +21,9 @@ struct SceneTradeRequest {
 };
 
 struct SceneTradeRow {
-  TradeRow row;        ///< its error: error_n re the largest force of the reference
-  double error_n = 0;  ///< the largest difference from the reference along the paths
+  TradeRow row;
+  double error_n = 0,
+         error_rms_n = 0;  ///< of the difference from the reference along the paths: largest, RMS
   /// The same for any path, at any speed up to kFastestHandMps; NaN: not promised, measured only.
   double promised_n = std::numeric_limits<double>::quiet_NaN();
   double stiffness_n_per_m = 0, limit_n_per_m = 0;  ///< of all layers that act there; NaN: not known

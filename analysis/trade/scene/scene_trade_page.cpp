@@ -31,10 +31,11 @@ std::vector<TradeRow> trade_rows(const SceneTrade& trade) {
 // Keys and SI values; NaN: nothing.
 using TradeCells = std::vector<std::pair<std::string, std::variant<double, std::string>>>;
 
-TradeCells cells_of(const SceneTradeRow& row, const Worth& worth) {
+TradeCells trade_cells(const SceneTradeRow& row, const Worth& worth) {
   return {{"choice_of", row.row.knob},
           {"choice", row.row.choice},
           {"error_n", row.error_n},
+          {"error_rms_n", row.error_rms_n},
           {"promised_n", row.promised_n},
           {"cost_ns", row.row.cost_ns},
           {"per", row.row.per},
@@ -48,7 +49,7 @@ TradeCells cells_of(const SceneTradeRow& row, const Worth& worth) {
 
 std::vector<std::string> column_keys() {
   std::vector<std::string> keys;
-  for (const auto& [key, value] : cells_of({}, {})) keys.push_back(key);
+  for (const auto& [key, value] : trade_cells({}, {})) keys.push_back(key);
   return keys;
 }
 
@@ -71,7 +72,7 @@ std::string best_of(const SceneTrade& trade) {
   return words.empty() ? "no best choice" : words;
 }
 
-std::string answer_words(const SceneTrade& trade) {
+std::string scene_answer(const SceneTrade& trade) {
   if (!trade.chosen) return "best for its cost: " + best_of(trade);
   const SceneChoice& chosen = *trade.chosen;
   return fmt::format(
@@ -82,13 +83,13 @@ std::string answer_words(const SceneTrade& trade) {
 
 cli::Report trade_head(const SceneTrade& trade) {
   cli::Report head;
-  head.add("answer", answer_words(trade)).add("scene", trade.scene).add("device", trade.device);
+  head.add("answer", scene_answer(trade)).add("scene", trade.scene).add("device", trade.device);
   head.add("rate_hz", trade.rate_hz).add("machine", trade.machine).add("paths", trade.paths);
   head.add("largest_force_n", trade.largest_force_n).add("rounding_n", trade.rounding_n);
   if (trade.chosen) {
     const SceneChoice& chosen = *trade.chosen;
     head.add("changed", chosen.changed).add("promised_n", chosen.promised_n);
-    head.add("error_n", chosen.error_n).add("tick_s", chosen.tick_s).add("bytes", chosen.bytes);
+    head.add("error_n", chosen.error_n).add("tick_s", chosen.tick_s).add("memory_bytes", chosen.bytes);
     head.add("stability", chosen.verdict);
   }
   head.add("not_promised", trade.not_promised);
@@ -99,13 +100,14 @@ cli::Report trade_head(const SceneTrade& trade) {
 
 double error_level(const SceneTradeRow& row) {
   constexpr double kLeast_n = 1e-9;
-  return schema::amplitude_db(std::max(row.error_n, kLeast_n));
+  return schema::amplitude_db(std::max(row.error_rms_n, kLeast_n));
 }
 
 constexpr const char* kSceneTradeNotes =
     "<h2>What the columns mean</h2>\n"
     "<p><em>Error</em>: the largest difference of the force from the reference in double precision, along "
-    "the paths. <em>Promised</em>: the largest difference at any place and speed, with the worse ends of the "
+    "the paths, and its RMS. <em>Promised</em>: the largest difference at any place and speed, with the "
+    "worse ends of the "
     "sliders and the patches in their places; empty where it is measured only. Both are of the force before "
     "the limits of the device. <em>Cost</em>: CPU time on this computer, of a tick of the whole scene, of a "
     "rate per ms of playing. <em>Memory</em>: the scene's block and the kernel's state. <em>Stiffness</em> "
@@ -128,7 +130,7 @@ cli::Report scene_trade_report(const SceneTrade& trade) {
                           .add("knee", answer.knee_row ? rows[*answer.knee_row].choice : answer.knee)
                           .add("never_worth_it", answer.never));
   for (std::size_t i = 0; i < rows.size(); ++i)
-    choices.push_back(report_row(cells_of(trade.rows[i], worth[i])));
+    choices.push_back(report_row(trade_cells(trade.rows[i], worth[i])));
   return report.add("answers", std::move(answers)).add("choices", std::move(choices));
 }
 
@@ -146,7 +148,7 @@ std::vector<schema::ResultPicture> scene_trade_pictures(const SceneTrade& trade)
   for (const char* per : {"tick", "ms"}) {
     schema::ResultPicture picture{fmt::format("Error against cost per {}", per),
                                   fmt::format("CPU time (ns per {})", per),
-                                  "largest error (dB re 1 N)",
+                                  "error, RMS (dB re 1 N)",
                                   true,
                                   {}};
     std::vector<schema::ResultCurve> knees;
@@ -176,7 +178,7 @@ std::string scene_trade_csv(const SceneTrade& trade) {
   std::string csv = fmt::format("{}", fmt::join(column_keys(), ","));
   for (std::size_t i = 0; i < trade.rows.size(); ++i) {
     char separator = '\n';
-    for (const auto& [key, value] : cells_of(trade.rows[i], worth[i])) {
+    for (const auto& [key, value] : trade_cells(trade.rows[i], worth[i])) {
       csv += separator;
       separator = ',';
       if (const auto* number = std::get_if<double>(&value); number == nullptr)
@@ -195,7 +197,7 @@ schema::Result<std::string> scene_trade_page(const SceneTrade& trade) {
   std::erase_if(figures, [](const auto& figure) { return figure.name == "answer"; });
   const auto worth = worth_of(trade_rows(trade));
   std::vector<TradeCells> rows;
-  for (std::size_t i = 0; i < trade.rows.size(); ++i) rows.push_back(cells_of(trade.rows[i], worth[i]));
+  for (std::size_t i = 0; i < trade.rows.size(); ++i) rows.push_back(trade_cells(trade.rows[i], worth[i]));
   const auto cell = [&](std::size_t row, std::size_t column) {
     const auto& [key, value] = rows[row][column];
     if (const auto* text = std::get_if<std::string>(&value)) return *text;
@@ -204,7 +206,7 @@ schema::Result<std::string> scene_trade_page(const SceneTrade& trade) {
   };
   return html_document("Speed for accuracy: " + trade.scene,
                        fmt::format("<h1>{}</h1>\n", escaped(trade.scene + " on " + trade.device)) +
-                           answer(answer_words(trade)) + figures_html(figures) + *drawn +
+                           answer(scene_answer(trade)) + figures_html(figures) + *drawn +
                            "<h2>Choices</h2>\n" +
                            html_table(cli::labels_of(column_keys()), rows.size(), cell) + kSceneTradeNotes);
 }
