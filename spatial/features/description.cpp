@@ -5,18 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <cstddef>
 #include <numbers>
-#include <numeric>
-#include <span>
 
 #include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
-#include "spatial/dsp/fourier/fft.hpp"
-#include "spatial/dsp/spectrum/window.hpp"
 #include "spatial/features/steady_part.hpp"
 #include "spatial/features/third_octaves.hpp"
+#include "spatial/numbers/welch.hpp"
 #include "spatial/texture/make_texture.hpp"
 #include "spatial/texture/valid_band.hpp"
 
@@ -43,68 +38,6 @@ double usual_window_m(const Texture& texture, double low_per_m) {
   const double length_m = static_cast<double>(texture.signal.values.size()) * texture.signal.pitch_m;
   const double target_m = low_per_m > 0 ? std::max(kWavelengths / low_per_m, length_m / 4) : length_m / 4;
   return std::min(target_m, length_m);
-}
-
-constexpr std::size_t kShortestWelchWindow = 8;
-
-// Welch's power spectral density: the mean over half-overlapping Hann windows (Welch 1967, IEEE Trans. Audio
-// Electroacoustics 15(2)). One-sided density of evenly spaced values, each window without its mean, the same
-// as scipy.signal.welch(x, 1 / pitch, 'hann', W). Values after the last whole window are not used.
-class WelchSpectrum {
- public:
-  // Precondition: kShortestWelchWindow <= window <= values.size(). `pitch` in metres or seconds.
-  WelchSpectrum(std::span<const double> values, double pitch, std::size_t window);
-
-  // unit^2 per unit of frequency, one value per bin.
-  const std::vector<double>& density() const { return density_; }
-  double step() const { return step_; }
-  // Number of averaged windows.
-  std::size_t windows() const { return windows_; }
-
-  // Integrals of S and of k S; the density is constant within half a bin of each bin. Precondition: 0 <=
-  // from <= to <= half the sampling frequency.
-  double power(double from, double to) const { return integral(from, to, false); }
-  double moment(double from, double to) const { return integral(from, to, true); }
-
- private:
-  double integral(double from, double to, bool weighted) const;
-
-  std::vector<double> density_;
-  double step_ = 0;
-  std::size_t windows_ = 0;
-};
-
-WelchSpectrum::WelchSpectrum(std::span<const double> values, double pitch, std::size_t window)
-    : step_(1 / (static_cast<double>(window) * pitch)) {
-  RealFft fft(window);
-  const auto weights = hann(window);
-  std::vector<double> frame(window);
-  std::vector<std::complex<double>> spectrum(fft.bins());
-  density_.assign(fft.bins(), 0);
-  const std::size_t hop = window - window / 2;
-  for (std::size_t from = 0; from + window <= values.size(); from += hop, ++windows_) {
-    const auto part = values.subspan(from, window);
-    const double mean = std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(window);
-    for (std::size_t n = 0; n < window; ++n) frame[n] = weights[n] * (part[n] - mean);
-    fft.forward(frame, spectrum);
-    for (std::size_t k = 0; k < spectrum.size(); ++k) density_[k] += std::norm(spectrum[k]);
-  }
-  const double power = std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
-  const double scale = pitch / (power * static_cast<double>(windows_));
-  for (std::size_t k = 0; k < density_.size(); ++k)
-    density_[k] *= scale * (k == 0 || 2 * k == window ? 1 : 2);  // no counterpart at negative frequencies
-}
-
-double WelchSpectrum::integral(double from, double to, bool weighted) const {
-  double sum = 0;
-  const auto first = static_cast<std::size_t>(std::lround(from / step_));
-  for (std::size_t k = first; k < density_.size(); ++k) {
-    const double low = std::max(from, (static_cast<double>(k) - 0.5) * step_);
-    const double high = std::min(to, (static_cast<double>(k) + 0.5) * step_);
-    if (low >= to) break;
-    if (high > low) sum += density_[k] * (weighted ? 0.5 * (high * high - low * low) : high - low);
-  }
-  return sum;
 }
 
 Result<std::size_t> window_samples(const Texture& texture, const DescriptionOptions& options,

@@ -72,7 +72,7 @@ MAY_INCLUDE = {
     "spatial/job":
         "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter features spectrogram strokes "
         "texture}",
-    "spatial/numbers": "data-schema/{base texture} spatial/dsp/fourier",
+    "spatial/numbers": "data-schema/{base texture} spatial/dsp/{fourier spectrum}",
     "spatial/picture": "data-schema/{base files spectrogram texture} spatial/{numbers picture/draw spectrogram}",
     "spatial/picture/draw": "data-schema/base",
     "spatial/picture/engine": "spatial/picture/draw",
