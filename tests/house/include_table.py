@@ -68,7 +68,7 @@ MAY_INCLUDE = {
     "spatial/dsp/resample": "spatial/dsp/fourier",
     "spatial/dsp/spectrum": "data-schema/base spatial/{dsp/filter dsp/fourier dsp/resample}",
     "spatial/features":
-        "data-schema/{base spectrogram texture} spatial/{dsp/filter dsp/fourier dsp/spectrum numbers spectrogram texture}",
+        "data-schema/{base spectrogram texture} spatial/{dsp/filter dsp/fourier numbers spectrogram texture}",
     "spatial/job":
         "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter features spectrogram strokes "
         "texture}",
