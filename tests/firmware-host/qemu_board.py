@@ -5,9 +5,11 @@ QEMU's own pseudo-terminal is no such line: the whole machine waits while no pro
 QEMU does not see that a program opened it. Here the UART is a socket of QEMU, and two threads are the adapter: what no
 program reads is lost, the board runs on. `said` keeps every byte that the board sent.
 """
+import contextlib
 import os
 import pty
 import random
+import select
 import socket
 import struct
 import subprocess
@@ -24,6 +26,7 @@ class QemuBoard:
     """`port` is the path of the line's end at the host. corrupt(N) changes about one of N bytes from then on; 0: none."""
     def __init__(self, image, folder="."):
         self.said, self._noise, self._every = bytearray(), random.Random(1), 0
+        self._lock = threading.Lock()  # of the line's end here, which unplug() closes
         path = os.path.join(folder, "uart")
         with socket.socket(socket.AF_UNIX) as waiting:
             waiting.bind(path)
@@ -45,10 +48,11 @@ class QemuBoard:
         return self
 
     def __exit__(self, *_):
-        assert self._qemu.poll() is None, "QEMU ended"
+        ran = self._qemu.poll() is None
         self._qemu.kill()
         self._qemu.wait(timeout=60)
         self.unplug()
+        assert ran, "QEMU ended"
 
     def corrupt(self, every):
         self._every = every
@@ -59,11 +63,11 @@ class QemuBoard:
 
     def unplug(self):
         """Takes the line away from the host; the board keeps its supply."""
-        if self._line is None:
-            return
-        line, self._line = self._line, None
-        os.close(line)
-        os.close(self._host)
+        with self._lock:
+            if self._line is not None:
+                os.close(self._line)
+                os.close(self._host)
+            self._line = None
 
     def await_start(self):
         """Greets the board until it answers; a board that starts loses what it receives."""
@@ -105,27 +109,19 @@ class QemuBoard:
     def _to_host(self):
         while data := self._received():
             self.said += data
-            try:
-                os.write(self._line, self._noisy(data))
-            except (BlockingIOError, OSError, TypeError):  # nobody reads; unplugged
-                pass
+            with self._lock, contextlib.suppress(BlockingIOError):  # no program reads: the bytes are lost
+                if self._line is not None:
+                    os.write(self._line, self._noisy(data))
 
     def _received(self):
-        try:
+        with contextlib.suppress(OSError):
             return self._uart.recv(4096)
-        except OSError:
-            return b""
 
     def _to_board(self):
         while (line := self._line) is not None:
-            try:
-                data = os.read(line, 4096)
-            except BlockingIOError:
-                time.sleep(0.0002)
+            if not select.select([line], [], [], 0.02)[0]:
                 continue
-            except OSError:
-                return
-            try:
+            with self._lock, contextlib.suppress(BlockingIOError):
+                data = os.read(line, 4096) if self._line is not None else b""
+            with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # QEMU has ended
                 self._uart.sendall(self._noisy(data))
-            except OSError:
-                return

@@ -61,7 +61,7 @@ def is_every_frame_true(codes):
 def every_frame_comes(board):
     tacto.run("record", "-d", f"tty:{board.port}", "--time", f"{RECORD_S}s", "-o", "counted")
     ticks = is_every_frame_true(codes_of("counted"))
-    assert len(ticks) >= RECORD_S * RATE_HZ and np.all(np.diff(ticks) == 1), ticks
+    assert len(ticks) >= RECORD_S * RATE_HZ and ticks[0] == 1 and np.all(np.diff(ticks) == 1), ticks
 
 
 def play_command(board, name, time_s):
@@ -77,9 +77,12 @@ def make_texture():
 def a_texture_replays(board):
     """A fault of the board's watchdog is right if this machine stopped for longer; that session replays, too."""
     for attempt in range(5):
-        done = subprocess.run(play_command(board, f"played-{attempt}", 2), capture_output=True, text=True, timeout=600)
+        name = f"played-{attempt}"
+        done = subprocess.run(play_command(board, name, 2), capture_output=True, text=True, timeout=600)
         assert done.returncode in (0, DEVICE), done
-        assert tacto.run_json("replay", f"played-{attempt}")["same_to_the_bit"], done
+        if done.returncode == DEVICE and not pathlib.Path(f"{name}.session").exists():
+            continue  # an answer took too long
+        assert tacto.run_json("replay", name)["same_to_the_bit"], done
         if done.returncode == 0:
             played = json.loads(done.stdout)
             assert played["lost_ticks"] == 0 and played["ticks"] >= 2 * RATE_HZ, played
@@ -133,12 +136,10 @@ def an_unplugged_board():
 
 
 def a_texture_that_is_too_large(board):
-    """10 us a sample of hermite: more than the RAM holds. The error names what fits."""
-    tacto.run("record", "-d", "sim:surface=C,speed=100mm/s,seed=1", "--time", "1.5s", "-o", "long")
-    tacto.run("spatial", "long", "-o", "long", "--stroke", "1")
-    _, error = tacto.run("play", "long", "-d", f"tty:{board.port}", "--transducer", "wiertlewski2011", "--interpolation", "hermite",
+    """With hermite this texture takes more than the RAM holds. The error names what fits."""
+    _, error = tacto.run("play", "oak", "-d", f"tty:{board.port}", "--transducer", "wiertlewski2011", "--interpolation", "hermite",
                          "--time", "1s", "-o", "none", code=UNSUITABLE)
-    assert f"{SAMPLES}" in error.replace(",", ""), error
+    assert str(SAMPLES) in error, error
     assert not pathlib.Path("none.session").exists()
 
 
@@ -149,7 +150,7 @@ def damaged_bytes_are_gaps(board):
                           capture_output=True, text=True, timeout=300)
     assert done.returncode in (0, DEVICE), done
     ticks = is_every_frame_true(codes_of("noisy"))
-    lost = np.diff(ticks).astype(np.int64) - 1
+    lost = np.diff(ticks.astype(np.int64), prepend=0) - 1  # the first frame is that of the first tick
     gaps = json.loads(pathlib.Path("noisy.json").read_text()).get("gaps", [])
     assert np.all(lost >= 0) and lost.sum() > 0 and sum(gap["count"] for gap in gaps) == lost.sum(), (lost.sum(), gaps)
     board.corrupt(0)
