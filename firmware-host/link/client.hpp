@@ -102,7 +102,7 @@ class Client {
   Client(std::unique_ptr<Transport> transport, std::string where);
   schema::Result<void> greet();
   schema::Result<void> flush();
-  schema::Result<bool> greet_once(double timeout_s);
+  schema::Result<bool> greet_once();
   void accept_answer(const wire::Frame& frame);
   schema::Result<void> check_version() const;
   bool described() const;

@@ -23,8 +23,7 @@ IMAGE = pathlib.Path(sys.argv[1])
 VECTORS = 4 * 98                     # bytes; then comes the check of the flash
 SAMPLES = 12_000                     # of a texture, in the board's RAM
 UNSUITABLE, DEVICE = 5, 8            # exit codes
-PLAYING, FAULTED = 2, 4             # flags of a tick; the codes of faults (core/WIRE.md)
-HOST_SILENT = 1
+PLAYING, FAULTED, HOST_SILENT = 2, 4, 1  # flags of a tick, the code of a fault (core/WIRE.md)
 RATE_HZ = 2000
 RECORD_S = 5
 

@@ -96,7 +96,7 @@ void start_ports() {
   rcc_apb1enr |= (1U << 29) | 1;         // DAC, TIM2
   rcc_apb2enr |= (1U << 8) | (1U << 4);  // ADC1, USART1
   dac_value = 2048;                      // before its pin is connected
-  dac_cr = 3;  // on, without its output buffer, which ends 0.2 V from the rails
+  dac_cr = 3;                            // on, without its output buffer, which ends 0.2 V from the rails
   set_mode(kPortA, 4, Mode::analog);
   kPortB.set_reset() = 1U << (13 + 16);
   set_mode(kPortB, 13, Mode::output);
@@ -210,7 +210,7 @@ core::Hal make_hal() {
     return convert(8, codes[1]) && convert(9, codes[2]);
   };
   hal.write_drive = [](void*, float volts) noexcept {
-    const float code = 2048 + volts * (2047 / kDriveFullV);
+    const float code = 2048.5F + volts * (2047 / kDriveFullV);  // rounded
     dac_value = static_cast<uint32_t>(code < 0 ? 0 : code > 4095 ? 4095 : code);
   };
   hal.enable_closed = [](void*) noexcept { return emulated || (kPortB.input() & (1U << 12)) != 0; };
@@ -347,7 +347,8 @@ void set_enable(bool on) {
 }
 
 // With interrupts disabled, so that none comes between the question and the sleep; a pending one ends it.
-// The sleep also gives QEMU the time to receive: beside a program that never sleeps a byte takes it 4 ms.
+// QEMU receives a byte only between accesses to registers: beside a program that never sleeps, it takes 4 ms
+// for each byte on a busy computer, so that the host gives up; with this one 0.2 ms.
 void sleep_until_interrupt() {
   asm volatile("cpsid i" ::: "memory");
   if (!sending) send_some();
