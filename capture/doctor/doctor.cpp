@@ -14,6 +14,8 @@
 #include <fstream>
 #include <thread>
 
+#include "firmware-host/core/wire/frame.hpp"
+#include "firmware-host/link/client.hpp"
 #include "firmware-host/link/realtime_priority.hpp"
 #include "firmware-host/open_device.hpp"
 
@@ -113,12 +115,10 @@ Check device_missing(const schema::Error& why) {
           why.kind};
 }
 
-Check firmware(const Capabilities& said) {
-  return {"firmware",
-          Health::works,
-          fmt::format("{}, {:g} Hz, {} channels", said.firmware.empty() ? "no version" : said.firmware,
-                      said.sample_rate_hz, said.channels.size()),
-          {}};
+// A device without a wire, as a recording, has the host's version.
+unsigned minor_of(Device& device) {
+  const firmware_host::Client* const client = device.conversation();
+  return client != nullptr ? client->description().welcome.minor : wire::kProtocolMinor;
 }
 
 Check skipped(const char* name) {
@@ -129,7 +129,7 @@ void check_device(Device& device, const DoctorRequest& request, std::vector<Chec
   const Capabilities& said = device.capabilities();
   checks.push_back(device_seen(said));
   checks.push_back({"permission", Health::works, "access is permitted", {}});
-  checks.push_back(firmware(said));
+  checks.push_back(check_firmware(said, minor_of(device), wire::kProtocolMinor));
   checks.push_back(check_round_trip(device, request.questions));
   checks.push_back(check_real_time(request.root));
   checks.push_back(check_disk(request.folder, bytes_per_s(said)));

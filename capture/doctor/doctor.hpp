@@ -71,6 +71,9 @@ struct Diagnosis {
 Diagnosis examine(const DoctorRequest& request);
 
 /// The parts, one check each. `bytes_per_s` is the data rate of the device's stream.
+/// Warns of a firmware whose minor version of the protocol is older than the host's; an older major version
+/// is refused when the device is opened.
+Check check_firmware(const firmware_host::Capabilities& said, unsigned device_minor, unsigned host_minor);
 Check check_round_trip(firmware_host::Device& device, std::size_t questions);
 Check check_real_time(const std::string& root);
 Check check_disk(const std::string& folder, double bytes_per_s);

@@ -48,6 +48,21 @@ TEST(Doctor, AnEmulatedDeviceCanRecord) {
   EXPECT_EQ(folder.files(), 0U);
 }
 
+TEST(Doctor, WarnsOfAFirmwareOlderThanTheProtocol) {
+  firmware_host::Capabilities said;
+  said.firmware = "0.1.0 build 0123abcd";
+  for (const unsigned same_or_newer : {2U, 3U}) {
+    const Check check = check_firmware(said, same_or_newer, 2);
+    EXPECT_EQ(check.health, Health::works);
+    EXPECT_TRUE(check.remedy.empty());
+  }
+  const Check older = check_firmware(said, 1, 2);
+  EXPECT_EQ(older.health, Health::warns);
+  EXPECT_NE(older.found.find("0123abcd"), std::string::npos);
+  EXPECT_NE(older.found.find("1.1, here 1.2"), std::string::npos) << older.found;
+  EXPECT_NE(older.remedy.find("firmware-host/boards/README.md"), std::string::npos);
+}
+
 // The command that the refusal suggests works: a moving finger is not still.
 TEST(Doctor, TheTareItAsksForOfAnEmulatedDeviceCanBeMade) {
   const TemporaryFolder folder;

@@ -32,6 +32,7 @@ MAY_INCLUDE = {
     "data-schema/transducer": "data-schema/{base json}",
     "data-schema/wav": "data-schema/{base files}",
     "firmware-host": "data-schema/base firmware-host/{link replay sim/device sim/physics sim/planar tty usb}",
+    "firmware-host/boards/stm32f405": "firmware-host/core/{firmware wire}",
     "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
     "firmware-host/core/firmware": "firmware-host/{core/kernel core/scene core/wire}",
     "firmware-host/core/kernel": "firmware-host/core/wire",
@@ -54,7 +55,7 @@ MAY_INCLUDE = {
     "capture/cli":
         "capture/{calibrate doctor import record table} data-schema/{base cli command files height kinds recording report} "
         "firmware-host/{. sim/device}",
-    "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. link}",
+    "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. core/wire link}",
     "capture/import": "capture/{calibrate record table} data-schema/{base calibration files height recording texture}",
     "capture/record":
         "capture/table data-schema/{base calibration files recording} firmware-host/link spatial/strokes",
