@@ -200,7 +200,7 @@ def a_scene_is_held_stable_and_replayed():
 
 def an_adaptive_spring_is_a_spring_and_a_damper():
     """To the bit: the damper that `explain` lists, written into the scene. The patch keeps its own damper under its name."""
-    write_path("path.csv", {name: 0.2 * column if name != "time_s" else column for name, column in KNOTS.items()})
+    write_path("path.csv", {name: 0.01 * column if name != "time_s" else column for name, column in KNOTS.items()})
     slid = {"type": "damper", "damping_n_s_per_m": with_slider(0.1, 0, 0.2)}
     write_scene("soft", patch(width_m=0.05, height_m=0.05, layers=[{**spring(9000), "adaptive": True}, slid]))
     rows = run_json("explain", "soft.scene.json", "--device", "sandpaper-1990")["layers"]
@@ -215,7 +215,9 @@ def an_adaptive_spring_is_a_spring_and_a_damper():
         assert run_json("replay", scene)["same_to_the_bit"] is True
         run("session", scene, "-o", f"{scene}.csv")
     soft, both = table("soft.csv"), table("both.csv")
-    assert added > 0.1 and all(np.array_equal(soft[name], both[name]) for name in ("x_m", "force_x_n", "force_y_n")), added
+    # A command is sent up to 20 ms after its time; no force is limited, so that nothing else depends on the past.
+    ticks = np.r_[0:1990, 2200:8000]
+    assert added > 0.1 and all(np.array_equal(soft[name][ticks], both[name][ticks]) for name in ("x_m", "force_x_n", "force_y_n")), added
 
 
 def sliders_move_the_force_and_are_replayed():
