@@ -8,7 +8,6 @@
 namespace tacto::playback {
 namespace {
 
-
 // L of the header.
 double held_ticks(double delay_ticks) {
   const double mean = delay_ticks + 0.5, part = delay_ticks - std::floor(delay_ticks);
