@@ -36,8 +36,7 @@ struct TransformStep {
   std::optional<double> low_per_m = std::nullopt, high_per_m = std::nullopt;  ///< filter: its band
   /// stretch, mix: content above this frequency of the result was removed, because the grid can't hold it ...
   std::optional<double> removed_above_per_m = std::nullopt;
-  std::optional<double> removed_share =
-      std::nullopt;  ///< ... its RMS re that of the source, where it was known
+  std::optional<double> removed_share = std::nullopt;  ///< ... its RMS re that of the source
   std::optional<double> left_out_m =
       std::nullopt;  ///< stretch, mix: length of source that is not in the result
 };

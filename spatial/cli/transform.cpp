@@ -30,7 +30,7 @@ using schema::Lengthening;
 using schema::Result;
 using schema::Texture;
 
-constexpr double kPoorJoint = 0.1;
+constexpr double kPoorJoint = 0.1, kMuchRemoved = 1e-3;
 
 struct TransformOptions {
   std::vector<std::string> names;
@@ -128,7 +128,7 @@ Result<Texture> made(const TransformOptions& options) {
 
 void warn_of_losses(const Texture& texture) {
   for (const schema::TransformStep& step : texture.transform->steps) {
-    if (step.removed_share.value_or(0) > 0)
+    if (step.removed_share.value_or(0) > kMuchRemoved)
       cli::warn(
           fmt::format("{}: content above {} was removed, because the grid cannot hold it: {:.2g} % of "
                       "the RMS",

@@ -155,7 +155,7 @@ Result<std::optional<Repetition>> repetition_of(const Texture& texture, const St
           fmt::format("no period was found: at no shift up to half of its length does the texture correlate "
                       "with itself by {:g}",
                       kLeastPeriodCorrelation),
-          {}, "state the period, or join the texture where it fits best");
+          {}, "state it with --period, or use --lengthen best");
     found.samples = *period;
   }
   const auto size = static_cast<double>(texture.signal.values.size());
@@ -273,8 +273,7 @@ Result<Texture> stretch(const Texture& texture, const Stretch& stretch) {
     step.joint_error = joint_error(source, JointScale(limited->values), course, *repetition);
   const double unused = static_cast<double>(limited->values.size() - 1) - std::min(way, course.end);
   if (unused >= 1) step.left_out_m = unused * pitch_m;
-  const auto over = [&](const BandPoint& point) { return point.high_per_m > high_per_m; };
-  if (limited->removed_share > 0 || std::ranges::any_of(texture.valid_band, over)) {
+  if (limited->removed_share > 0) {
     step.removed_above_per_m = high_per_m / factor;
     step.removed_share = limited->removed_share;
   }
