@@ -12,14 +12,14 @@
 namespace tacto::analysis {
 
 /// A path per axis of playback::plane_axes_of().
-using HandPath = std::vector<playback::FingerPath>;
+using AxisPaths = std::vector<playback::FingerPath>;
 
 /// Across each patch from corner to corner, within the travel, at each of kTradeSpeeds_mps.
-std::vector<HandPath> strokes_over(const std::vector<schema::Patch>& patches, const schema::Device& device);
+std::vector<AxisPaths> strokes_over(const std::vector<schema::Patch>& patches, const schema::Device& device);
 
 /// The counts of the device's axes, one row per tick.
 using CountRows = std::vector<std::vector<std::int32_t>>;
-CountRows counts_along(const HandPath& path, const schema::Device& device, double rate_hz);
+CountRows counts_along(const AxisPaths& path, const schema::Device& device, double rate_hz);
 
 /// Before the limits of the device, of all axes, tick after tick.
 using ForceRows = std::vector<std::vector<double>>;
