@@ -64,7 +64,7 @@ std::vector<AxisPaths> strokes_over(const std::vector<schema::Patch>& patches, c
   return paths;
 }
 
-CountRows counts_along(const AxisPaths& path, const schema::Device& device, double rate_hz) {
+CountRows path_counts(const AxisPaths& path, const schema::Device& device, double rate_hz) {
   const auto ticks = static_cast<std::size_t>(path.front().duration_s() * rate_hz + 1e-6) + 1;
   CountRows counts(ticks, std::vector<std::int32_t>(device.axes.size()));
   auto of_axis = path.begin();

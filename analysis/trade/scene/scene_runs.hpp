@@ -19,7 +19,7 @@ std::vector<AxisPaths> strokes_over(const std::vector<schema::Patch>& patches, c
 
 /// The counts of the device's axes, one row per tick.
 using CountRows = std::vector<std::vector<std::int32_t>>;
-CountRows counts_along(const AxisPaths& path, const schema::Device& device, double rate_hz);
+CountRows path_counts(const AxisPaths& path, const schema::Device& device, double rate_hz);
 
 /// Before the limits of the device, of all axes, tick after tick.
 using ForceRows = std::vector<std::vector<double>>;

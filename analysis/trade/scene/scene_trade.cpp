@@ -72,7 +72,7 @@ class SceneBench {
              const schema::Device& device, const std::vector<AxisPaths>& paths)
       : prepared_(std::move(prepared)), patches_(prepared_patches(scene, prepared_)), setup_(setup) {
     for (const AxisPaths& path : paths) {
-      counts_.push_back(counts_along(path, device, double{setup.rate_hz}));
+      counts_.push_back(path_counts(path, device, double{setup.rate_hz}));
       reference_.push_back(exact_forces(prepared_, device, double{setup.rate_hz}, counts_.back()));
       for (const auto& force_n : reference_.back()) forces_.add(force_n);
     }
@@ -304,7 +304,7 @@ Result<void> SceneTrader::add_rate(double rate_hz, const std::vector<AxisPaths>&
   auto prepared = playback::prepare_scene(scene_, where_, device, rate_hz, request_.design.hand);
   TACTO_TRY(prepared);
   std::vector<CountRows> counts;
-  for (const AxisPaths& path : paths) counts.push_back(counts_along(path, device, rate_hz));
+  for (const AxisPaths& path : paths) counts.push_back(path_counts(path, device, rate_hz));
   DesignRequest request = request_.design;
   request.rate_hz = rate_hz;
   schema::Scene scene = scene_;
