@@ -99,8 +99,8 @@ schema::ForceLayer random_layer(SceneRandom& random) {
 
 schema::Scene random_scene(SceneRandom& random) {
   schema::Scene scene;
-  const unsigned patches = 1 + random() % 4;
-  for (unsigned i = 0; i < patches; ++i) {
+  const auto patches = 1 + random() % 4;
+  for (std::size_t i = 0; i < patches; ++i) {
     schema::Patch patch;
     patch.name = std::string(1, static_cast<char>('a' + i));
     patch.x_m = drawn_between(random, -0.06, 0.06);
@@ -110,8 +110,8 @@ schema::Scene random_scene(SceneRandom& random) {
     patch.angle_deg = drawn_between(random, -90, 90);
     patch.order = static_cast<double>(random() % 3);
     patch.combine = one_of(random, 2) ? schema::PatchCombine::add : schema::PatchCombine::topmost;
-    const unsigned layers = 1 + random() % 3;
-    for (unsigned j = 0; j < layers; ++j) patch.layers.push_back(random_layer(random));
+    const auto layers = 1 + random() % 3;
+    for (std::size_t j = 0; j < layers; ++j) patch.layers.push_back(random_layer(random));
     scene.patches.push_back(std::move(patch));
   }
   return scene;

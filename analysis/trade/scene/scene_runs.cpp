@@ -17,14 +17,14 @@ namespace {
 
 constexpr std::size_t kTimedTicks = 1000;
 
-PlanePath stroke_across(const schema::Patch& patch, const schema::Device& device, double speed_mps) {
+AxisPaths stroke_across(const schema::Patch& patch, const schema::Device& device, double speed_mps) {
   constexpr double kPart = 0.49;  // of the patch, from its centre
   const double angle = patch.angle_deg * std::numbers::pi / 180;
   const double u = kPart * patch.width_m, v = kPart * patch.height_m;
   const double way_x = std::cos(angle) * u - std::sin(angle) * v,
                way_y = std::sin(angle) * u + std::cos(angle) * v;
   const double duration_s = 2 * std::hypot(u, v) / speed_mps;
-  PlanePath path;
+  AxisPaths path;
   for (const schema::DeviceAxis& axis : device.axes) {
     if (axis.name == "z") continue;
     const double centre = axis.name == "x" ? patch.x_m : patch.y_m, way = axis.name == "x" ? way_x : way_y;
@@ -57,14 +57,14 @@ class TimedKernel {
 
 }  // namespace
 
-std::vector<PlanePath> strokes_over(const std::vector<schema::Patch>& patches, const schema::Device& device) {
-  std::vector<PlanePath> paths;
+std::vector<AxisPaths> strokes_over(const std::vector<schema::Patch>& patches, const schema::Device& device) {
+  std::vector<AxisPaths> paths;
   for (const schema::Patch& patch : patches)
     for (const double speed_mps : kTradeSpeeds_mps) paths.push_back(stroke_across(patch, device, speed_mps));
   return paths;
 }
 
-CountRows hand_counts(const PlanePath& path, const schema::Device& device, double rate_hz) {
+CountRows path_counts(const AxisPaths& path, const schema::Device& device, double rate_hz) {
   const auto ticks = static_cast<std::size_t>(path.front().duration_s() * rate_hz + 1e-6) + 1;
   CountRows counts(ticks, std::vector<std::int32_t>(device.axes.size()));
   auto of_axis = path.begin();

@@ -12,14 +12,14 @@
 namespace tacto::analysis {
 
 /// A path per axis of playback::plane_axes_of().
-using PlanePath = std::vector<playback::FingerPath>;
+using AxisPaths = std::vector<playback::FingerPath>;
 
 /// Across each patch from corner to corner, within the travel, at each of kTradeSpeeds_mps.
-std::vector<PlanePath> strokes_over(const std::vector<schema::Patch>& patches, const schema::Device& device);
+std::vector<AxisPaths> strokes_over(const std::vector<schema::Patch>& patches, const schema::Device& device);
 
 /// The counts of the device's axes, one row per tick.
 using CountRows = std::vector<std::vector<std::int32_t>>;
-CountRows hand_counts(const PlanePath& path, const schema::Device& device, double rate_hz);
+CountRows path_counts(const AxisPaths& path, const schema::Device& device, double rate_hz);
 
 /// Before the limits of the device, of all axes, tick after tick.
 using ForceRows = std::vector<std::vector<double>>;

@@ -69,10 +69,10 @@ double memory_of(const PreparedScene& scene) {
 class SceneBench {
  public:
   SceneBench(const schema::Scene& scene, PreparedScene prepared, const core::ForceSetup& setup,
-             const schema::Device& device, const std::vector<PlanePath>& paths)
+             const schema::Device& device, const std::vector<AxisPaths>& paths)
       : prepared_(std::move(prepared)), patches_(prepared_patches(scene, prepared_)), setup_(setup) {
-    for (const PlanePath& path : paths) {
-      counts_.push_back(hand_counts(path, device, double{setup.rate_hz}));
+    for (const AxisPaths& path : paths) {
+      counts_.push_back(path_counts(path, device, double{setup.rate_hz}));
       reference_.push_back(exact_forces(prepared_, device, double{setup.rate_hz}, counts_.back()));
       for (const auto& force_n : reference_.back()) forces_.add(force_n);
     }
@@ -176,7 +176,7 @@ class SceneTrader {
 
   Result<void> add_layers();
   Result<void> add_levels();
-  Result<void> add_rates(const std::vector<PlanePath>& paths);
+  Result<void> add_rates(const std::vector<AxisPaths>& paths);
   void measure_costs();
   Result<void> choose();
   SceneTrade finished();
@@ -186,7 +186,7 @@ class SceneTrader {
   PreparedScene changed_by(const ScenePromise::Places& places) const;
   Result<ActingLimit> limit_with(const std::vector<schema::Patch>& patches, std::size_t layer) const;
   Result<void> add_levels_of(std::size_t patch, std::size_t index);
-  Result<void> add_rate(double rate_hz, const std::vector<PlanePath>& paths, const SceneBench& best);
+  Result<void> add_rate(double rate_hz, const std::vector<AxisPaths>& paths, const SceneBench& best);
 
   const schema::Scene& scene_;
   const std::string& where_;
@@ -296,7 +296,7 @@ Result<void> SceneTrader::add_levels() {
   return {};
 }
 
-Result<void> SceneTrader::add_rate(double rate_hz, const std::vector<PlanePath>& paths,
+Result<void> SceneTrader::add_rate(double rate_hz, const std::vector<AxisPaths>& paths,
                                    const SceneBench& best) {
   const schema::Device& device = request_.design.device;
   const auto setup = playback::force_setup_of(device, rate_hz);
@@ -304,7 +304,7 @@ Result<void> SceneTrader::add_rate(double rate_hz, const std::vector<PlanePath>&
   auto prepared = playback::prepare_scene(scene_, where_, device, rate_hz, request_.design.hand);
   TACTO_TRY(prepared);
   std::vector<CountRows> counts;
-  for (const PlanePath& path : paths) counts.push_back(hand_counts(path, device, rate_hz));
+  for (const AxisPaths& path : paths) counts.push_back(path_counts(path, device, rate_hz));
   DesignRequest request = request_.design;
   request.rate_hz = rate_hz;
   schema::Scene scene = scene_;
@@ -322,7 +322,7 @@ Result<void> SceneTrader::add_rate(double rate_hz, const std::vector<PlanePath>&
 }
 
 // On a device with one rate there is no choice.
-Result<void> SceneTrader::add_rates(const std::vector<PlanePath>& paths) {
+Result<void> SceneTrader::add_rates(const std::vector<AxisPaths>& paths) {
   const schema::Device& device = request_.design.device;
   if (device.rates_hz.size() < 2) return {};
   const double most_hz = device.rates_hz.back();
@@ -441,8 +441,8 @@ Result<SceneTrade> trade_scene(const schema::Scene& scene, const std::string& wh
   TACTO_TRY(setup);
   auto prepared = playback::prepare_scene(scene, where, design.device, design.rate_hz, design.hand);
   TACTO_TRY(prepared);
-  const std::vector<PlanePath> paths =
-      request.path ? std::vector<PlanePath>{*request.path} : strokes_over(scene.patches, design.device);
+  const std::vector<AxisPaths> paths =
+      request.path ? std::vector<AxisPaths>{*request.path} : strokes_over(scene.patches, design.device);
   SceneTrader trader(scene, where, request,
                      SceneBench(scene, std::move(*prepared), *setup, design.device, paths));
   progress(0.2);

@@ -16,7 +16,7 @@ namespace tacto::analysis {
 
 struct SceneTradeRequest {
   DesignRequest design;  ///< device, rate, hand; `judged` is the limit of the fourth column
-  std::optional<PlanePath> path = std::nullopt;  ///< none: strokes_over()
+  std::optional<AxisPaths> path = std::nullopt;  ///< none: strokes_over()
   std::optional<double> max_error_n = std::nullopt, max_tick_s = std::nullopt;
 };
 
