@@ -77,7 +77,7 @@ class QemuBoard:
     def wait_for(self, condition, again=lambda: None):
         latest = time.monotonic() + 120
         while not condition():
-            assert time.monotonic() < latest and self._qemu.poll() is None, bytes(self.said[-200:])
+            assert time.monotonic() < latest and self._qemu.poll() is None, f"nothing of it in 120 s; the board sent {len(self.said)} bytes"
             again()
             time.sleep(0.2)
 
@@ -119,8 +119,11 @@ class QemuBoard:
 
     def _to_board(self):
         while (line := self._line) is not None:
-            if not select.select([line], [], [], 0.02)[0]:
-                continue
+            try:
+                if not select.select([line], [], [], 0.02)[0]:
+                    continue
+            except (OSError, ValueError):  # unplugged
+                return
             with self._lock, contextlib.suppress(BlockingIOError):
                 data = os.read(line, 4096) if self._line is not None else b""
             with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # QEMU has ended

@@ -6,6 +6,7 @@ The emulated chip counts its own ticks: the codes of the two analogue channels c
 checked. Losses, bits and the board's own words are judged, never time. QEMU has neither the chip's clocks, ports,
 converters nor its watchdog. Usage: tty_firmware_test.py stm32f405.elf
 """
+import hashlib
 import json
 import pathlib
 import signal
@@ -26,6 +27,7 @@ UNSUITABLE, DEVICE = 5, 8            # exit codes
 PLAYING, FAULTED, HOST_SILENT = 2, 4, 1  # flags of a tick, the code of a fault (core/WIRE.md)
 RATE_HZ = 2000
 RECORD_S = 5
+PITCH_M = 10e-6
 
 
 def checks(port, code=0):
@@ -69,8 +71,14 @@ def play_command(board, name, time_s):
 
 
 def make_texture():
-    tacto.run("record", "-d", "sim:surface=C,speed=50mm/s,seed=1", "--time", "1s", "-o", "oak")
-    tacto.run("spatial", "oak", "-o", "oak", "--stroke", "1")
+    """35 mm with lines at 2 and 10 /mm, over which the emulated finger moves."""
+    x = np.arange(3500) * PITCH_M
+    force_n = 0.05 * np.sin(2 * np.pi * 2000 * x) + 0.01 * np.sin(2 * np.pi * 10_000 * x)
+    soundfile.write("oak.texture.wav", force_n.astype(np.float32), round(1 / PITCH_M), subtype="FLOAT")
+    check = hashlib.sha256(pathlib.Path("oak.texture.wav").read_bytes()).hexdigest()
+    pathlib.Path("oak.texture.json").write_text(json.dumps({
+        "kind": "texture", "version": "1.0", "pitch_m": PITCH_M, "quantity": "tangential_force", "unit": "N", "direction": 1,
+        "source_origin_m": 0.0, "data": {"file": "oak.texture.wav", "sha256": check, "samples": len(force_n)}}))
 
 
 def a_texture_replays(board):
@@ -159,7 +167,7 @@ def damaged_bytes_are_gaps(board):
 
 def a_damaged_flash_is_refused():
     image = bytearray(IMAGE.read_bytes())
-    image[image.index(b"flash check failed") + 40] ^= 1
+    image[image.index(b"QEMU: encoder")] ^= 1
     pathlib.Path("damaged.elf").write_bytes(image)
     with QemuBoard("damaged.elf") as board:
         board.wait_for(lambda: board.said, again=lambda: board.send(b"?"))
