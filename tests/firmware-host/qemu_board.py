@@ -25,7 +25,7 @@ HELLO, WELCOME, TICKS, FAULT = 0x01, 0x81, 0x86, 0x88
 class QemuBoard:
     """`port` is the path of the line's end at the host. corrupt(N) changes about one of N bytes from then on; 0: none."""
     def __init__(self, image, folder="."):
-        self.said, self._noise, self._every = bytearray(), random.Random(1), 0
+        self.said, self._since, self._noise, self._every = bytearray(), 0, random.Random(1), 0
         self._lock = threading.Lock()  # of the line's end here, which unplug() closes
         path = os.path.join(folder, "uart")
         with socket.socket(socket.AF_UNIX) as waiting:
@@ -77,13 +77,17 @@ class QemuBoard:
     def wait_for(self, condition, again=lambda: None):
         latest = time.monotonic() + 120
         while not condition():
-            assert time.monotonic() < latest and self._qemu.poll() is None, bytes(self.said[-200:])
+            assert time.monotonic() < latest and self._qemu.poll() is None, f"nothing of it in 120 s; the board sent {len(self.said)} bytes"
             again()
             time.sleep(0.2)
 
-    def messages(self, since=0):
-        """(type, payload) of the whole frames that the board sent; `since` is where a frame begins in `said`."""
-        said, at = bytes(self.said[since:]), 0
+    def forget(self):
+        """From now on messages() begins after what the board has sent so far."""
+        self._since += sum(16 + len(payload) for _, payload in self.messages())
+
+    def messages(self):
+        """(type, payload) of the whole frames that the board sent."""
+        said, at = bytes(self.said[self._since:]), 0
         while at + 12 <= len(said):
             assert said[at:at + 2] == b"\xa5\x54", (at, said[at:at + 20])
             kind, length = said[at + 3], int.from_bytes(said[at + 4:at + 6], "little")
@@ -119,8 +123,11 @@ class QemuBoard:
 
     def _to_board(self):
         while (line := self._line) is not None:
-            if not select.select([line], [], [], 0.02)[0]:
-                continue
+            try:
+                if not select.select([line], [], [], 0.02)[0]:
+                    continue
+            except (OSError, ValueError):  # unplugged
+                return
             with self._lock, contextlib.suppress(BlockingIOError):
                 data = os.read(line, 4096) if self._line is not None else b""
             with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # QEMU has ended

@@ -6,6 +6,7 @@ The emulated chip counts its own ticks: the codes of the two analogue channels c
 checked. Losses, bits and the board's own words are judged, never time. QEMU has neither the chip's clocks, ports,
 converters nor its watchdog. Usage: tty_firmware_test.py stm32f405.elf
 """
+import hashlib
 import json
 import pathlib
 import signal
@@ -26,6 +27,7 @@ UNSUITABLE, DEVICE = 5, 8            # exit codes
 PLAYING, FAULTED, HOST_SILENT = 2, 4, 1  # flags of a tick, the code of a fault (core/WIRE.md)
 RATE_HZ = 2000
 RECORD_S = 5
+PITCH_M = 10e-6
 
 
 def checks(port, code=0):
@@ -69,8 +71,14 @@ def play_command(board, name, time_s):
 
 
 def make_texture():
-    tacto.run("record", "-d", "sim:surface=C,speed=50mm/s,seed=1", "--time", "1s", "-o", "oak")
-    tacto.run("spatial", "oak", "-o", "oak", "--stroke", "1")
+    """35 mm with lines at 2 and 10 /mm, over which the emulated finger moves."""
+    x = np.arange(3500) * PITCH_M
+    force_n = 0.05 * np.sin(2 * np.pi * 2000 * x) + 0.01 * np.sin(2 * np.pi * 10_000 * x)
+    soundfile.write("oak.texture.wav", force_n.astype(np.float32), round(1 / PITCH_M), subtype="FLOAT")
+    check = hashlib.sha256(pathlib.Path("oak.texture.wav").read_bytes()).hexdigest()
+    pathlib.Path("oak.texture.json").write_text(json.dumps({
+        "kind": "texture", "version": "1.0", "pitch_m": PITCH_M, "quantity": "tangential_force", "unit": "N", "direction": 1,
+        "source_origin_m": 0.0, "data": {"file": "oak.texture.wav", "sha256": check, "samples": len(force_n)}}))
 
 
 def a_texture_replays(board):
@@ -105,11 +113,16 @@ def falls_to_zero(board):
 
 
 def start_playing(board, name):
-    """A program that plays, from the time on at which the board reports a second of it."""
-    program = subprocess.Popen(play_command(board, name, 600), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    before = len(list(board.ticks()))
-    board.wait_for(lambda: sum(flags & PLAYING > 0 for _, _, flags in list(board.ticks())[before:]) > RATE_HZ)
-    return program
+    """A program that plays, from the time on at which the board reports a second of it; it may need another attempt."""
+    for attempt in range(5):
+        board.forget()
+        program = subprocess.Popen(play_command(board, f"{name}-{attempt}", 600), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   text=True)
+        board.wait_for(lambda: program.poll() is not None or sum(flags & PLAYING > 0 for _, _, flags in board.ticks()) > RATE_HZ)
+        if program.poll() is None:
+            return program
+        ended = program.communicate()
+    raise AssertionError(f"in five attempts this machine stopped for longer than the watchdog's time: {ended}")
 
 
 def a_stopped_host():
@@ -151,7 +164,7 @@ def damaged_bytes_are_gaps(board):
     ticks = is_every_frame_true(codes_of("noisy"))
     lost = np.diff(ticks.astype(np.int64), prepend=0) - 1  # the first frame is that of the first tick
     gaps = json.loads(pathlib.Path("noisy.json").read_text()).get("gaps", [])
-    assert np.all(lost >= 0) and lost.sum() > 0 and sum(gap["count"] for gap in gaps) == lost.sum(), (lost.sum(), gaps)
+    assert np.all(lost >= 0) and lost.sum() > 0 and sum(gap["count"] for gap in gaps) == lost.sum(), (lost.sum(), gaps, done)
     board.corrupt(0)
     board.send(np.random.default_rng(1).bytes(5000))
     assert checks(board.port)["device"]["state"] == "works"
@@ -159,7 +172,7 @@ def damaged_bytes_are_gaps(board):
 
 def a_damaged_flash_is_refused():
     image = bytearray(IMAGE.read_bytes())
-    image[image.index(b"flash check failed") + 40] ^= 1
+    image[image.index(b"QEMU: encoder")] ^= 1
     pathlib.Path("damaged.elf").write_bytes(image)
     with QemuBoard("damaged.elf") as board:
         board.wait_for(lambda: board.said, again=lambda: board.send(b"?"))
