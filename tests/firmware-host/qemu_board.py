@@ -69,8 +69,9 @@ class QemuBoard:
                 os.close(self._host)
             self._line = None
 
-    def await_start(self):
+    def greet(self):
         """Greets the board until it answers; a board that starts loses what it receives."""
+        self.forget()
         self.wait_for(lambda: any(kind == WELCOME for kind, _ in self.messages()), again=lambda: self.send(
             frame(HELLO, 0, struct.pack("<BBHI", 1, 0, 0, 1))))
 

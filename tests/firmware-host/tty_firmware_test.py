@@ -127,7 +127,7 @@ def start_playing(board, name):
 
 def a_stopped_host():
     with QemuBoard(str(IMAGE)) as board:
-        board.await_start()
+        board.greet()
         program = start_playing(board, "stopped")
         program.send_signal(signal.SIGSTOP)
         falls_to_zero(board)
@@ -139,7 +139,7 @@ def a_stopped_host():
 
 def an_unplugged_board():
     with QemuBoard(str(IMAGE)) as board:
-        board.await_start()
+        board.greet()
         program = start_playing(board, "pulled")
         board.unplug()
         _, error = program.communicate(timeout=120)
@@ -167,6 +167,7 @@ def damaged_bytes_are_gaps(board):
     assert np.all(lost >= 0) and lost.sum() > 0 and sum(gap["count"] for gap in gaps) == lost.sum(), (lost.sum(), gaps, done)
     board.corrupt(0)
     board.send(np.random.default_rng(1).bytes(5000))
+    board.greet()
     assert checks(board.port)["device"]["state"] == "works"
 
 
@@ -182,7 +183,7 @@ def a_damaged_flash_is_refused():
 def test():
     make_texture()
     with QemuBoard(str(IMAGE)) as board:
-        board.await_start()
+        board.greet()
         for step in (doctor_works_twice, every_frame_comes, a_texture_replays, a_texture_that_is_too_large, damaged_bytes_are_gaps):
             step(board)
             print(step.__name__, flush=True)
