@@ -12,11 +12,11 @@
 
 #include "capture/cli/command_lines.hpp"
 #include "capture/cli/live_line.hpp"
-#include "capture/cli/terminal_keys.hpp"
 #include "capture/cli/verbs.hpp"
 #include "capture/record/take_name.hpp"
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/command/stop_signals.hpp"
+#include "data-schema/command/terminal_keys.hpp"
 #include "data-schema/report/pace.hpp"
 #include "data-schema/report/progress.hpp"
 #include "data-schema/report/report.hpp"
@@ -194,7 +194,7 @@ class Console {
   }
 
   cli::StopSignals signals_;
-  std::optional<TerminalKeys> keys_;  // one of these two
+  std::optional<cli::TerminalKeys> keys_;  // one of these two
   std::optional<CommandLines> lines_;
   cli::Progress progress_{"recording"};
   bool stopped_ = false;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/cli/terminal_keys.hpp"
+#include "data-schema/command/terminal_keys.hpp"
 
 #include <poll.h>
 #include <unistd.h>
 
-namespace tacto::capture {
+namespace tacto::cli {
 
 TerminalKeys::TerminalKeys() {
   // A background process that changes the terminal's settings is stopped by the kernel.
@@ -27,4 +27,4 @@ char TerminalKeys::next() {
   return key;
 }
 
-}  // namespace tacto::capture
+}  // namespace tacto::cli

@@ -4,7 +4,7 @@
 
 #include <termios.h>
 
-namespace tacto::capture {
+namespace tacto::cli {
 
 /// While this object exists, a terminal on stdin delivers each key at once and without echo; Ctrl-C remains a
 /// signal. If stdin is not a terminal, no key is ever delivered.
@@ -23,4 +23,4 @@ class TerminalKeys {
   termios before_{};
 };
 
-}  // namespace tacto::capture
+}  // namespace tacto::cli
