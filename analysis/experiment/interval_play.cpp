@@ -22,7 +22,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr double kRestS = 0.1, kTurnS = 0.05, kKnotS = 0.005;
+constexpr double kRestS = 0.05, kTurnS = 0.05, kKnotS = 0.005;
 constexpr double kLateStartS = 0.005;  // the device's next tick and message come within it
 constexpr std::string_view kSimulated = "sim:";
 

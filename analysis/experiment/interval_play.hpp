@@ -11,7 +11,8 @@
 
 namespace tacto::analysis {
 
-/// The finger's path at the protocol's pace, with turns of 50 ms: 0.1 s rest, then strokes forth and back.
+/// The finger's path at the protocol's pace, with 50 ms of rest before and after, and even
+/// acceleration over 50 ms at both ends of each stroke.
 playback::FingerPath paced_path(const schema::ProtocolPace& pace);
 
 struct IntervalPlay {

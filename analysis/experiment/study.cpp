@@ -137,8 +137,8 @@ schema::Protocol stretch_protocol(const std::string& seed) {
   protocol.begin_key = " ";
   protocol.most_attempts = 3;
   protocol.participants = 8;
-  // At 50 mm/s the longest period, 2.99 mm, is at 16.7 Hz: still in the band from 15 Hz.
-  protocol.delivered = {0, 0, 10, 0, -40, -20, 0.05, 0.09};
+  // At 45 mm/s the longest period, 2.99 mm, is at 15.04 Hz: still in the band from 15 Hz.
+  protocol.delivered = {0, 0, 10, 0, -40, -20, 0.045, 0.085};
   protocol.texts = {
       "You feel two textures, one after the other. Say which of them has the smaller period.",
       "Put the finger at the left end and press the space bar.", "Move the finger to the right end and back.",
