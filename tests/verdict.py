@@ -8,15 +8,18 @@ import sys
 
 # The line of a second try has no "6/11" at its beginning.
 LINE = re.compile(r"^ *(?:\d+/\d+ +)?Test +#\d+: (\S+) \.*.*?(Passed|Failed|Skipped|Timeout|Exception|Not Run)")
+RUN = re.compile(r"^== tests \((\S+)\)")  # a stage may run a test in several builds
 NOT_JUDGED = re.compile(r"not judged: .*")
 
 
 def read(text):
-    """{test: [results of its tries]}, and the sentences about what was not judged."""
-    tries = {}
+    """{(build, test): [results of its tries]}, and the sentences about what was not judged."""
+    tries, build = {}, ""
     for line in text.splitlines():
-        if found := LINE.match(line):
-            tries.setdefault(found[1], []).append(found[2])
+        if run := RUN.match(line):
+            build = run[1]
+        elif found := LINE.match(line):
+            tries.setdefault((build, found[1]), []).append(found[2])
     return tries, NOT_JUDGED.findall(text)
 
 
@@ -24,7 +27,7 @@ def report(logs, stages):
     lists = {"failed": [], "passed only at the second try": [], "skipped": [], "not judged": []}
     for stage in stages:
         tries, sentences = read((logs / f"{stage}.log").read_text(errors="replace"))
-        for test, results in tries.items():
+        for (_, test), results in tries.items():
             if results[-1] == "Skipped":
                 lists["skipped"].append(f"{stage}: {test}")
             elif results[-1] != "Passed":

@@ -11,6 +11,7 @@
 #include "analysis/design/design_page.hpp"
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
+#include "playback/cli/scene_forces.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/stability/free_limit.hpp"
 
@@ -25,7 +26,7 @@ using schema::Result;
 struct DesignVerbOptions {
   std::string scene, device, hand, table;
   std::optional<double> rate_hz, speed_mps;
-  bool lumped = false, assume = false, z_width = false, simulate = false;
+  bool lumped = false, assume = false, z_width = false, simulate = false, hold_stable = false;
   std::size_t adversary_paths = 0;
   std::vector<std::string> outputs;
   schema::Existing existing = schema::Existing::keep;
@@ -45,7 +46,7 @@ constexpr const char* kDesignRule =
     "scene ('ctl move' and 'ctl raise' can change both); a number with a slider counts at its worse end. The "
     "stiffness of grooves, noise, height maps and textures is their largest one; other layers are reported "
     "as not "
-    "known.\n"
+    "known. A layer with `adaptive` adds a damper to its patch, which is a row of its own.\n"
     "The second table: the greatest period and the largest delay at which the place is stable; the damping "
     "that "
     "device and finger need together for each passive hand; the speed below which each hand is proved; the "
@@ -117,6 +118,19 @@ Report report_of(const DesignVerbOptions& o, const Design& design) {
   return report;
 }
 
+// A scene that is refused for playback is judged without the dampers, and with the reason.
+void add_adaptive(schema::Scene& scene, const std::string& file, const DesignRequest& request) {
+  const auto added =
+      playback::add_adaptive_damping(scene, file, request.device, request.rate_hz, request.hand);
+  if (added) return;
+  cli::warn(schema::message(added.error()));
+  for (schema::Patch& patch : scene.patches)
+    for (schema::ForceLayer& layer : patch.layers)
+      layer.visit([]<class L>(L& of) {
+        if constexpr (requires { of.adaptive = false; }) of.adaptive = false;
+      });
+}
+
 Result<Report> run_design(const DesignVerbOptions& o) {
   Design design;
   const std::vector<OutputKind> kinds = {
@@ -132,6 +146,13 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   const double limit = playback::stiffness_limit_of(request->device, request->rate_hz, request->hand);
   TACTO_TRY(playback::set_filters(*scene, limit, file));
   TACTO_TRY(playback::read_reliefs(*scene, file, request->rate_hz));
+  add_adaptive(*scene, file, *request);
+  std::vector<playback::HeldLayer> held;
+  if (o.hold_stable) {
+    auto scaled = playback::hold_stable(scene->patches, request->device, request->rate_hz, request->hand);
+    TACTO_TRY(scaled);
+    held = std::move(*scaled);
+  }
   auto designed = design_scene(*scene, file, *request);
   TACTO_TRY(designed);
   design = std::move(*designed);
@@ -141,6 +162,7 @@ Result<Report> run_design(const DesignVerbOptions& o) {
         "assumed",
         "patches at the places and in the order of the scene; after 'move' or 'raise' other layers may "
         "act together");
+  if (o.hold_stable) playback::add_held(report, held);
   if (o.outputs.empty()) return report;
   schema::Results results;
   results.verb = "design";
@@ -198,6 +220,7 @@ cli::Action declare_design(CLI::App& app) {
                  "Search the energy that springs and dampers give on so many random paths of a hand")
       ->type_name("N")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
+  playback::declare_hold_stable(app, o.hold_stable);
   app.add_flag("--assume", o.assume,
                "Assume what the device's file leaves out of mass, friction and encoder step, and list it");
   app.add_flag("--z-width", o.z_width, "Draw each limit over virtual damping, in the page and the results");

@@ -3,22 +3,26 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
-#include "analysis/cli/identify_loops.hpp"
-#include "analysis/cli/identify_names.hpp"
 #include "analysis/cli/identify_options.hpp"
 #include "analysis/cli/identify_report.hpp"
 #include "analysis/cli/stopped.hpp"
 #include "analysis/cli/verbs.hpp"
+#include "analysis/identify/fit/hysteresis_loop.hpp"
 #include "analysis/identify/fit/plausibility.hpp"
 #include "analysis/identify/measure/record_response.hpp"
 #include "analysis/identify/report/bode_figure.hpp"
 #include "analysis/identify/report/identify_results.hpp"
+#include "data-schema/base/error.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/command/stop_signals.hpp"
+#include "data-schema/command/verb.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/report/progress.hpp"
 #include "playback/player/player_device.hpp"
+#include "spatial/picture/line_plot.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -235,6 +239,148 @@ Result<Report> identify_taps(const IdentifyOptions& o, const IdentifySource& ask
       o, [&] { return identify_results(*fit, *predicted, found); }, std::move(report));
 }
 
+constexpr double kSweepPart = 0.75;  // share of the total measuring time
+
+std::string loops_words(double amplitude_v) {
+  return "loops of " + schema::for_people(amplitude_v, Dimension::voltage) + " at 1 Hz";
+}
+
+Result<DrivenTray> driven_loops(const IdentifyOptions& o, IdentifySource& source,
+                                schema::Identification& about) {
+  firmware_host::Device& device = *source.device.device;
+  const double amplitude_v = o.amplitude_v.value_or(loop_amplitude_v(source.base));
+  about.source = device.capabilities().uri;
+  about.simulated = device.capabilities().simulated_device;
+  about.conditions = loops_words(amplitude_v);
+  const cli::StopSignals signals;
+  cli::Progress progress("identifying");
+  auto tray = drive_tray(
+      device, slow_loops(drive_rate_hz(device), amplitude_v), [&] { return signals.stop_asked(); },
+      [&](double part) { progress.update(part); });
+  source.stopped = signals.stop_asked();
+  return tray;
+}
+
+Result<DrivenTray> loops_of(const IdentifyOptions& o, IdentifySource& source, schema::Identification& about) {
+  if (source.has_device()) return driven_loops(o, source, about);
+  about.source = o.file;
+  auto tray = read_driven_table(o.file);
+  if (tray && !(tray->rate_hz > 0)) tray->rate_hz = o.rate_hz.value_or(0);
+  if (tray && o.invert)
+    for (double& value : tray->displacement_m) value = -value;
+  return tray;
+}
+
+void warn_of_limits(const char* what, std::size_t limited) {
+  if (limited == 0) return;
+  cli::warn(
+      fmt::format("the device limited {} ticks of the {}: the fit uses the limited drive; a smaller "
+                  "--amplitude avoids this",
+                  limited, what));
+}
+
+struct SweepAndLoops {
+  DrivenResponse sweep;
+  DrivenTray loops;
+};
+
+// The sweep has the requested amplitude, the loops the largest that the limits allow.
+Result<SweepAndLoops> measured_both(const IdentifyOptions& o, IdentifySource& source) {
+  firmware_host::Device& device = *source.device.device;
+  const cli::StopSignals signals;
+  cli::Progress progress("identifying");
+  const auto stop_asked = [&] { return signals.stop_asked(); };
+  const ExcitationPlan plan = plan_on(o, device, joint_amplitude_v(o.plan, source.base));
+  const double amplitude_v = loop_amplitude_v(source.base);
+  auto sweep = driven_response(device, IdentifyMethod::sweep, plan, source.base, stop_asked,
+                               [&](double part) { progress.update(kSweepPart * part); });
+  source.stopped = signals.stop_asked();
+  TACTO_TRY(sweep);
+  auto loops = drive_tray(device, slow_loops(plan.rate_hz, amplitude_v, plan.amplitude_v), stop_asked,
+                          [&](double part) { progress.update(kSweepPart + (1 - kSweepPart) * part); });
+  source.stopped = signals.stop_asked();
+  TACTO_TRY(loops);
+  sweep->data.conditions += ", and " + loops_words(amplitude_v);
+  return SweepAndLoops{std::move(*sweep), std::move(*loops)};
+}
+
+Result<JointFit> joint_fit_of(const IdentifyOptions& o, SweepAndLoops& both, const schema::Transducer& base) {
+  BodeData& data = both.sweep.data;
+  TACTO_TRY(check_measured(data, o.model, base, {}));
+  auto fit = fit_jointly(data, both.sweep.drive, both.loops, o.model, base);
+  if (!fit) return fit;
+  TACTO_TRY(check_upright(fit->loops, data.source));
+  TACTO_TRY(check_fitted(o, fit->response, base));
+  return fit;
+}
+
+constexpr double kMicrometresAMetre = 1e6;
+
+spatial::Series loop_series(const char* name, const LoopFit& fit, const std::vector<double>& displacement_m,
+                            std::size_t colour) {
+  spatial::Series series{name, fit.loop_v, displacement_m, spatial::series_colour(colour)};
+  for (double& value : series.y) value *= kMicrometresAMetre;
+  return series;
+}
+
+// Displacement over drive, without the linear model's lag. `found` is the resulting transducer.
+spatial::LineFigure loop_figure(const LoopFit& fit, const schema::Transducer& found) {
+  spatial::LineFigure figure;
+  figure.title = found.identification->usable() ? "Hysteresis" : "Hysteresis: THE MODEL DOES NOT FIT";
+  figure.subtitle = fmt::format(
+      "a loop of {:.3g} %; the operator leaves {:.2g} % of the displacement, a line "
+      "{:.3g} %",
+      100 * fit.opening, 100 * fit.residual_part, 100 * fit.linear_residual_part);
+  figure.x_label = "drive (V)";
+  figure.y_label = "displacement (\u00b5m)";
+  figure.simulated = found.identification->simulated;
+  figure.series = {loop_series("measured", fit, fit.loop_m, 0),
+                   loop_series("operator", fit, fit.loop_model_m, 1)};
+  figure.series[1].dashed = true;
+  figure.size = {480, 440};
+  return figure;
+}
+
+// Identifies the hysteresis alone, from a device or a table.
+Result<Report> identify_loops(const IdentifyOptions& o, IdentifySource& source) {
+  schema::Identification about;
+  about.conditions = "loops measured elsewhere";
+  const auto tray = loops_of(o, source, about);
+  TACTO_TRY(tray);
+  if (!(tray->rate_hz > 0))
+    cli::warn("no rate is known: the linear model's own lag is counted as hysteresis");
+  warn_of_limits("loops", tray->limited);
+  const double held_s = source.has_device() ? 0.5 / tray->rate_hz : 0;
+  const auto fit = fit_loops(tray->drive_v, tray->displacement_m, tray->rate_hz,
+                             delay_at_rest_s(source.base) + held_s, source.base.drive_limit_v);
+  TACTO_TRY(fit);
+  TACTO_TRY(check_upright(*fit, about.source, o.invert));
+  TACTO_TRY(o.implausible ? Result<void>() : check_size(*fit, source.base, about.source));
+  const schema::Transducer found = identified(*fit, source.base, transducer_name_of(o), about);
+  TACTO_TRY(schema::write_transducer(o.stem, found));
+  Report report = loop_report(*fit, found, transducer_file_of(o));
+  TACTO_TRY(draw_identified(o, loop_figure(*fit, found), report));
+  return with_identify_results(
+      o, [&] { return identify_results(*fit, found); }, std::move(report));
+}
+
+// Measures a sweep and slow loops on a device and fits them together.
+Result<Report> identify_jointly(const IdentifyOptions& o, IdentifySource& source) {
+  auto both = measured_both(o, source);
+  TACTO_TRY(both);
+  warn_of_limits("sweep", both->sweep.data.limited);
+  warn_of_limits("loops", both->loops.limited);
+  const auto fit = joint_fit_of(o, *both, source.base);
+  TACTO_TRY(fit);
+  const schema::Transducer found = identified(*fit, source.base, transducer_name_of(o));
+  TACTO_TRY(schema::write_transducer(o.stem, found));
+  Report report = joint_report(*fit, source.base, found, transducer_file_of(o));
+  if (!o.base.empty()) add_paper(report, source.base, found, fit->response);
+  TACTO_TRY(draw_identified(o, BodeFigure(fit->response), report));
+  return with_identify_results(
+      o, [&] { return identify_results(*fit, source.base, found); }, std::move(report));
+}
+
 Result<Report> identify_by(const IdentifyOptions& o, IdentifySource& asked) {
   if (o.method == IdentifyMethod::taps) return identify_taps(o, asked);
   if (o.method == IdentifyMethod::loop) return identify_loops(o, asked);
@@ -251,6 +397,37 @@ Result<void> check_names_free(const IdentifyOptions& o) {
   if (o.results.ends_with(".json")) return schema::check_results_free(o.results, o.existing);
   return fail(ErrorKind::usage, "has an ending that this verb does not write", o.results,
               "name results (NAME.results.json)");
+}
+
+// Two outputs of the same name would overwrite each other.
+schema::Result<void> check_apart(const std::vector<std::string>& files) {
+  for (auto file = files.begin(); file != files.end(); ++file)
+    if (!file->empty() && std::any_of(files.begin(), file, [&](const auto& other) {
+          return !other.empty() && schema::same_file(*file, other);
+        }))
+      return schema::fail(schema::ErrorKind::usage, "is named twice", *file,
+                          "give transducer, picture and results different names");
+  return {};
+}
+
+// Errors: usage: the transducer file has no name (the message suggests one, made from the name of the
+// results or the picture), or two of the three names are the same file.
+schema::Result<void> check_named(const std::string& stem, const std::string& results,
+                                 const std::string& picture) {
+  if (!stem.empty())
+    return check_apart({schema::stem_of(stem, ".transducer") + ".transducer.json", picture, results});
+  std::string name = "NAME", beside;
+  if (!picture.empty()) {
+    name = picture.substr(0, picture.rfind('.'));
+    beside = fmt::format("; --picture {} is drawn beside it", picture);
+  }
+  if (!results.empty()) {
+    name = schema::stem_of(results, ".results");
+    beside = fmt::format("; --results {} is written beside it", results);
+  }
+  return schema::fail(schema::ErrorKind::usage,
+                      "the transducer file, which identify always writes, has no name", "--output",
+                      fmt::format("add -o {} for {}.transducer.json{}", name, name, beside));
 }
 
 Result<Report> run_identify(const IdentifyOptions& o) {

@@ -9,6 +9,7 @@
 
 #include "analysis/cli/compared_input.hpp"
 #include "analysis/cli/results_output.hpp"
+#include "analysis/cli/scene_trade.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/trade/measured_trade.hpp"
 #include "analysis/trade/rows/pareto.hpp"
@@ -35,6 +36,7 @@ struct TradeVerbOptions {
   bool calibrate = false, unfit_transducer = false, implausible = false;
   schema::Existing existing = schema::Existing::keep;
   std::vector<std::string> outputs;
+  SceneTradeOptions scene;
 };
 
 constexpr const char* kTradeTableEnding = ".trade.json";
@@ -243,12 +245,16 @@ Result<Report> run_trade(const TradeVerbOptions& o) {
 
 cli::Action declare_trade(CLI::App& app) {
   auto options = std::make_shared<TradeVerbOptions>();
-  app.add_option("WHAT", options->what,
-                 "Texture, recording (its stroke) or scene (the worst of its textures)");
-  app.add_option("-o,--output", options->outputs,
-                 "Output: a page (.html), results for 'report' (.results.json), a table of all choices "
-                 "(.csv), or error against cost for the unit of cost with most choices in the first half "
-                 "(.svg, .png); with --calibrate NAME.trade.json; may be repeated");
+  app.add_option(
+      "WHAT", options->what,
+      "Texture, recording (its stroke) or scene (the worst of its textures; with --device its force "
+      "patches)");
+  app.add_option(
+      "-o,--output", options->outputs,
+      "Output: a page (.html), results for 'report' (.results.json), a table of all choices "
+      "(.csv), or error against cost for the unit of cost with most choices in the first half "
+      "(.svg, .png); with --calibrate NAME.trade.json; with --device no picture, but the chosen scene "
+      "(NAME.scene.json); may be repeated");
   app.add_option("--transducer", options->transducer, "A preset or NAME.transducer.json")
       ->capture_default_str();
   cli::declare_unfit_transducer(app, options->unfit_transducer);
@@ -263,7 +269,15 @@ cli::Action declare_trade(CLI::App& app) {
       "From recording to spectrogram, from texture to drive, or both");
   app.add_flag("--calibrate", options->calibrate,
                "Measure and store this machine's table of choices, which --quality and --max-error use");
-  return [options] { return run_trade(*options); };
+  declare_scene_trade(app, options->scene);
+  app.footer(app.get_footer() + "\n" + kSceneTradeRule);
+  return [options, &app]() -> Result<Report> {
+    TACTO_TRY(check_trade_options(app));
+    if (options->scene.device.empty()) return run_trade(*options);
+    if (options->what.empty())
+      return schema::fail(ErrorKind::usage, "no scene is named", {}, "name a scene with force patches");
+    return run_scene_trade(options->what, options->scene, options->outputs, options->existing);
+  };
 }
 
 }  // namespace
@@ -272,6 +286,8 @@ const cli::Verb kTradeVerb{
     "trade", "Measure error and cost of each choice between speed and accuracy, and report the best ones",
     "tactograph trade oak -o trade.html -o trade.csv\n"
     "  tactograph trade oak --half realtime -o realtime.svg\n"
+    "  tactograph trade plane --device sandpaper-1990 -o trade.html\n"
+    "  tactograph trade plane --device sandpaper-1990 --max-error 5mN -o quick.scene.json\n"
     "  tactograph trade --calibrate",
     declare_trade};
 

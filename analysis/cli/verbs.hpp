@@ -7,6 +7,7 @@
 namespace tacto::analysis {
 
 extern const cli::Verb kCompareVerb;
+extern const cli::Verb kCorpusVerb;
 extern const cli::Verb kExperimentVerb;
 extern const cli::Verb kFidelityVerb;
 extern const cli::Verb kDemoVerb;

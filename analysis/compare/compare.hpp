@@ -2,15 +2,16 @@
 // Compares two textures: by band, by coherence, by formants; the verdict is one word.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/compare/cross_spectrum.hpp"
-#include "analysis/compare/formant_match.hpp"
 #include "analysis/compare/simulated_sides.hpp"
-#include "analysis/compare/texture_pair.hpp"
 #include "analysis/compare/verdict.hpp"
 #include "data-schema/base/error.hpp"
 #include "data-schema/texture/formants.hpp"
@@ -19,6 +20,40 @@
 #include "spatial/spectrogram/spectrogram_options.hpp"
 
 namespace tacto::analysis {
+
+/// How the places of one texture are found in the other. position: by their places on the bench, or from both
+/// starts if less than half of the shorter one is shared there. correlation: position, then the shift with
+/// the largest correlation. none: no pairing, only spectra are compared.
+enum class PairAlign { position, correlation, none };
+
+struct PairOptions {
+  PairAlign align = PairAlign::position;
+  double max_shift_m = 2e-3;  ///< for `correlation`
+};
+
+struct TexturePair {
+  double pitch_m = 0;        ///< the coarser of the two
+  std::vector<double> a, b;  ///< of equal length if `paired`: sample i of both is at one place
+  bool paired = true;
+  std::string aligned;                ///< "place", "start", "correlation", "none": the method that was used
+  double shift_m = 0;                 ///< added to B's positions by `correlation`
+  std::optional<double> correlation;  ///< correlation of the two after the shift
+  double a_from_m = 0, b_from_m = 0;  ///< positions of their first samples in A and in B
+  double low_per_m = 0;               ///< the band that is valid in both throughout ...
+  double high_per_m = 0;  ///< ... at most half the grid's frequency and the pass band of the resampling
+  std::string quantity, unit;
+  std::vector<std::string> notes;
+
+  double length_m() const { return static_cast<double>(a.size()) * pitch_m; }
+};
+
+/// Uses the part of each at steady speed (spatial::steady_part; elsewhere the valid bands change from place
+/// to place). The finer texture is low-passed to 0.4 cycles per sample of the coarser grid (0.35 if the ratio
+/// is not an integer) and resampled by windowed sinc (error below 1e-5 of a tone). The same interpolation
+/// moves B onto A's places. Errors: unsuitable: different quantities or units, no common band, fewer than 64
+/// samples of either; usage: a shift that is not finite.
+schema::Result<TexturePair> pair_textures(const schema::Texture& a, const schema::Texture& b,
+                                          const PairOptions& options);
 
 struct CompareOptions {
   PairOptions pair;
@@ -43,6 +78,18 @@ struct BandComparison {
   std::optional<double> residual_db;  ///< power of B - gain A over that of B
   std::optional<double> coherence;    ///< magnitude-squared, weighted by A's power
 };
+
+struct FormantMatch {
+  std::vector<std::pair<std::size_t, std::size_t>> matched;  ///< indices in A and in B
+  std::vector<std::size_t> missed;                           ///< in A, not in B
+  std::vector<std::size_t> extra;                            ///< in B, not in A
+};
+
+/// Goes through A's formants, strongest first, and matches each with the nearest unmatched frequency in B
+/// within half the resolution (1.7268 / window, as for linking ridges). If `by_place`, their extents must
+/// also overlap by half of the shorter one. Both lists use one position axis.
+FormantMatch match_formants(std::span<const schema::Formant> a, std::span<const schema::Formant> b,
+                            double resolution_per_m, bool by_place);
 
 struct Comparison {
   TexturePair pair;

@@ -104,7 +104,7 @@ MatrixXd over_windows(const MatrixXd& bands, const std::vector<BandWindow>& wind
 }
 
 // The data after the null model; the same for all exchanges.
-struct Residuals {
+struct LevelResiduals {
   std::vector<BandWindow> windows;
   MatrixXd by_band, by_window;
   MatrixXd band_products;  // e_a' e_b
@@ -112,11 +112,11 @@ struct Residuals {
   double freedom = 0;
 };
 
-Residuals residuals_of(const LabelledLevels& data, const MatrixXd& basis) {
+LevelResiduals residuals_of(const LabelledLevels& data, const MatrixXd& basis) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const MatrixXd levels =
       Eigen::Map<const RowMajor>(data.level_db.data(), index(data.strokes()), index(data.bands));
-  Residuals r;
+  LevelResiduals r;
   r.windows = all_windows(data.bands);
   r.by_band = off(basis, levels);
   r.by_window = over_windows(r.by_band, r.windows);
@@ -134,7 +134,7 @@ struct SideStatistics {
 };
 
 // Windows of one width follow one another.
-VectorXd moderated(const Residuals& r, const VectorXd& variance) {
+VectorXd moderated(const LevelResiduals& r, const VectorXd& variance) {
   VectorXd out(variance.size());
   for (Index from = 0; from < variance.size();) {
     const std::size_t width = r.windows[static_cast<std::size_t>(from)].bands;
@@ -148,7 +148,7 @@ VectorXd moderated(const Residuals& r, const VectorXd& variance) {
   return out;
 }
 
-double shape_statistic(const Residuals& r, const SideStatistics& s) {
+double shape_statistic(const LevelResiduals& r, const SideStatistics& s) {
   const Index bands = r.by_band.cols();
   const VectorXd contrast = s.contrast.head(bands);
   const MatrixXd products = r.band_products - contrast * contrast.transpose();
@@ -159,7 +159,7 @@ double shape_statistic(const Residuals& r, const SideStatistics& s) {
   return t.dot(correlation.llt().solve(t));
 }
 
-SideStatistics statistics_of(const Residuals& r, const VectorXd& side) {
+SideStatistics statistics_of(const LevelResiduals& r, const VectorXd& side) {
   SideStatistics s;
   s.contrast = r.by_window.transpose() * side;
   s.variance = moderated(r, (r.window_squares - s.contrast.cwiseAbs2()) / r.freedom);
@@ -202,7 +202,7 @@ void judge(LabelTest& test, const std::vector<double>& window, const std::vector
       std::sqrt(sorted[static_cast<std::size_t>((1 - kTestLevel) * static_cast<double>(sorted.size()))]);
 }
 
-void describe(LabelTest& test, const Residuals& r, const SideStatistics& s, double length) {
+void describe(LabelTest& test, const LevelResiduals& r, const SideStatistics& s, double length) {
   test.windows = r.windows;
   double strongest = -1;
   for (std::size_t w = 0; w < test.windows.size(); ++w) {
@@ -240,7 +240,7 @@ double separable_part(const LabelledLevels& data) {
 
 LabelTest label_test(const LabelledLevels& data) {
   const MatrixXd basis = null_basis(data);
-  const Residuals residuals = residuals_of(data, basis);
+  const LevelResiduals residuals = residuals_of(data, basis);
   const MatrixXd sides = off(basis, exchanged_sides(data));
   LabelTest test;
   std::vector<double> window, shape;

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "analysis/compare/narrow_bands.hpp"
-#include "analysis/compare/spectral_lines.hpp"
 
 namespace tacto::analysis {
 

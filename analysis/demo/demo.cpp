@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <complex>
 #include <filesystem>
 #include <numbers>
 
-#include "analysis/demo/replay_error.hpp"
 #include "analysis/page/html.hpp"
 #include "capture/record/record.hpp"
+#include "data-schema/base/decibels.hpp"
+#include "data-schema/base/quantity.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/spectrogram/spectrogram.hpp"
 #include "data-schema/texture/texture.hpp"
@@ -21,6 +24,7 @@
 #include "firmware-host/sim/bench/actuated_tray.hpp"
 #include "firmware-host/sim/physics/paper_surfaces.hpp"
 #include "playback/render/render.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
 #include "spatial/picture/line_plot.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
 #include "spatial/spectrogram/spectrogram.hpp"
@@ -31,7 +35,146 @@ namespace tacto::analysis {
 namespace {
 
 namespace fs = std::filesystem;
+using schema::Dimension;
+using schema::for_people;
 using schema::Result;
+
+using Spectrum = std::vector<std::complex<double>>;
+
+// Shifts and compares two signals through one planned transform.
+class ReplayComparison {
+ public:
+  ReplayComparison(const schema::TimeSignal& came, const schema::TimeSignal& target,
+                   const spatial::Band& band, double settle_s)
+      : rate_hz_(came.sample_rate_hz),
+        settle_(static_cast<std::size_t>(settle_s * rate_hz_)),
+        length_(came.values.size()),
+        fft_(spatial::fast_length(2 * length_)),
+        came_(in_band(came.values, band)),
+        target_(back(in_band(target.values, band))) {}
+
+  double error_rms(double delay_s) {
+    Spectrum shifted = came_;
+    const double step = 2 * std::numbers::pi * rate_hz_ / static_cast<double>(fft_.length());
+    for (std::size_t k = 0; k < shifted.size(); ++k)
+      shifted[k] *= std::polar(1.0, step * static_cast<double>(k) * delay_s);
+    const std::vector<double> advanced = back(shifted);
+    double sum = 0;
+    for (std::size_t i = settle_; i < length_ - settle_; ++i) sum += std::pow(advanced[i] - target_[i], 2);
+    return root_mean(sum);
+  }
+
+  double target_rms() const {
+    double sum = 0;
+    for (std::size_t i = settle_; i < length_ - settle_; ++i) sum += target_[i] * target_[i];
+    return root_mean(sum);
+  }
+
+ private:
+  double root_mean(double sum) const { return std::sqrt(sum / static_cast<double>(length_ - 2 * settle_)); }
+
+  Spectrum in_band(std::vector<double> values, const spatial::Band& band) {
+    values.resize(fft_.length());
+    Spectrum spectrum(fft_.bins());
+    fft_.forward(values, spectrum);
+    for (std::size_t k = 0; k < spectrum.size(); ++k)
+      if (!band.contains(static_cast<double>(k) * rate_hz_ / static_cast<double>(fft_.length())))
+        spectrum[k] = 0;
+    return spectrum;
+  }
+
+  std::vector<double> back(const Spectrum& spectrum) {
+    std::vector<double> values(fft_.length());
+    fft_.inverse(spectrum, values);
+    return values;
+  }
+
+  double rate_hz_;
+  std::size_t settle_, length_;
+  spatial::RealFft fft_;
+  Spectrum came_;
+  std::vector<double> target_;
+};
+
+// Coarse steps find the minimum's surroundings, golden section the minimum: the error has one minimum within
+// half a period of 500 Hz.
+constexpr double kStepS = 2.5e-4;
+constexpr double kResolutionS = 1e-7;
+
+double coarse_delay(ReplayComparison& comparison, double max_delay_s) {
+  double best = 0, smallest = comparison.error_rms(0);
+  for (double delay = -max_delay_s; delay <= max_delay_s; delay += kStepS) {
+    const double error = comparison.error_rms(delay);
+    if (error < smallest) best = delay, smallest = error;
+  }
+  return best;
+}
+
+double best_delay(ReplayComparison& comparison, double max_delay_s) {
+  constexpr double kGolden = 1 / std::numbers::phi;
+  const double start = coarse_delay(comparison, max_delay_s);
+  double low = start - kStepS, high = start + kStepS;
+  while (high - low > kResolutionS) {
+    const double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
+    const bool bottom_is_left = comparison.error_rms(left) < comparison.error_rms(right);
+    (bottom_is_left ? high : low) = bottom_is_left ? right : left;
+  }
+  return (low + high) / 2;
+}
+
+std::string replay_row_error(const DemoSurface& s) {
+  return fmt::format("{:.1f} dB ({})", s.error_db, for_people(s.error_rms_m, Dimension::length));
+}
+
+std::string figures(const std::vector<DemoSurface>& surfaces) {
+  using S = DemoSurface;
+  return html_table(
+      surfaces,
+      {{"surface", &S::surface},
+       {"recorded at", [](const S& s) { return for_people(s.record_speed_mps, Dimension::speed); }},
+       {"force, RMS", [](const S& s) { return for_people(s.force_rms_n, Dimension::force); }},
+       {"strongest line",
+        [](const S& s) { return for_people(s.peak_frequency_per_m, Dimension::spatial_frequency); }},
+       {"replayed at", [](const S& s) { return for_people(s.replay_speed_mps, Dimension::speed); }},
+       {"gain", [](const S& s) { return for_people(s.gain_m_per_n, Dimension::compliance); }},
+       {"target, RMS", [](const S& s) { return for_people(s.target_rms_m, Dimension::length); }},
+       {"drive, peak", [](const S& s) { return for_people(s.drive_peak_v, Dimension::voltage); }},
+       {"error, 15-500 Hz", replay_row_error}});
+}
+
+// The answer is the largest error of all surfaces.
+std::string demo_answer(const std::vector<DemoSurface>& surfaces) {
+  const auto worst = std::ranges::max_element(surfaces, {}, &DemoSurface::error_db);
+  if (worst == surfaces.end()) return "";
+  return answer(fmt::format(
+      "Played back, the tray follows its target to {:.1f} dB or better (15-500 Hz); the worst is surface {}.",
+      worst->error_db, worst->surface));
+}
+
+std::string section(const DemoSurface& s) {
+  return fmt::format(
+      "<h2>Surface {}: {}</h2>\n<p>The strongest cell of the spectrogram is at {} and {}.</p>\n{}<p>Replayed "
+      "along a path that turns round, at {} on average: the tray's displacement against its target. The "
+      "error over 15-500 Hz is {}, after the delay of {} is removed.</p>\n{}<p class=\"note\">simulated: "
+      "{}</p>\n",
+      escaped(s.surface), escaped(s.description), for_people(s.peak_position_m, Dimension::length),
+      for_people(s.peak_frequency_per_m, Dimension::spatial_frequency),
+      inline_svg(s.spectrogram_svg, fmt::format("Spatial spectrogram of surface {}, simulated", s.surface)),
+      for_people(s.replay_speed_mps, Dimension::speed), replay_row_error(s),
+      for_people(s.delay_s, Dimension::time),
+      inline_svg(s.replay_svg,
+                 fmt::format("Target and displacement of the tray on surface {}, simulated", s.surface)),
+      escaped(s.simulated));
+}
+
+constexpr std::string_view kIntroduction =
+    "<p>Each of the five surfaces of Wiertlewski, Lozada and Hayward (2011) was stroked by a simulated "
+    "finger on the simulated transducer and recorded; the recording was turned into force against position "
+    "(piecewise cubic Hermite, 1 µm grid, 15-500 Hz, divided by the sensor's response); that texture was "
+    "played back along another path at another speed: force times a gain of 1 mm/N (less where the drive "
+    "would exceed the transducer's 5 V), through the inverse of the modelled actuator, to the drive in "
+    "volts. The emulated transducer, integrated from its equations of motion, independently of that inverse, "
+    "then moved its tray.</p>\n";
 
 constexpr const char* kNotes = "made by tactograph demo";
 // The recording has the paper's speed; the replay is slower and reverses its direction.
@@ -227,6 +370,29 @@ Result<void> write_page(const DemoSummary& summary) {
 }
 
 }  // namespace
+
+ReplayError replay_error(const schema::TimeSignal& came, const schema::TimeSignal& target,
+                         const spatial::Band& band, double settle_s, double max_delay_s) {
+  assert(came.values.size() == target.values.size() && came.duration_s() > 2 * settle_s);
+  ReplayComparison comparison(came, target, band, settle_s);
+  ReplayError found;
+  found.delay_s =
+      std::round(best_delay(comparison, max_delay_s) / kResolutionS) * kResolutionS + 0.0;  // no -0
+  found.error_rms = comparison.error_rms(found.delay_s);
+  found.target_rms = comparison.target_rms();
+  found.error_db = schema::amplitude_db(found.error_rms / found.target_rms);
+  return found;
+}
+
+std::string demo_page(const std::vector<DemoSurface>& surfaces, const std::string& simulated) {
+  std::string body = fmt::format(
+      "<h1>tactograph: five surfaces, recorded and played back</h1>\n<p "
+      "class=\"simulated\"><strong>Simulated</strong> {}: nothing "
+      "on this page was measured on hardware or on a finger.</p>\n{}{}{}",
+      escaped(simulated), demo_answer(surfaces), figures(surfaces), kIntroduction);
+  for (const DemoSurface& surface : surfaces) body += section(surface);
+  return html_document("tactograph demo (simulated)", body);
+}
 
 Result<DemoSummary> run_demo(const std::string& folder, const std::function<void(double)>& progress) {
   const auto transducer = schema::read_transducer("wiertlewski2011");

@@ -239,7 +239,7 @@ schema::Result<Design> design_scene(const schema::Scene& scene, const std::strin
       JudgedLayer judged;
       if (const auto found = of_patch.find(i); found != of_patch.end()) judged = found->second;
       judged.patch = scene.patches[i].name;
-      judged.type = type_of(layer);
+      judged.type = is_added(layer) ? "adaptive damper" : std::string(type_of(layer));
       judged.index = j;
       const playback::ActingLoad own = playback::load_of(layer);
       judged.own = {own.stiffness_n_per_m, own.most_damping_n_s_per_m};

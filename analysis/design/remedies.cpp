@@ -8,6 +8,7 @@
 #include "analysis/design/design.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/report/value_text.hpp"
+#include "playback/prepare/scene/stable_scene.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -81,12 +82,26 @@ Remedy raised_rate(const JudgedLayer& layer, const DesignRequest& request) {
           std::nullopt};
 }
 
+// The damper that `adaptive` of all layers there would add; it is computed for nothing held, or for the hand.
+Remedy adaptive_viscosity(const JudgedLayer& layer, const DesignRequest& request) {
+  const char* const name = "adaptive viscosity";
+  const auto& [stiffness, damping] = layer.total;
+  const auto added = playback::added_damping({stiffness, damping, damping, {}}, request.device,
+                                             request.rate_hz, request.hand);
+  if (!added) return {name, "none", "none suffices: " + added.error().what, std::nullopt};
+  const VirtualLoad with{stiffness, damping + *added};
+  if (!layer.loop.carries(request.judged, with)) return {name, "none", "none suffices", std::nullopt};
+  return {name, "none", "adds " + cli::cell_text("_n_s_per_m", *added),
+          layer.loop.limit(request.judged, with.damping_n_s_per_m)};
+}
+
 }  // namespace
 
 std::vector<Remedy> remedies_for(const JudgedLayer& layer, const DesignRequest& request) {
   std::vector<Remedy> remedies = {raised_rate(layer, request)};
   for (const LoopNumber& number : loop_numbers(layer.loop, request.judged))
     remedies.push_back(changed_alone(number, {layer.loop, layer.total}, request.judged));
+  remedies.push_back(adaptive_viscosity(layer, request));
   return remedies;
 }
 

@@ -16,9 +16,9 @@ double Extreme::margin_db() const {
 
 std::vector<Extreme> all_extremes(bool all, const ExtremesProgress& progress) {
   const std::function<std::vector<Extreme>()> rooms[] = {
-      capture_extremes,  filter_extremes,          [all] { return space_extremes(all); },
-      spectrum_extremes, formant_extremes,         inverse_extremes,
-      kernel_extremes,   identify_compare_extremes};
+      capture_extremes,  filter_extremes,  [all] { return space_extremes(all); },
+      spectrum_extremes, formant_extremes, inverse_extremes,
+      kernel_extremes,   scene_extremes,   identify_compare_extremes};
   std::vector<Extreme> rows;
   for (std::size_t i = 0; i < std::size(rooms); ++i) {
     std::ranges::move(rooms[i](), std::back_inserter(rows));

@@ -37,6 +37,8 @@ std::vector<Extreme> inverse_extremes();
 /// The tick kernel: rates, counts, speeds, gains, silence. One row is the duration of a tick, the only row
 /// that depends on the machine.
 std::vector<Extreme> kernel_extremes();
+/// Force scenes: limits of stability, forces of the kernel.
+std::vector<Extreme> scene_extremes();
 
 /// spatial's spectrogram: frequencies, offsets.
 std::vector<Extreme> spectrum_extremes();

@@ -5,23 +5,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
 
 #include "analysis/compare/along_path.hpp"
 #include "analysis/compare/band_sums.hpp"
 #include "analysis/compare/played_texture.hpp"
-#include "analysis/fidelity/emulated_pass.hpp"
-#include "analysis/fidelity/emulated_trays.hpp"
 #include "analysis/fidelity/scratch_folder.hpp"
-#include "analysis/fidelity/tray_displacement.hpp"
 #include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "data-schema/transducer/transducer.hpp"
+#include "data-schema/version.hpp"
+#include "firmware-host/sim/bench/actuated_tray.hpp"
+#include "firmware-host/sim/bench/lvdt.hpp"
+#include "firmware-host/sim/device/sim_parameters.hpp"
+#include "firmware-host/sim/physics/tray_mechanics.hpp"
+#include "firmware-host/sim/physics/tray_physics.hpp"
 #include "playback/model/finger_path.hpp"
+#include "playback/model/spatial_content.hpp"
+#include "playback/render/reference/exact_target.hpp"
+#include "playback/session/session_columns.hpp"
+#include "spatial/dsp/filter/band.hpp"
 #include "spatial/features/band_kept.hpp"
 #include "spatial/texture/valid_band.hpp"
 
 namespace tacto::analysis {
 namespace {
 
+using firmware_host::TrayPhysics;
+using playback::FingerPath;
 using schema::ErrorKind;
 using schema::Result;
 using schema::Texture;
@@ -41,6 +55,133 @@ struct Stretch {
   std::size_t first = 0, count = 0;
   double rate_hz = 0;
 };
+
+constexpr double kTrayRateHz = 20e3;
+constexpr firmware_host::LvdtParameters kTraySensor{0, 5e3, 5e-9};
+
+// Samples per tick: at least 20 kHz, so that the images of the held drive do not alias.
+std::size_t samples_a_tick(double tick_rate_hz) {
+  return static_cast<std::size_t>(std::ceil(kTrayRateHz / tick_rate_hz));
+}
+
+struct EmulatedPass {
+  playback::SessionColumns columns;  // the drive as it was sent, tick by tick
+  playback::PlayOutcome outcome;
+  // Exact position of the finger at each tick; the encoder's resolution is one count.
+  std::vector<double> position_m;
+};
+
+constexpr double kBesideS = 0.25;  // before the texture, for the drive's initial ramp, and behind it
+
+FingerPath straight_path(const schema::Texture& texture, double at_m, double speed_mps) {
+  const double way_m = texture.signal.length_m() + 2 * kBesideS * speed_mps;
+  const double from_m = at_m - kBesideS * speed_mps;
+  return {{0, way_m / speed_mps}, {from_m, from_m + way_m}};
+}
+
+// Tick i is (i + 1) periods after arming. The emulated finger starts at arming.
+std::vector<double> true_positions(const FingerPath& path, double rate_hz, std::size_t ticks) {
+  auto positions = playback::positions_along(path, rate_hz, ticks + 1);
+  positions.erase(positions.begin());
+  return positions;
+}
+
+Result<void> check_counts(const EmulatedPass& pass) {
+  const double step_m = pass.columns.header.metres_per_count;
+  for (std::size_t i = 0; i < pass.position_m.size(); ++i)
+    if (std::abs(pass.columns.position_m[i] - pass.position_m[i]) > 1.01 * step_m)
+      return schema::fail(ErrorKind::internal, "the emulated finger was not where its path is",
+                          fmt::format("tick {}", pass.columns.tick[i]));
+  return {};
+}
+
+Result<void> check_played(const EmulatedPass& pass, const std::string& device) {
+  if (pass.outcome.status.state == playback::PlayerState::fault)
+    return schema::fail(ErrorKind::device, "playing ended in a fault: " + pass.outcome.status.fault, device);
+  if (pass.columns.lost_at)
+    return schema::fail(ErrorKind::device, fmt::format("{} ticks were lost", pass.columns.lost), device);
+  return check_counts(pass);
+}
+
+// Plays as `tactograph play` does: texture, upload over the wire, the firmware's kernel with the counts of
+// the emulated encoder, session. The finger moves at `speed_mps` from 0.25 s before the texture to 0.25 s
+// behind it. `progress` receives the played fraction. `options` contains program, device and preparation;
+// path, time and session are set here. Errors: those of play_once; usage: stopped; internal: the session's
+// counts do not match the path.
+Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::PlayOptions options,
+                                   double speed_mps, const std::function<bool()>& stop_asked,
+                                   const std::function<void(double)>& progress) {
+  const auto scratch = ScratchFolder::make();
+  TACTO_TRY(scratch);
+  const FingerPath path = straight_path(texture, options.program.at_m.value_or(0), speed_mps);
+  options.finger_path = path;
+  options.session = *scratch / "pass.session";
+  options.program.any_displacement = options.device_uri.starts_with("sim:");
+  auto outcome = playback::play_once(options, stop_asked, progress);
+  TACTO_TRY(outcome);
+  if (stop_asked()) return schema::fail(ErrorKind::usage, "stopped before the end", "fidelity");
+  auto columns = playback::read_session_columns(options.session);
+  TACTO_TRY(columns);
+  EmulatedPass pass{std::move(*columns), std::move(*outcome), {}};
+  // The final ramp of the drive is longer than the path, at the end of which the finger rests.
+  const auto along = static_cast<std::size_t>(path.duration_s() * pass.columns.header.rate_hz);
+  pass.position_m =
+      true_positions(path, pass.columns.header.rate_hz, std::min(along, pass.columns.tick.size()));
+  TACTO_TRY(check_played(pass, options.device_uri));
+  return pass;
+}
+
+// Displacement of the tray, m, for the drive of the pass, integrated from its equations of motion
+// (firmware_host::ActuatedTray); samples_a_tick() samples for each of the pass's positions.
+std::vector<double> displacement_at_finger_m(const EmulatedPass& pass, const schema::Transducer& real,
+                                             const firmware_host::TrayPhysics& physics) {
+  const double rate_hz = pass.columns.header.rate_hz;
+  const std::size_t fine = samples_a_tick(rate_hz);
+  firmware_host::ActuatedTray tray(real, rate_hz * static_cast<double>(fine), physics);
+  std::vector<double> displacement_m;
+  for (std::size_t tick = 0; tick < pass.position_m.size(); ++tick)
+    for (std::size_t i = 0; i < fine; ++i) displacement_m.push_back(tray.tick(pass.columns.drive_v[tick]));
+  return displacement_m;
+}
+
+// The displacement as a sensor measures it: the emulated LVDT (first-order low-pass, noise, 16 bits) over
+// twice the displacement limit, 5 kHz, 5 nm RMS of noise. We chose these values; they are usual for sensors
+// of such strokes.
+std::vector<double> through_sensor(const std::vector<double>& displacement_m, double rate_hz,
+                                   const schema::Transducer& real) {
+  firmware_host::LvdtParameters parameters = kTraySensor;
+  parameters.range_m = 4 * real.displacement_limit_m;
+  firmware_host::Lvdt sensor(parameters, 0, 0, rate_hz, true, firmware_host::Random(1, 1));
+  std::vector<double> seen_m;
+  for (const double place_m : displacement_m)
+    seen_m.push_back(sensor.step(place_m) * sensor.converter().scale());
+  return seen_m;
+}
+
+// gain x force at the finger's exact positions, by the exact reference, in the band.
+std::vector<double> target_displacement_m(const EmulatedPass& pass, const schema::Texture& texture,
+                                          double at_m, double gain_m_per_n, const spatial::Band& band) {
+  const double rate_hz = pass.columns.header.rate_hz;
+  const auto fine = static_cast<double>(samples_a_tick(rate_hz));
+  const playback::FingerPath path = playback::finger_path_of({rate_hz, 0, pass.position_m});
+  const double finest_hz =
+      playback::highest_spatial_frequency(texture.signal) * playback::greatest_speed_mps(path);
+  const auto grid = playback::reading_grid(path.duration_s(), rate_hz * fine, band, finest_hz);
+  const playback::TextureLookup lookup(texture.signal, at_m);
+  return playback::signal_of(
+      playback::exact_target(lookup, path, grid, band, gain_m_per_n, playback::kReferenceOnsetS));
+}
+
+// A displacement in that band, filtered as the reference is (playback::keep_band), so that the parts outside
+// of the band are neither target nor error.
+std::vector<double> in_band(const std::vector<double>& displacement_m, double rate_hz,
+                            const spatial::Band& band) {
+  const double duration_s = static_cast<double>(displacement_m.size()) / rate_hz;
+  const auto grid = playback::reading_grid(duration_s, rate_hz, band, 0);
+  auto spectrum = playback::spectrum_of(displacement_m, rate_hz, grid.period);
+  playback::keep_band(spectrum, band);
+  return playback::signal_of(spectrum);
+}
 
 Result<Stretch> judged_stretch(const EmulatedPass& pass, const Texture& texture, double at_m,
                                double speed_mps) {
@@ -169,6 +310,61 @@ tl::unexpected<schema::Error> fidelity_stopped() {
 
 double share_done(std::size_t done, std::size_t all) {
   return static_cast<double>(done) / static_cast<double>(all);
+}
+
+struct Tray {
+  std::string name;
+  firmware_host::TrayPhysics physics;
+};
+
+struct Trays {
+  schema::Transducer transducer;  // of the emulated device
+  std::string simulated;          // origin of the simulation
+  std::vector<Tray> trays;
+};
+
+constexpr double kPaperHysteresis = 0.16;
+
+bool names_physics(const TrayPhysics& physics) {
+  return physics.second_mode || physics.finger_load || physics.hysteresis > 0 ||
+         physics.reconstruction_cutoff_hz;
+}
+
+firmware_host::SecondMode usual_mode(const schema::Transducer& transducer) {
+  firmware_host::SecondMode mode;
+  mode.frequency_hz =
+      std::max(mode.frequency_hz, 1.2 * firmware_host::least_second_mode_hz(transducer, mode));
+  return mode;
+}
+
+std::vector<Tray> usual_trays(const schema::Transducer& transducer) {
+  TrayPhysics hysteresis, mode, load, all;
+  hysteresis.hysteresis = all.hysteresis = kPaperHysteresis;
+  mode.second_mode = all.second_mode = usual_mode(transducer);
+  load.finger_load.emplace();
+  all.finger_load.emplace();
+  return {{"ideal", {}},
+          {fmt::format("hysteresis {:g} %", 100 * kPaperHysteresis), hysteresis},
+          {fmt::format("mode at {:.0f} Hz", mode.second_mode->frequency_hz), mode},
+          {"finger's load", load},
+          {"all three", all}};
+}
+
+// The trays of a `sim:` URI. If it sets hysteresis, a second mode, a finger's load or a reconstruction
+// filter: one tray with exactly these. Otherwise: ideal; hysteresis of 16 % (Wiertlewski 2011, Figure 7); a
+// second mode at 800 Hz (section III-B), or a fifth above the lowest that the transducer can have; a
+// finger's load; all three. Errors: those of parse_sim_parameters and read_transducer.
+schema::Result<Trays> trays_of(const std::string& uri) {
+  constexpr std::string_view kScheme = "sim:";
+  const auto parameters = firmware_host::parse_sim_parameters(std::string_view(uri).substr(kScheme.size()));
+  TACTO_TRY(parameters);
+  auto transducer = schema::read_transducer(parameters->transducer);
+  TACTO_TRY(transducer);
+  Trays trays{std::move(*transducer), fmt::format("by the emulated device of {}", kCreator), {}};
+  const TrayPhysics named = parameters->tray();
+  trays.trays =
+      names_physics(named) ? std::vector<Tray>{{"defined by " + uri, named}} : usual_trays(trays.transducer);
+  return trays;
 }
 
 // Computes the target once, and the displacement for each tray.

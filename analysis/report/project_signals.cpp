@@ -188,6 +188,23 @@ Result<void> add_recording(const std::string& path, ProjectFile& file, const Pro
   return {};
 }
 
+namespace {
+
+void add_transform_figures(const schema::TextureTransform& transform, ProjectFile& file) {
+  std::string names, steps;
+  for (const schema::TransformSource& source : transform.sources)
+    names += (names.empty() ? "" : ", ") + source.texture;
+  for (const schema::TransformStep& step : transform.steps) {
+    steps += fmt::format("{}{}", steps.empty() ? "" : ", ", schema::operation_name(step.operation));
+    if (step.factor) steps += fmt::format(" {:.4g}x", *step.factor);
+    if (step.joint_error) steps += fmt::format(" (error of the joint {:.2g})", *step.joint_error);
+  }
+  file.origin = names;
+  file.figures.push_back({"operations", steps});
+}
+
+}  // namespace
+
 Result<void> add_texture_file(const std::string& path, ProjectFile& file) {
   const auto texture = schema::read_texture(path);
   TACTO_TRY(texture);
@@ -200,6 +217,7 @@ Result<void> add_texture_file(const std::string& path, ProjectFile& file) {
                   {"valid band", band_words(*texture)}};
   if (texture->source.mean_speed_mps > 0)
     file.figures.push_back({"mean speed", for_people(texture->source.mean_speed_mps, Dimension::speed)});
+  if (texture->transform) add_transform_figures(*texture->transform, file);
   if (texture->average)
     file.figures.push_back({"mean of", fmt::format("{} strokes", texture->average->strokes.size())});
   return draw_texture(*texture, name_of_file(path), file);

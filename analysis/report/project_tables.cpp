@@ -10,6 +10,7 @@
 #include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/calibration/calibration.hpp"
+#include "data-schema/corpus/corpus_plan.hpp"
 #include "data-schema/height/height_map.hpp"
 #include "data-schema/results/trade_table.hpp"
 #include "data-schema/session/session_netcdf.hpp"
@@ -155,6 +156,16 @@ Result<void> add_trade_table(const std::string& path, ProjectFile& file) {
   for (const schema::MeasuredChoice& choice : table->choices)
     file.figures.push_back(
         {choice.stage + ", " + choice.name, fmt::format("{:.3g} ns per {}", choice.cost_ns, choice.per)});
+  return {};
+}
+
+Result<void> add_corpus_plan(const std::string& path, ProjectFile& file) {
+  const auto plan = schema::read_corpus_plan(path);
+  TACTO_TRY(plan);
+  file.date = plan->created;
+  file.figures = {{"recordings", fmt::format("{}", plan->recordings.size())}};
+  for (const schema::CorpusStep& step : plan->steps)
+    file.figures.push_back({step.step, step.options.empty() ? "no options" : step.options});
   return {};
 }
 

@@ -1,25 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/record/record.hpp"
-
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
-#include "capture/cli/command_lines.hpp"
-#include "capture/cli/live_line.hpp"
 #include "capture/cli/verbs.hpp"
+#include "capture/record/live_view.hpp"
+#include "capture/record/record.hpp"
 #include "capture/record/take_name.hpp"
+#include "capture/table/text_encoding.hpp"
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/command/stop_signals.hpp"
 #include "data-schema/command/terminal_keys.hpp"
+#include "data-schema/recording/recording.hpp"
 #include "data-schema/report/pace.hpp"
 #include "data-schema/report/progress.hpp"
 #include "data-schema/report/report.hpp"
+#include "data-schema/report/report_text.hpp"
 #include "data-schema/report/terminal.hpp"
 #include "data-schema/report/warnings.hpp"
 #include "firmware-host/device_to_record.hpp"
@@ -151,6 +158,164 @@ Result<std::string> chosen_name(const RecordOptions& options) {
 std::size_t terminal_columns() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1U : 79;
+}
+
+// The commands by which another program steers a recording: lines on stdin, answers as lines of JSON on
+// stdout. Commands: "mark LABEL", "stop". The end of the input is "stop", too, so that a recording ends with
+// the program that steers it. A line that is no command is answered by an event "error" and changes nothing.
+// Answers never wait for their reader: if the pipe is full, they are dropped. One thread.
+class CommandLines {
+ public:
+  // Reads what has come, without waiting. Returns true from the command "stop" on, but not at the first
+  // call.
+  bool stopped();
+  // The labels of the marks since the last call.
+  std::vector<std::string> take_labels();
+  // Answers a mark. `time_s`: since the first frame, lost frames included.
+  static void answer(const schema::Mark& mark, double time_s);
+
+ private:
+  void obey(const std::string& line);
+  std::string input_;
+  std::vector<std::string> labels_;
+  bool begun_ = false, stopped_ = false, too_long_ = false;  // the rest of a line is passed over
+};
+
+constexpr std::size_t kLongestLine = 1000;  // a pipe takes lines of up to 4096 bytes whole
+
+bool ready(int file, short events) {
+  pollfd waiting{file, events, 0};
+  return poll(&waiting, 1, 0) == 1;
+}
+
+void print(const cli::Report& event) {
+  const std::string line = cli::json_line(event);
+  if (ready(STDOUT_FILENO, POLLOUT)) std::ignore = ::write(STDOUT_FILENO, line.data(), line.size());
+}
+
+void refuse(const char* why) {
+  print(cli::Report().add("event", "error").add("what", why).add("remedy", "write 'mark LABEL' or 'stop'"));
+}
+
+void CommandLines::obey(const std::string& line) {
+  if (line == "stop") {
+    stopped_ = true;
+  } else if (!line.starts_with("mark ") || line.size() == 5) {
+    refuse("this line is no command");
+  } else if (!is_utf8(line)) {
+    refuse("the label is not UTF-8");
+  } else {
+    labels_.push_back(line.substr(5));
+  }
+}
+
+bool CommandLines::stopped() {
+  if (!std::exchange(begun_, true)) {  // also a program that stops at once gets a recording, of one block
+    print(cli::Report().add("event", "recording"));
+    return false;
+  }
+  char bytes[4096];
+  while (!stopped_ && ready(STDIN_FILENO, POLLIN)) {
+    const auto got = ::read(STDIN_FILENO, bytes, sizeof bytes);
+    if (got <= 0) return stopped_ = true;
+    input_.append(bytes, static_cast<std::size_t>(got));
+    for (auto end = input_.find('\n'); end != input_.npos && !stopped_; end = input_.find('\n')) {
+      const std::string line = input_.substr(0, end);
+      input_.erase(0, end + 1);
+      if (std::exchange(too_long_, false)) continue;
+      obey(line.ends_with('\r') ? line.substr(0, line.size() - 1) : line);
+    }
+    if (input_.size() <= kLongestLine) continue;
+    if (!std::exchange(too_long_, true)) refuse("this line is longer than 1000 bytes");
+    input_.clear();
+  }
+  return stopped_;
+}
+
+std::vector<std::string> CommandLines::take_labels() {
+  return std::exchange(labels_, {});
+}
+
+void CommandLines::answer(const schema::Mark& mark, double time_s) {
+  print(cli::Report()
+            .add("event", "mark")
+            .add("frame", mark.frame)
+            .add("time_s", time_s)
+            .add("label", mark.label));
+}
+
+constexpr int kBar = 8;
+
+// The largest value of a channel as a fraction of its converter's range.
+double part_of_range(const schema::Channel& channel, const ChannelLevel& level) {
+  const double up = channel.range_max && *channel.range_max > 0 ? level.largest / *channel.range_max : 0;
+  const double down = channel.range_min && *channel.range_min < 0 ? level.smallest / *channel.range_min : 0;
+  return std::clamp(std::max(up, down), 0.0, 1.0);
+}
+
+bool has_range(const schema::Channel& channel) {
+  return channel.range_max || channel.range_min;
+}
+
+std::string bars(const LiveView& view, const schema::RecordingHeader& header) {
+  std::string text;
+  for (std::size_t i = 0; i < view.levels.size(); ++i) {
+    if (!has_range(header.channels[i])) continue;
+    const auto full =
+        static_cast<std::size_t>(std::lround(kBar * part_of_range(header.channels[i], view.levels[i])));
+    text += fmt::format("{} [{}{}]  ", header.channels[i].name, std::string(full, '#'),
+                        std::string(kBar - full, '-'));
+  }
+  return text;
+}
+
+// The same as numbers, for lines too short for bars.
+std::string peaks(const LiveView& view, const schema::RecordingHeader& header) {
+  std::string text;
+  for (std::size_t i = 0; i < view.levels.size(); ++i)
+    if (has_range(header.channels[i]))
+      text += fmt::format("{}{:.0f}", text.empty() ? "peaks " : "/",
+                          100 * part_of_range(header.channels[i], view.levels[i]));
+  return text.empty() ? text : text + " %  ";
+}
+
+// Clipping is shown near the beginning of the line, because it cannot be corrected afterwards.
+std::string clipping(const LiveView& view, const schema::RecordingHeader& header) {
+  std::string text;
+  for (std::size_t i = 0; i < view.levels.size(); ++i)
+    if (view.levels[i].clipped) text += (text.empty() ? "CLIP " : ", ") + header.channels[i].name;
+  return text.empty() ? text : text + "  ";
+}
+
+std::string judged(double value, const schema::TargetBand& band, const char* more, const char* less) {
+  return band.holds(value) ? "ok" : value < band.middle ? more : less;
+}
+
+std::string finger(const LiveView& view) {
+  std::string text;
+  if (view.speed_mps)
+    text += fmt::format("{:3.0f} mm/s {}  ", *view.speed_mps * 1e3,
+                        judged(*view.speed_mps, schema::kTargetSpeed_mps, "FASTER", "SLOWER"));
+  if (view.normal_n)
+    text += fmt::format("load {:.2f} N {}  ", *view.normal_n,
+                        judged(*view.normal_n, schema::kTargetLoad_n, "MORE", "LESS"));
+  return text;
+}
+
+// The state of a running recording as one line of a terminal: "12.3 s  CLIP net_force   48 mm/s ok  load 0.90
+// N LESS  3 strokes  0 lost  normal_force [###-----] net_force [########]  12.4 GB left": the clipped
+// channels; speed and load compared with their target bands, with the correction; levels as fractions of the
+// converter's range ("peaks 37/100 %" if there is no room for bars: 80 columns). Without colours, for every
+// terminal; at most one line of `columns` characters.
+std::string live_line(const LiveView& view, const schema::RecordingHeader& header, std::size_t columns) {
+  std::string line = fmt::format("{:.1f} s  ", view.time_s);
+  line += clipping(view, header);
+  line += finger(view);
+  line += fmt::format("{} strokes  {} lost  ", view.strokes, view.lost_frames);
+  const std::string levels = bars(view, header);
+  line += line.size() + levels.size() <= columns ? levels : peaks(view, header);
+  line += fmt::format("{:.1f} GB left  ", static_cast<double>(view.disk_left_bytes) / 1e9);
+  return line.substr(0, columns);
 }
 
 // The user interface of a recording: signals and keys are the input, a line of figures is the output.

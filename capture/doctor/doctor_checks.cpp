@@ -7,14 +7,12 @@
 #include <vector>
 
 #include "capture/doctor/doctor.hpp"
-#include "capture/doctor/realtime_limits.hpp"
-#include "capture/doctor/udev_rule.hpp"
-#include "capture/record/disk_speed.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/files/leftover_files.hpp"
 #include "data-schema/recording/live_recording.hpp"
+#include "firmware-host/core/wire/frame.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -134,6 +132,18 @@ Check check_permission(const schema::Error& why, const std::string& root) {
           : "join the group plugdev, or log in at the computer itself; then plug the device in again";
   if (is_denied(why)) return {"permission", Health::fails, found, remedy, schema::ErrorKind::not_found};
   return rule.empty() ? judged("permission", found, remedy) : judged("permission", found, {});
+}
+
+Check check_firmware(const firmware_host::Capabilities& said, unsigned device_minor, unsigned host_minor) {
+  std::string found =
+      fmt::format("{}, {:g} Hz, {} channels", said.firmware.empty() ? "no version" : said.firmware,
+                  said.sample_rate_hz, said.channels.size());
+  if (device_minor >= host_minor) return judged("firmware", std::move(found), {});
+  return judged("firmware",
+                fmt::format("{}; older than this program: protocol {}.{}, here {}.{}", found,
+                            wire::kProtocolMajor, device_minor, wire::kProtocolMajor, host_minor),
+                "make the firmware again with ./bootstrap firmware and flash it "
+                "(firmware-host/boards/README.md)");
 }
 
 Check check_round_trip(firmware_host::Device& device, std::size_t questions) {

@@ -2,11 +2,21 @@
 #include "capture/import/height_map_import.hpp"
 
 #include <fmt/format.h>
+#include <png.h>
 
 #include <algorithm>
+#include <bit>
+#include <csetjmp>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <memory>
+#include <new>
+#include <vector>
 
-#include "capture/import/height_png.hpp"
 #include "capture/import/height_profile.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/base/sha256.hpp"
@@ -20,6 +30,125 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::HeightMap;
 using schema::Result;
+
+struct HeightPng {
+  std::size_t columns = 0, rows = 0;
+  int bits = 16;                 // of a sample in the file
+  std::vector<float> of_full{};  // row by row, from the lowest row of the picture: 0 black, 1 white
+};
+
+// libpng reports an error by a jump out of its functions: nothing with a destructor lives in a function that
+// sets a jump.
+class PngReader {
+ public:
+  explicit PngReader(std::FILE* file)
+      : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, fault_, on_error, on_warning)),
+        info_(png_ == nullptr ? nullptr : png_create_info_struct(png_)),
+        file_(file) {
+    if (info_ == nullptr) throw std::bad_alloc();
+  }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+  bool read_header() noexcept {
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's interface
+    png_init_io(png_, file_);
+    png_read_info(png_, info_);
+    return true;
+  }
+  // Samples of 8 bits, or of 16 in this machine's order.
+  bool read_rows(png_bytep* rows) noexcept {
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;  // NOLINT(cert-err52-cpp)
+    if (bits() < 8) png_set_expand_gray_1_2_4_to_8(png_);
+    if (bits() == 16 && std::endian::native == std::endian::little) png_set_swap(png_);
+    png_set_interlace_handling(png_);
+    png_read_update_info(png_, info_);
+    png_read_image(png_, rows);
+    png_read_end(png_, nullptr);
+    return true;
+  }
+  std::size_t columns() const { return png_get_image_width(png_, info_); }
+  std::size_t rows() const { return png_get_image_height(png_, info_); }
+  int bits() const { return png_get_bit_depth(png_, info_); }
+  bool is_grey() const {
+    return png_get_color_type(png_, info_) == PNG_COLOR_TYPE_GRAY &&
+           png_get_valid(png_, info_, PNG_INFO_tRNS) == 0;
+  }
+  const char* fault() const { return fault_; }
+
+ private:
+  static void on_error(png_structp png, png_const_charp message) {
+    std::snprintf(static_cast<char*>(png_get_error_ptr(png)), kLongest, "%s", message);
+    png_longjmp(png, 1);
+  }
+  static void on_warning(png_structp /*png*/, png_const_charp /*message*/) {}
+
+  static constexpr std::size_t kLongest = 100;
+  char fault_[kLongest] = "";
+  png_structp png_;
+  png_infop info_;
+  std::FILE* file_;
+};
+
+Result<void> check_kind(const PngReader& reader, const std::string& file, bool allow_8bit) {
+  if (!reader.is_grey())
+    return fail(ErrorKind::unsuitable, "this PNG has colours or transparency", file,
+                "a height map is a PNG with one channel, greyscale with 16 bits: export it as such");
+  if (reader.bits() < 16 && !allow_8bit)
+    return fail(ErrorKind::unsuitable,
+                fmt::format("this PNG has {} bits: {} levels, which feel like steps", reader.bits(),
+                            1 << reader.bits()),
+                file, "export it with 16 bits, or add --allow-8bit");
+  if (reader.columns() > schema::kMostHeights / reader.rows())
+    return fail(ErrorKind::unsuitable,
+                fmt::format("this PNG has {} x {} samples", reader.columns(), reader.rows()), file,
+                fmt::format("a height map has at most {}; cut or resample it", schema::kMostHeights));
+  return {};
+}
+
+Result<HeightPng> read_with(PngReader& reader, const std::string& file, bool allow_8bit) {
+  const auto broken = [&] {
+    return fail(ErrorKind::malformed, fmt::format("is not a whole PNG: {}", reader.fault()), file,
+                "export it again");
+  };
+  if (!reader.read_header()) return broken();
+  TACTO_TRY(check_kind(reader, file, allow_8bit));
+  HeightPng png{reader.columns(), reader.rows(), reader.bits()};
+  const bool wide = png.bits == 16;
+  const std::size_t row_bytes = png.columns * (wide ? 2 : 1);
+  std::vector<png_byte> bytes(row_bytes * png.rows);
+  std::vector<png_bytep> rows(png.rows);
+  for (std::size_t j = 0; j < png.rows; ++j) rows[j] = bytes.data() + (png.rows - 1 - j) * row_bytes;
+  if (!reader.read_rows(rows.data())) return broken();
+  png.of_full.resize(png.columns * png.rows);
+  for (std::size_t i = 0; i < png.of_full.size(); ++i) {
+    std::uint16_t sample = bytes[wide ? 0 : i];
+    if (wide) std::memcpy(&sample, bytes.data() + 2 * i, 2);
+    png.of_full[i] = static_cast<float>(sample) / (wide ? 65535.0F : 255.0F);
+  }
+  return png;
+}
+
+// Whether the file begins as a PNG does.
+bool is_png(const std::string& file) {
+  char beginning[8] = {};
+  std::ifstream stream(file, std::ios::binary);
+  return schema::is_file(file) && stream.read(beginning, sizeof beginning) &&
+         png_sig_cmp(reinterpret_cast<png_const_bytep>(beginning), 0, sizeof beginning) == 0;
+}
+
+// The stored samples; gamma and colour profiles are not applied. Errors: not_found; malformed, with libpng's
+// message; unsuitable: colour, transparency, more than schema::kMostHeights samples, fewer than 16 bits
+// unless `allow_8bit`.
+Result<HeightPng> read_height_png(const std::string& file, bool allow_8bit) try {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(std::fopen(file.c_str(), "rb"), std::fclose);
+  if (!opened) return fail(ErrorKind::not_found, "cannot be read", file);
+  PngReader reader(opened.get());
+  return read_with(reader, file, allow_8bit);
+} catch (const std::bad_alloc&) {
+  return fail(ErrorKind::malformed, "is too large to be read", file);
+}
 
 Result<HeightMap> map_of_png(const ImportRequest& request) {
   if (!request.pitch_m || !request.full_height_m)

@@ -4,19 +4,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <semaphore>
+#include <span>
+#include <thread>
 #include <utility>
 
-#include "capture/record/disk_writer.hpp"
 #include "capture/record/record_header.hpp"
 #include "capture/record/store_strokes.hpp"
 #include "capture/table/text_encoding.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/files/files.hpp"
+#include "data-schema/recording/live_recording.hpp"
 #include "firmware-host/link/realtime_priority.hpp"
+#include "firmware-host/link/wire_words.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -82,6 +89,127 @@ Result<void> check_room(const RecordRequest& request, const schema::RecordingHea
       request.time_s && longest_s >= 1
           ? fmt::format("record for at most {:.0f} s, or to another disk", longest_s)
           : "record to another disk");
+}
+
+struct FrameBlock {
+  std::vector<std::int32_t> codes;  // the size of a block
+  std::size_t used = 0;             // the codes that are valid
+  firmware_host::StreamEvents events;
+  std::vector<schema::Mark> marks;
+  bool last = false;  // the last block of the recording
+};
+
+// Blocks between the capturing thread and the writing thread: a ring of preallocated blocks with one producer
+// and one consumer thread. With a slow disk all blocks fill and the producer waits; the device then loses
+// frames and reports them.
+class BlockQueue {
+ public:
+  BlockQueue(std::size_t blocks, std::size_t codes) : free_(static_cast<std::ptrdiff_t>(blocks)), filled_(0) {
+    ring_.resize(blocks);
+    for (FrameBlock& block : ring_) block.codes.resize(codes);
+  }
+
+  // Waits for the next free block; followed by filled().
+  FrameBlock& to_fill() {
+    free_.acquire();
+    FrameBlock& block = ring_[next_to_fill_++ % ring_.size()];
+    block.used = 0;
+    block.events = {};
+    block.marks.clear();
+    return block;
+  }
+  void filled() { filled_.release(); }
+
+  // Waits for the next filled block; followed by taken().
+  FrameBlock& to_take() {
+    filled_.acquire();
+    return ring_[next_to_take_++ % ring_.size()];
+  }
+  void taken() { free_.release(); }
+
+ private:
+  std::vector<FrameBlock> ring_;
+  std::size_t next_to_fill_ = 0, next_to_take_ = 0;  // each is used by one thread only
+  std::counting_semaphore<> free_, filled_;
+};
+
+// The thread that writes the blocks of the capturing thread to the disk; gaps and marks are written before
+// the frames of their block. Only the capturing thread calls to_fill(), filled(), end() and failed(); after
+// end() it may use the recording again. After a write error, which is kept, all further blocks are dropped.
+class DiskWriter {
+ public:
+  // `live` must exist as long as this object; `codes` is the size of a block.
+  DiskWriter(schema::LiveRecording& live, std::size_t codes);
+  ~DiskWriter();
+
+  FrameBlock& to_fill() { return queue_.to_fill(); }
+  void filled() { queue_.filled(); }
+  // Waits until all blocks are written. Later calls do nothing; the destructor calls it, too.
+  void end();
+  bool failed() const { return failed_; }
+  // After end(), if failed().
+  const schema::Error& error() const { return error_; }
+
+ private:
+  void run();
+  schema::Result<void> write(const FrameBlock& block);
+
+  schema::LiveRecording& live_;
+  BlockQueue queue_;
+  std::atomic<bool> failed_ = false;
+  schema::Error error_;
+  std::thread thread_;
+};
+
+constexpr std::size_t kMostBlocks = 200;  // four seconds in blocks of 20 ms
+constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+
+std::size_t blocks_of(std::size_t codes) {
+  return std::clamp<std::size_t>(kMostBytes / (codes * sizeof(std::int32_t)), 4, kMostBlocks);
+}
+
+DiskWriter::DiskWriter(schema::LiveRecording& live, std::size_t codes)
+    : live_(live), queue_(blocks_of(codes), codes), thread_([this] { run(); }) {}
+
+DiskWriter::~DiskWriter() {
+  end();
+}
+
+void DiskWriter::end() {
+  if (!thread_.joinable()) return;
+  queue_.to_fill().last = true;
+  queue_.filled();
+  thread_.join();
+}
+
+void DiskWriter::run() {
+  for (bool last = false; !last; queue_.taken()) {
+    const FrameBlock& block = queue_.to_take();
+    last = block.last;
+    if (failed_ || last) continue;
+    if (const auto written = write(block); !written) {
+      error_ = written.error();
+      failed_ = true;
+    }
+  }
+}
+
+schema::Result<void> DiskWriter::write(const FrameBlock& block) {
+  for (const schema::Gap& gap : block.events.gaps)
+    if (const auto added = live_.add(gap); !added) return added;
+  for (const auto& [sequence, device_s, host_s] : block.events.clock_pairs)
+    if (const auto added = live_.add(schema::ClockPair{sequence, device_s, host_s}); !added) return added;
+  for (const firmware_host::DeviceFault& fault : block.events.faults) {
+    const schema::FaultNote note{fault.frame, firmware_host::words_of(fault.code, fault.detail).what};
+    if (const auto added = live_.add(note); !added) return added;
+  }
+  if (const auto written = live_.write(std::span<const std::int32_t>(block.codes).first(block.used));
+      !written)
+    return written;
+  // After the frames: `recover` removes a mark that is beyond the last frame.
+  for (const schema::Mark& mark : block.marks)
+    if (const auto added = live_.add(mark); !added) return added;
+  return {};
 }
 
 // One recording: blocks from the device to the writer, and figures of them for the view.

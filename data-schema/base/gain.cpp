@@ -10,10 +10,10 @@
 namespace tacto::schema {
 
 Result<Gain> parse_gain(std::string_view text) {
-  for (const auto& [suffix, one] : {std::pair{'x', 1.0}, std::pair{'%', 0.01}}) {
+  for (const auto& [suffix, whole] : {std::pair{'x', 1.0}, std::pair{'%', 100.0}}) {
     if (!text.ends_with(suffix)) continue;
     if (const auto factor = parse_quantity(text.substr(0, text.size() - 1), Dimension::none))
-      return Gain{one * *factor, true};
+      return Gain{*factor / whole, true};
   }
   if (const auto gain = parse_quantity(text, Dimension::compliance)) return Gain{*gain, false};
   return fail(ErrorKind::usage, fmt::format("'{}' is not a gain", text), {},

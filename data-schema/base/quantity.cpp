@@ -65,7 +65,7 @@ constexpr Unit kUnits[] = {
     {"%", Dimension::share, 1e-2},
 };
 
-std::string_view trimmed(std::string_view text) {
+std::string_view trimmed_symbol(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   return text;
@@ -73,7 +73,7 @@ std::string_view trimmed(std::string_view text) {
 
 // Both Unicode micro signs (U+00B5 and U+03BC) become "u", a raised 2 "^2"; "1/mm" and "mm^-1" become "/mm".
 std::string canonical(std::string_view symbol) {
-  std::string text(trimmed(symbol));
+  std::string text(trimmed_symbol(symbol));
   for (std::string_view micro : {"\xC2\xB5", "\xCE\xBC"})
     for (auto at = text.find(micro); at != std::string::npos; at = text.find(micro)) text.replace(at, 2, "u");
   constexpr std::string_view kSquared = "\xC2\xB2";
@@ -105,7 +105,7 @@ struct NumberAndUnit {
 
 std::optional<NumberAndUnit> split(std::string_view text) {
   NumberAndUnit parts;
-  text = trimmed(text);
+  text = trimmed_symbol(text);
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), parts.number);
   if (fault != std::errc() || !std::isfinite(parts.number)) return std::nullopt;

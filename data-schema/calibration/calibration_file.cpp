@@ -5,9 +5,10 @@
 #include <ctime>
 #include <filesystem>
 
-#include "data-schema/calibration/calibration_json.hpp"
+#include "data-schema/calibration/calibration.hpp"
 #include "data-schema/files/config_folder.hpp"
 #include "data-schema/files/files.hpp"
+#include "data-schema/json/json_document.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -39,6 +40,65 @@ std::optional<std::time_t> time_of(const std::string& date) {
       strptime(date.c_str(), date.size() > 10 ? "%Y-%m-%dT%H:%M:%SZ" : "%Y-%m-%d", &parts);
   if (end == nullptr || *end != '\0') return std::nullopt;
   return timegm(&parts);
+}
+
+struct EntryPart {
+  const char* name;
+  std::optional<double> CalibrationEntry::*member;
+};
+
+constexpr EntryPart kParts[] = {
+    {"scale", &CalibrationEntry::scale},         {"scale_uncertainty", &CalibrationEntry::scale_uncertainty},
+    {"zero", &CalibrationEntry::zero},           {"zero_uncertainty", &CalibrationEntry::zero_uncertainty},
+    {"noise_rms", &CalibrationEntry::noise_rms}, {"noise_density", &CalibrationEntry::noise_density},
+};
+
+Json entry_body(const CalibrationEntry& entry) {
+  Json body = {{"channel", entry.channel},
+               {"unit", entry.unit},
+               {"method", entry.method},
+               {"date", entry.date},
+               {"nominal_scale", entry.nominal_scale}};
+  for (const auto& [name, member] : kParts)
+    if (entry.*member) body[name] = *(entry.*member);
+  body["degrees_of_freedom"] = entry.degrees_of_freedom;
+  for (const std::string& note : entry.notes) body["notes"].push_back(note);
+  return body;
+}
+
+CalibrationEntry entry_from(const Json& body) {
+  CalibrationEntry entry;
+  entry.channel = body["channel"];
+  entry.unit = body["unit"];
+  entry.method = body["method"];
+  entry.date = body["date"];
+  entry.nominal_scale = body["nominal_scale"];
+  for (const auto& [name, member] : kParts)
+    if (body.contains(name)) entry.*member = body[name].get<double>();
+  entry.degrees_of_freedom = number_or(body, "degrees_of_freedom", 0);
+  if (body.contains("notes"))
+    for (const Json& note : body["notes"]) entry.notes.push_back(note.get<std::string>());
+  return entry;
+}
+
+// Without kind and version.
+Json calibration_body(const CalibrationFile& file) {
+  Json body = {{"serial", file.serial}};
+  put_text(body, "device", file.device);
+  put_text(body, "simulated", file.simulated);
+  body["entries"] = Json::array();
+  for (const CalibrationEntry& entry : file.entries) body["entries"].push_back(entry_body(entry));
+  return body;
+}
+
+// From a document that fits its schema only; extra_json and newer_version stay empty.
+CalibrationFile calibration_from(const Json& body) {
+  CalibrationFile file;
+  file.serial = body["serial"];
+  file.device = text_or(body, "device");
+  file.simulated = text_or(body, "simulated");
+  for (const Json& entry : body["entries"]) file.entries.push_back(entry_from(entry));
+  return file;
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ void add_cell(const std::string& where, const StoredCells& s, std::optional<std:
     findings.push_back({fmt::format("{}, position {}, bin {}", where, *cell / s.bins, *cell % s.bins), what});
 }
 
-std::string nth_line(const std::string& text, std::size_t n) {
+std::string sum_of_line(const std::string& text, std::size_t n) {
   std::size_t start = 0;
   for (; n > 0 && start != std::string::npos; --n) {
     const std::size_t end = text.find('\n', start);
@@ -155,7 +155,7 @@ Result<std::vector<Finding>> check_spectrogram_cells(const std::string& path) {
     const StoredCells stored = file.read(stroke);
     TACTO_TRY(file.status(path));
     const std::string where = count == 1 ? path : fmt::format("{}, stroke {}", path, stroke + 1);
-    if (!sums.empty() && sum_of(file, stored) != nth_line(sums, stroke))
+    if (!sums.empty() && sum_of(file, stored) != sum_of_line(sums, stroke))
       findings.push_back(
           {where, "its cells, known band, axes, units or attributes do not match its attribute sha256"});
     add_cell(where, stored, wrong_decibels(stored), "its decibels do not match its cell", findings);

@@ -9,6 +9,7 @@
 #include "data-schema/kinds/file_kind.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/report/report.hpp"
+#include "data-schema/texture/transform.hpp"
 
 namespace tacto::schema {
 
@@ -29,12 +30,16 @@ Result<cli::Report> describe_results(const std::string& path);
 Result<cli::Report> describe_trade(const std::string& path);
 Result<cli::Report> describe_device(const std::string& path);
 Result<cli::Report> describe_hand(const std::string& path);
+Result<cli::Report> describe_corpus(const std::string& path);
 
 /// The report's first lines: file, kind, and what simulated it.
 cli::Report report_of(FileKind kind, const std::string& path, const std::string& simulated);
 
 /// A table of the strokes that were detected during recording, if there are any.
 void add_strokes(cli::Report& report, const RecordingHeader& header);
+
+/// Tables of the textures that it was made from and of the operations.
+void add_transform(cli::Report& report, const TextureTransform& transform);
 
 /// Adds the text if there is one.
 void add_text(cli::Report& report, const char* key, const std::string& text);

@@ -88,7 +88,47 @@ void add_certificate(Report& report, const std::optional<Certificate>& certifica
   report.add("undecided_peaks", count(PeakVerdict::undecided));
 }
 
+struct StepFigure {
+  const char* key;
+  std::optional<double> TransformStep::*member;
+};
+
+constexpr StepFigure kStepFigures[] = {
+    {"factor", &TransformStep::factor},
+    {"period_m", &TransformStep::period_m},
+    {"joint_error", &TransformStep::joint_error},
+    {"low_per_m", &TransformStep::low_per_m},
+    {"high_per_m", &TransformStep::high_per_m},
+    {"removed_above_per_m", &TransformStep::removed_above_per_m},
+    {"removed_share", &TransformStep::removed_share},
+    {"left_out_m", &TransformStep::left_out_m},
+};
+
+Report step_row(const TransformStep& step) {
+  Report row;
+  row.add("operation", operation_name(step.operation));
+  if (step.keep_slope) row.add("keep_slope", *step.keep_slope);
+  if (step.lengthening) row.add("lengthening", lengthening_name(*step.lengthening));
+  if (step.joints) row.add("joints", *step.joints);
+  for (const auto& [key, member] : kStepFigures)
+    if (step.*member) row.add(key, *(step.*member));
+  return row;
+}
+
 }  // namespace
+
+void add_transform(Report& report, const TextureTransform& transform) {
+  const bool mixed = !transform.steps.empty() && !transform.steps.front().weights.empty();
+  std::vector<Report> sources, steps;
+  for (std::size_t i = 0; i < transform.sources.size(); ++i) {
+    const auto& [texture, sha256] = transform.sources[i];
+    sources.push_back(Report().add("texture", texture).add("sha256", sha256));
+    if (mixed && i < transform.steps.front().weights.size())
+      sources.back().add("weight", transform.steps.front().weights[i]);
+  }
+  for (const TransformStep& step : transform.steps) steps.push_back(step_row(step));
+  report.add("made_from", std::move(sources)).add("steps", std::move(steps));
+}
 
 Result<Report> describe_texture(const std::string& path) {
   const auto texture = read_texture(path);
@@ -100,6 +140,7 @@ Result<Report> describe_texture(const std::string& path) {
   add_band(report, texture->valid_band);
   add_source(report, texture->source);
   add_position(report, texture->source);
+  if (texture->transform) add_transform(report, *texture->transform);
   add_average(report, *texture);
   add_certificate(report, texture->certificate);
   if (texture->playback_gain) {

@@ -256,8 +256,8 @@ Result<void> PendingFiles::sync_all() const {
   return {};
 }
 
-Result<void> PendingFiles::commit(Existing existing) {
-  if (auto synced = sync_all(); !synced) return synced;
+Result<void> PendingFiles::commit(Existing existing, Sync sync) {
+  if (sync == Sync::now) TACTO_TRY(sync_all());
   std::vector<std::string> appeared;
   while (!pending_.empty()) {
     const Pending& file = pending_.front();

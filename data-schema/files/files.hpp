@@ -63,6 +63,9 @@ Result<void> check_table_free(const std::string& path, Existing existing,
 /// a signal that ends it: async-signal-safe.
 void remove_pending_files() noexcept;
 
+/// Whether a commit syncs its files to disk, or the caller does it, for many commits at once.
+enum class Sync { now, by_caller };
+
 /// A set of files that are written beside their final names and renamed together at commit(). Missing folders
 /// are made. After a failure all folders are as before; the destructor removes leftovers.
 class PendingFiles {
@@ -77,10 +80,10 @@ class PendingFiles {
   Result<std::string> add(const std::string& path);
   /// add() and the content at once.
   Result<void> write(const std::string& path, std::string_view content);
-  /// Syncs all to disk, then renames them in the order in which they were added. Errors: cannot_write; usage,
-  /// if existing files are to be kept and a name is taken, also if it was taken a moment ago: then none of
-  /// them appears.
-  Result<void> commit(Existing existing = Existing::replace);
+  /// Syncs all to disk, unless the caller does it, then renames them in the order in which they were added.
+  /// Errors: cannot_write; usage, if existing files are to be kept and a name is taken, also if it was taken
+  /// a moment ago: then none of them appears.
+  Result<void> commit(Existing existing = Existing::replace, Sync sync = Sync::now);
 
  private:
   struct Pending {

@@ -3,15 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "data-schema/base/format_version.hpp"
+#include "data-schema/base/sha256.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/json/json_schema.hpp"
 #include "data-schema/json/json_text.hpp"
 #include "data-schema/json/known_members.hpp"
-#include "data-schema/json/numbers_sum.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -43,6 +45,53 @@ std::string first_words(const std::vector<Violation>& list) {
     if (list[i].pointer == first.pointer && list[i].what.starts_with(kMissing))
       more += (more.empty() ? " " : ", ") + list[i].what.substr(kMissing.size() + 1);
   return more.empty() ? first.what : fmt::format("{}; missing, too:{}", first.what, more);
+}
+
+static_assert(std::endian::native == std::endian::little);
+
+// Marks, notes, results and what people adjust (playback_gain) are not listed: they may be edited.
+std::vector<std::string> covered_members(std::string_view kind) {
+  if (kind == "recording") return {"sample_rate_hz", "channels", "gaps", "transducer"};
+  if (kind == "texture")
+    return {"pitch_m",    "quantity", "unit",      "direction", "source_origin_m",
+            "valid_band", "source",   "transform", "average"};
+  return {};
+}
+
+using Covered = std::map<std::string, std::string>;  // bytes by JSON pointer
+
+std::string bytes_of(double number) {
+  return {reinterpret_cast<const char*>(&number), sizeof number};
+}
+
+void add(const std::string& pointer, const Json& value, Covered& covered) {
+  for (const auto& [name, member] : value.items()) {
+    if (value.is_object() && name.starts_with("x_")) continue;
+    const std::string place = pointer + (Json::json_pointer() / name).to_string();
+    if (member.is_structured())
+      add(place, member, covered);
+    else if (member.is_number())
+      covered[place] = bytes_of(member.get<double>());
+    else if (member.is_string() && (name == "quantity" || name == "unit"))
+      covered[place] = member.get<std::string>() + "\n";
+  }
+}
+
+// SHA-256 of a recording or texture (`data.numbers_sha256`); nothing for other kinds. Covers the members
+// that covered_members() lists for the kind: all their numbers, quantities and units, but no other text and
+// no member x_... For each of them, ordered by the bytes of its JSON pointer: pointer, line feed, then the
+// number as a little-endian float64, or the text and a line feed.
+std::optional<std::string> numbers_sum(std::string_view kind, const Json& document) {
+  const auto members = covered_members(kind);
+  if (members.empty()) return std::nullopt;
+  Json listed = Json::object();
+  for (const std::string& member : members)
+    if (const auto found = document.find(member); found != document.end()) listed[member] = *found;
+  Covered covered;
+  add("", listed, covered);
+  Sha256 sum;
+  for (const auto& [pointer, bytes] : covered) sum.add(pointer), sum.add("\n"), sum.add(bytes);
+  return sum.hexadecimal();
 }
 
 // A file without this checksum is of another program, or was edited on purpose.
@@ -82,11 +131,15 @@ Result<Json> read_json(const std::string& path) {
   return parse_json(*text, path);
 }
 
-// JSON has no NaN and no infinity; the library would write null.
-std::optional<std::string> first_not_finite(const Json& node) {
-  const Json flat = node.flatten();  // a variable: items() would outlive a temporary
-  for (const auto& [pointer, value] : flat.items())
-    if (value.is_number_float() && !std::isfinite(value.get<double>())) return pointer;
+// JSON has no NaN and no infinity; the library would write null. `at` is the pointer of `node`, an object or
+// array.
+std::optional<std::string> first_not_finite(const Json& node,
+                                            const Json::json_pointer& at = Json::json_pointer()) {
+  for (const auto& [name, value] : node.items()) {
+    if (value.is_number_float() && !std::isfinite(value.get<double>())) return (at / name).to_string();
+    if (!value.is_structured()) continue;
+    if (auto found = first_not_finite(value, at / name)) return found;
+  }
   return std::nullopt;
 }
 

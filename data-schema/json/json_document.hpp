@@ -36,8 +36,8 @@ void keep_unknown(const Document& document, File& file) {
   file.extra_json = document.extra_json;
 }
 
-/// Reads a file and checks kind, version, schema and the checksum of its numbers (numbers_sum.hpp), if it has
-/// one. Errors: not_found; malformed, with line and column or with "FILE#/json/pointer"; unsupported_version,
+/// Reads a file and checks kind, version, schema and the checksum of its numbers, if it has one. Errors:
+/// not_found; malformed, with line and column or with "FILE#/json/pointer"; unsupported_version,
 /// naming both versions.
 Result<Document> open_document(const std::string& path, std::string_view kind);
 

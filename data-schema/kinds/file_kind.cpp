@@ -16,9 +16,10 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 15> kNames = {
-    "recording", "texture", "transducer", "spectrogram", "formants", "descriptions",  "calibration", "scene",
-    "session",   "results", "trade",      "device",      "hand",     "session_table", "height_map"};
+constexpr std::array<std::string_view, 16> kNames = {
+    "recording",   "texture",       "transducer", "spectrogram", "formants", "descriptions",
+    "calibration", "scene",         "session",    "results",     "trade",    "device",
+    "hand",        "session_table", "height_map", "corpus"};
 
 struct Ending {
   FileKind kind;
@@ -40,6 +41,7 @@ constexpr Ending kEndings[] = {
     {FileKind::trade, ".trade.json"},
     {FileKind::device, ".device.json"},
     {FileKind::hand, ".hand.json"},
+    {FileKind::corpus, ".corpus.json"},
 };
 
 // What comes with tactograph under a name.

@@ -25,7 +25,8 @@ enum class FileKind {
   device,
   hand,
   session_table,  ///< a session as netCDF
-  height_map
+  height_map,
+  corpus  ///< the plan of a corpus
 };
 
 /// "recording", "texture", ... as in the files' own member `kind`.

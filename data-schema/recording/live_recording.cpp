@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/recording/live_recording.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cassert>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
 #include <filesystem>
+#include <mutex>
+#include <optional>
 #include <system_error>
+#include <thread>
 #include <utility>
+#include <vector>
 
-#include "data-schema/files/background_sync.hpp"
 #include "data-schema/files/event_file.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/recording/recording_close.hpp"
@@ -16,6 +24,93 @@
 #include "data-schema/recording/recording_place.hpp"
 
 namespace tacto::schema {
+namespace {
+
+// Syncs files periodically on a thread of its own. A sync may take a second on a busy disk. The writer must
+// not wait for it: frames that arrive meanwhile would stay in memory and be lost with the process.
+class BackgroundSync {
+ public:
+  // The files exist, and may be renamed later. Errors: cannot_write.
+  static Result<std::unique_ptr<BackgroundSync>> start(const std::vector<std::string>& paths, double every_s);
+  BackgroundSync(const BackgroundSync&) = delete;
+  BackgroundSync& operator=(const BackgroundSync&) = delete;
+  ~BackgroundSync();
+
+  // Call it after each write. Does not wait for the disk. Errors: cannot_write, of a sync since then.
+  Result<void> written();
+
+ private:
+  struct Synced {
+    std::string path;
+    int descriptor = -1;
+  };
+  explicit BackgroundSync(double every_s) : every_s_(every_s) {}
+  void run();
+  void sync_all();
+
+  const double every_s_;
+  std::vector<Synced> files_;  // belong to the thread while it runs
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool written_ = false, stop_ = false;
+  std::optional<Error> failure_;
+  std::thread thread_;
+};
+
+tl::unexpected<Error> not_synced(const std::string& path, int error_number) {
+  return fail(ErrorKind::cannot_write,
+              "cannot be written to the disk: " + std::generic_category().message(error_number), path);
+}
+
+Result<std::unique_ptr<BackgroundSync>> BackgroundSync::start(const std::vector<std::string>& paths,
+                                                              double every_s) {
+  std::unique_ptr<BackgroundSync> sync(new BackgroundSync(every_s));
+  for (const std::string& path : paths) {
+    const int opened = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (opened < 0) return not_synced(path, errno);
+    sync->files_.push_back({path, opened});
+  }
+  sync->thread_ = std::thread([&self = *sync] { self.run(); });
+  return sync;
+}
+
+BackgroundSync::~BackgroundSync() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_one();
+  if (thread_.joinable()) thread_.join();
+  for (const Synced& file : files_) close(file.descriptor);
+}
+
+Result<void> BackgroundSync::written() {
+  const std::lock_guard lock(mutex_);
+  written_ = true;
+  return failure_ ? Result<void>(tl::unexpected(*failure_)) : Result<void>{};
+}
+
+void BackgroundSync::run() {
+  std::unique_lock lock(mutex_);
+  while (!stop_) {
+    const bool due = std::exchange(written_, false);
+    lock.unlock();
+    if (due) sync_all();
+    lock.lock();
+    changed_.wait_for(lock, std::chrono::duration<double>(every_s_), [this] { return stop_; });
+  }
+}
+
+void BackgroundSync::sync_all() {
+  for (const Synced& file : files_) {
+    if (fdatasync(file.descriptor) == 0) continue;
+    const int error_number = errno;
+    const std::lock_guard lock(mutex_);
+    failure_ = not_synced(file.path, error_number).value();
+  }
+}
+
+}  // namespace
 
 struct LiveRecording::State {
   MadeFolders folders;

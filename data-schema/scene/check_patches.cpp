@@ -95,10 +95,11 @@ Result<void> check_patches(const Scene& scene, const std::string& where) {
 
 Result<void> check_only_tray(const Scene& scene, const std::string& where) {
   if (scene.patches.empty()) return {};
-  return fail(
-      ErrorKind::unsuitable, "this scene has force patches, which a tray cannot play", where + "#/patches",
-      "name a force device: `render` and `explain` have --device, `play` has -d sim:planar; for a tray "
-      "use a scene that has only layers");
+  return fail(ErrorKind::unsuitable, "this scene has force patches, which a tray cannot play",
+              where + "#/patches",
+              "name a force device: `render`, `explain` and `trade` have --device, `play` has -d sim:planar; "
+              "for a tray "
+              "use a scene that has only layers");
 }
 
 }  // namespace tacto::schema

@@ -35,11 +35,24 @@ std::vector<std::string> force_layer_types() {
 std::vector<NamedLayerNumber> numbers_of(const ForceLayer& layer) {
   std::vector<NamedLayerNumber> numbers;
   layer.visit([&]<class L>(const L& of) {
-    for (const auto& member : LayerMembers<L>::kNumbers) numbers.push_back({member.name, of.*member.number});
+    for (const auto& member : LayerMembers<L>::kNumbers)
+      numbers.push_back({member.name, of.*member.number, member.whole});
     if constexpr (IsGrooves<L>)
       if (of.filter_m) numbers.push_back({"filter_m", *of.filter_m});
   });
   return numbers;
+}
+
+bool is_adaptive(const ForceLayer& layer) {
+  return layer.visit([]<class L>(const L& of) {
+    if constexpr (MayBeAdaptive<L>) return of.adaptive;
+    return false;
+  });
+}
+
+bool is_added(const ForceLayer& layer) {
+  return layer.visit([](const DamperLayer& damper) { return damper.added; },
+                     [](const auto& /*other*/) { return false; });
 }
 
 std::string file_of(const ForceLayer& layer) {

@@ -32,7 +32,8 @@ inline double largest_value(const LayerNumber& number) {
 
 // Lengths and directions are in the patch's axes, from its centre; a direction is an angle from the patch's x
 // axis towards its y axis. kappa_n is the force on a slope of 1: force = -kappa grad h. `extra_json` has the
-// members of a newer version.
+// members of a newer version. `adaptive`: where the layer is too stiff for the device, damping is added
+// (playback/prepare/scene/stable_scene.hpp).
 
 /// A measured or computed relief.
 struct HeightMapLayer {
@@ -40,6 +41,7 @@ struct HeightMapLayer {
   LayerNumber kappa_n;
   std::string extra_json;
   double curvature_per_m = 0;  ///< not in the file: the largest of its surface in the patch, once it was read
+  bool adaptive = false;
 };
 
 enum class GrooveProfile { sine, triangle, square };
@@ -54,6 +56,7 @@ struct GroovesLayer {
   std::optional<LayerNumber> filter_m = std::nullopt;
   LayerNumber filter_margin{1.5};  ///< factor on the computed sigma
   std::string extra_json;
+  bool adaptive = false;
 };
 
 /// Perlin's improved noise, in octaves; `roughness` is the factor from the amplitude of one to the next.
@@ -64,6 +67,7 @@ struct NoiseLayer {
   LayerNumber seed;  ///< a whole number
   LayerNumber depth_m, kappa_n;
   std::string extra_json;
+  bool adaptive = false;
 };
 
 /// The end of its slider that is farther from 0, or its value.
@@ -80,6 +84,7 @@ struct TextureForceLayer {
   LayerNumber gain{1};        ///< 1; its sign may invert the texture
   std::string extra_json;
   double steepest_n_per_m = 0;  ///< not in the file: of its force at a gain of 1, once it was read
+  bool adaptive = false;
 };
 
 /// A spring to a place.
@@ -87,12 +92,14 @@ struct SpringLayer {
   LayerNumber stiffness_n_per_m;
   LayerNumber centre_x_m, centre_y_m;  ///< where its force is 0
   std::string extra_json;
+  bool adaptive = false;
 };
 
 /// A viscous medium: soup (large damping), ice (small damping, on a patch above soup).
 struct DamperLayer {
   LayerNumber damping_n_s_per_m;
   std::string extra_json;
+  bool added = false;  ///< not in the file: it was added for the adaptive layers of its patch
 };
 
 /// A mass that is added to the hand's.
@@ -156,10 +163,17 @@ std::vector<std::string> force_layer_types();
 struct NamedLayerNumber {
   std::string_view name;
   LayerNumber number;
+  bool whole = false;  ///< a whole number
 };
 
 /// The numbers of a layer, in the order of the file. `filter_m` is absent where it is "auto".
 std::vector<NamedLayerNumber> numbers_of(const ForceLayer& layer);
+
+/// Whether the layer has `adaptive`, and it is true.
+bool is_adaptive(const ForceLayer& layer);
+
+/// Whether the layer is not in the file, but was added for adaptive layers.
+bool is_added(const ForceLayer& layer);
 
 /// The file that a layer names; empty for a kind without one.
 std::string file_of(const ForceLayer& layer);

@@ -53,6 +53,7 @@ Json made_rule() {
   for (const auto& member : LayerMembers<L>::kNumbers)
     mine[std::string(member.name)] = all[std::string(member.name)];
   if constexpr (IsGrooves<L>) mine["filter_m"] = all["filter_m"];
+  if constexpr (MayBeAdaptive<L>) mine["adaptive"] = all["adaptive"];
   return {{"properties", mine}};
 }
 
@@ -76,6 +77,7 @@ Result<ForceLayer> layer_of_kind(const Json& body, UnknownMembers unknown, const
   L layer;
   if constexpr (NamesFile<L>) layer.file = text_or(body, "file");
   if constexpr (IsGrooves<L>) read_shape(layer, body);
+  if constexpr (MayBeAdaptive<L>) layer.adaptive = body.value("adaptive", false);
   for (const auto& [name, number, whole] : LayerMembers<L>::kNumbers)
     if (const auto at = body.find(std::string(name)); at != body.end())
       layer.*number = layer_number_from(*at);
@@ -117,6 +119,8 @@ Json force_layer_body(const ForceLayer& layer) {
       body[std::string(name)] = layer_number_body(of.*number, whole);
     if constexpr (IsGrooves<L>)
       body["filter_m"] = of.filter_m ? layer_number_body(*of.filter_m) : Json(kAuto);
+    if constexpr (MayBeAdaptive<L>)
+      if (of.adaptive) body["adaptive"] = true;
     add_unknown_parts(rule_of_kind<L>(), body, of.extra_json);
   });
   return body;

@@ -123,6 +123,9 @@ concept NamesFile = requires(L layer) { layer.file; };
 template <class L>
 concept IsGrooves = requires(L layer) { layer.profile; };
 
+template <class L>
+concept MayBeAdaptive = requires(L layer) { layer.adaptive; };
+
 /// Calls `use.operator()<L>()` for each kind L of OneOf<...>, in its order.
 template <class... Kinds, class Use>
 void for_each_kind(const OneOf<Kinds...>* /*of*/, Use use) {

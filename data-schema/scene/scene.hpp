@@ -52,6 +52,10 @@ Result<Scene> read_scene(const std::string& name);
 /// The same from a text; `where` names it in errors.
 Result<Scene> parse_scene(std::string_view text, const std::string& where);
 
+/// The text of its file; `where` names it in errors. Errors: unsuitable, if the schema does not allow it, and
+/// by check_patches.
+Result<std::string> scene_json(const Scene& scene, const std::string& where);
+
 /// Replaces an existing file. Errors: cannot_write, also for a read-only file; unsuitable, if the schema does
 /// not allow it, and by check_patches.
 Result<void> write_scene(const std::string& stem, const Scene& scene);

@@ -154,11 +154,17 @@ Result<Scene> read_scene(const std::string& name) {
   return document ? scene_from(*document, path) : forward_error(document);
 }
 
+Result<std::string> scene_json(const Scene& scene, const std::string& where) {
+  auto text = document_text(kSceneKind, scene_body(scene), scene.extra_json);
+  TACTO_TRY(text);
+  TACTO_TRY(check_patches(scene, where));
+  return text;
+}
+
 Result<void> write_scene(const std::string& stem, const Scene& scene) {
   const std::string path = scene_path(stem);
-  const auto text = document_text(kSceneKind, scene_body(scene), scene.extra_json);
+  const auto text = scene_json(scene, path);
   TACTO_TRY(text);
-  TACTO_TRY(check_patches(scene, path));
   if (is_file(path))
     if (const auto free = check_changeable(path); !free) return free;
   PendingFiles pending;

@@ -53,7 +53,7 @@ Locked nc() {
   return {std::unique_lock(one_at_a_time)};
 }
 
-std::string words_for(int status) {
+std::string status_words(int status) {
   return status == kNotLoaded ? message(library().fault) : nc()->strerror(status);
 }
 
@@ -169,7 +169,7 @@ Result<void> NetcdfWriter::close(const std::string& path) {
     file_ = -1;
   }
   if (sound()) return {};
-  return fail(ErrorKind::cannot_write, fmt::format("netCDF: {}", words_for(status_)), path,
+  return fail(ErrorKind::cannot_write, fmt::format("netCDF: {}", status_words(status_)), path,
               "check whether the disk is full");
 }
 
@@ -267,7 +267,7 @@ std::vector<double> NetcdfReader::values(const char* name, const Part& part) {
 
 Result<void> NetcdfReader::status(const std::string& path) const {
   if (status_ == NC_NOERR) return {};
-  return fail(ErrorKind::malformed, fmt::format("netCDF: {}", words_for(status_)), path);
+  return fail(ErrorKind::malformed, fmt::format("netCDF: {}", status_words(status_)), path);
 }
 
 }  // namespace tacto::schema

@@ -208,6 +208,7 @@ Result<void> write_texture(const std::string& name, const Texture& texture) {
 
 std::string whole_rms_band(const Texture& texture) {
   const TextureSource& source = texture.source;
+  if (texture.transform) return "all samples";
   if (source.filter.empty() || source.filter == "none") return "all samples, unfiltered";
   if (source.high_per_m)
     return fmt::format("all samples, filtered to {:.4g}-{:.4g} /mm", 1e-3 * source.low_per_m.value_or(0),

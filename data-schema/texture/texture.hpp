@@ -10,6 +10,7 @@
 #include "data-schema/base/signal.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/texture/certificate.hpp"
+#include "data-schema/texture/transform.hpp"
 
 namespace tacto::schema {
 
@@ -89,6 +90,7 @@ struct Texture {
   std::optional<TextureAverage> average;      ///< of several strokes; the WAV has the spread as 2nd channel
   std::optional<Certificate> certificate;     ///< which of its peaks come from the surface
   std::optional<PlaybackGain> playback_gain;  ///< default gain of playback
+  std::optional<TextureTransform> transform;  ///< of which textures it was made, where it was; then no source
   std::string simulated;                      ///< by what, where it is simulated
   std::string surface, subject, finger, notes;
   std::string created, creator;

@@ -5,6 +5,7 @@
 
 #include "data-schema/json/json_document.hpp"
 #include "data-schema/texture/certificate_json.hpp"
+#include "data-schema/texture/transform_json.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -182,6 +183,7 @@ Json texture_body(const Texture& texture, const TextureData& data) {
   if (!texture.valid_band.empty()) body["valid_band"] = band_body(texture.valid_band);
   // A texture that was drawn or computed names no recording.
   if (!texture.source.recording.empty()) body["source"] = source_body(texture.source);
+  if (texture.transform) body["transform"] = transform_body(*texture.transform);
   if (texture.average) {
     body["channels"] = channels_body(texture.unit);
     body["average"] = average_body(*texture.average);
@@ -201,6 +203,7 @@ Texture texture_from(const Json& body) {
   texture.source_origin_m = number_or(body, "source_origin_m", 0);
   if (body.contains("valid_band")) texture.valid_band = band_points_from(body["valid_band"]);
   if (body.contains("source")) texture.source = source_from(body["source"]);
+  if (body.contains("transform")) texture.transform = transform_from(body["transform"]);
   if (body.contains("average")) texture.average = average_from(body["average"]);
   if (body.contains("certificate")) texture.certificate = certificate_from(body["certificate"]);
   if (body.contains("playback_gain")) texture.playback_gain = playback_gain_from(body["playback_gain"]);

@@ -18,9 +18,9 @@ tl::unexpected<Error> unwritable_header(const std::string& path) {
 }
 
 // Overwrites bytes of an existing file.
-class Patch {
+class BytePatch {
  public:
-  explicit Patch(const std::string& path)
+  explicit BytePatch(const std::string& path)
       : path_(path), file_(path, std::ios::binary | std::ios::in | std::ios::out) {}
 
   void text(std::uint64_t at, std::string_view text) {
@@ -48,7 +48,7 @@ Result<RiffLayout> layout_of(const std::string& path) {
   return fail(ErrorKind::malformed, "is not a WAV file, or its header is incomplete", path);
 }
 
-void set_sizes(Patch& patch, const RiffLayout& layout, std::uint64_t data_bytes) {
+void set_sizes(BytePatch& patch, const RiffLayout& layout, std::uint64_t data_bytes) {
   const std::uint64_t riff_bytes = layout.data_at + data_bytes - 8;
   const bool wide = riff_bytes >= kUnknown;
   patch.text(0, wide ? "RF64" : "RIFF");
@@ -66,7 +66,7 @@ void set_sizes(Patch& patch, const RiffLayout& layout, std::uint64_t data_bytes)
 Result<void> set_riff_rate(const std::string& path, std::uint32_t sample_rate_hz) {
   const auto layout = layout_of(path);
   TACTO_TRY(layout);
-  Patch patch(path);
+  BytePatch patch(path);
   patch.number(layout->format_at + 4, sample_rate_hz, 4);
   patch.number(layout->format_at + 8, sample_rate_hz * layout->block_bytes, 4);
   return patch.done();
@@ -79,7 +79,7 @@ Result<std::uint64_t> repair_riff(const std::string& path) {
   std::error_code failed;
   std::filesystem::resize_file(path, layout->data_at + frames * layout->block_bytes, failed);
   if (failed) return unwritable_header(path);
-  Patch patch(path);
+  BytePatch patch(path);
   set_sizes(patch, *layout, frames * layout->block_bytes);
   TACTO_TRY(patch.done());
   return frames;

@@ -48,7 +48,7 @@ std::string name_of(int command, int format) {
                                                                                        : "unknown";
 }
 
-std::string words_for(int format) {
+std::string format_words(int format) {
   return name_of(SFC_GET_FORMAT_INFO, format & SF_FORMAT_TYPEMASK) + ", " +
          name_of(SFC_GET_FORMAT_INFO, format & SF_FORMAT_SUBMASK);
 }
@@ -63,7 +63,7 @@ WavInfo described(const SF_INFO& header) {
           static_cast<std::size_t>(header.channels),
           static_cast<std::uint64_t>(std::max<sf_count_t>(header.frames, 0)),
           holds_codes(header.format),
-          words_for(header.format),
+          format_words(header.format),
           code_bits(header.format),
           holds_plain_samples(header.format)};
 }

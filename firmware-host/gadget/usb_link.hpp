@@ -6,12 +6,25 @@
 #include <atomic>
 #include <functional>
 #include <optional>
+#include <string>
 #include <thread>
 
+#include "data-schema/base/error.hpp"
 #include "firmware-host/gadget/board_link.hpp"
-#include "firmware-host/gadget/functionfs.hpp"
+#include "firmware-host/link/file_descriptor.hpp"
 
 namespace tacto::firmware_host {
+
+struct FunctionFs {
+  FileDescriptor events;  ///< ep0
+  FileDescriptor in;      ///< to the host
+  FileDescriptor out;     ///< from the host
+};
+
+/// Mounts the function `instance` privately, writes the descriptors of the interface, opens its files. The
+/// mount disappears when they are closed, however the process ends. Errors: device: no permission, no such
+/// function, or the kernel refuses the descriptors.
+schema::Result<FunctionFs> open_functionfs(const std::string& instance);
 
 /// Three threads: the kernel's events, output, input. While no host has configured the device, output is
 /// dropped. When the queue is empty, the transfer to the host ends with a short packet, if necessary an empty

@@ -21,6 +21,7 @@ using wire::Parse;
 constexpr double kAnswerTimeoutS = 0.5;
 constexpr double kStallS = 1;
 constexpr int kAttempts = 3;
+constexpr double kFlushBits = 10.0 * wire::kMaxFrame;  // on a serial line
 constexpr double kMostBehindS = 10;  // of frames queued before an answer; no device queues more
 constexpr std::size_t kReceiveBytes = 16384;
 constexpr std::size_t kFirstBytes = 32;       // of a foreign device, for the message
@@ -54,7 +55,7 @@ Result<std::unique_ptr<Client>> Client::connect(std::unique_ptr<Transport> trans
 Result<void> Client::greet() {
   Asking asking{transport_->now_s(), blocks_seen_, transport_->start_up_s()};
   while (may_retry(asking)) {
-    if (const auto flushed = asking.times > 1 ? flush() : Result<void>(); !flushed) return flushed;
+    if (const auto flushed = asking.times % 2 == 0 ? flush() : Result<void>(); !flushed) return flushed;
     const auto greeted = greet_once();
     TACTO_TRY(greeted);
     if (!description_.welcome.major) continue;
@@ -77,7 +78,7 @@ bool Client::may_retry(Asking& asking) const {
 }
 
 // An earlier program may have sent an incomplete frame. These zeros complete it, so that the device finds the
-// next hello.
+// next hello. Not before every hello: a device that receives slowly would never reach the last one.
 Result<void> Client::flush() {
   constexpr std::array<std::uint8_t, wire::kMaxFrame> kNoFrame{};
   return transport_->write(kNoFrame, kAnswerTimeoutS);
@@ -96,7 +97,8 @@ Result<bool> Client::greet_once() {
     return wire::encode_frame(hello, sequence, frame.data(), frame.size());
   });
   TACTO_TRY(sent);
-  return await(kAnswerTimeoutS, [&] { return described(); });
+  // A slow line may carry the description for an earlier hello first.
+  return await(kAnswerTimeoutS + kFlushBits / transport_->baud(), [&] { return described(); });
 }
 
 // From another version only the welcome is expected.
@@ -117,7 +119,10 @@ Result<void> Client::check_version() const {
               fmt::format("'{}' (serial {}, firmware {}) uses version {}.{} of the protocol; {} uses {}.{}",
                           device.name, device.serial, device.firmware, device.major, device.minor, kCreator,
                           wire::kProtocolMajor, wire::kProtocolMinor),
-              where_, newer ? "update tactograph" : "update the device's firmware");
+              where_,
+              newer ? "update tactograph"
+                    : "make the firmware again with ./bootstrap firmware and flash it "
+                      "(firmware-host/boards/README.md)");
 }
 
 Result<std::uint32_t> Client::send(const Encoder& encode) {

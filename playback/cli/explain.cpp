@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
 #include "data-schema/command/output_options.hpp"
+#include "data-schema/device/hand.hpp"
 #include "data-schema/report/choices_report.hpp"
 #include "data-schema/report/terminal.hpp"
 #include "data-schema/texture/texture.hpp"
@@ -29,7 +31,7 @@ namespace {
 struct ExplainOptions {
   ProgramRequest program;
   std::optional<double> speed_mps;
-  std::string transducer = "wiertlewski2011", device;
+  std::string transducer = "wiertlewski2011", device, hand;
   CLI::Option* rate = nullptr;
   std::size_t device_memory = 0;
   PrepareOptions prepare;
@@ -196,6 +198,11 @@ cli::Action declare_explain(CLI::App& app) {
   app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
   app.add_option("--transducer", o.transducer, "A preset or NAME.transducer.json")->capture_default_str();
   declare_force_device(app, o.device);
+  app.add_option(
+      "--hand", o.hand,
+      fmt::format("With --device: the hand that holds it, a preset ({}) or NAME.hand.json. Filters and "
+                  "added dampers are those for this hand; default: nothing holds it",
+                  fmt::join(schema::hand_preset_names(), ", ")));
   cli::add_quantity(
       app, "--speed", o.speed_mps, Dimension::speed,
       "Can a finger of this speed feel the texture: yes or no, how much of the tightest limit and of "
@@ -220,12 +227,14 @@ cli::Action declare_explain(CLI::App& app) {
   declare_tick_budget(app, o.budget);
   return [options, &app]() -> Result<Report> {
     const ExplainOptions& asked = *options;
+    if (asked.device.empty() && !asked.hand.empty())
+      return schema::fail(schema::ErrorKind::usage, "--hand requires --device");
     if (asked.device.empty()) return run_explain(asked);
-    TACTO_TRY(check_force_options(app, {"device", "rate", "device-memory"}));
+    TACTO_TRY(check_force_options(app, {"device", "hand", "rate", "device-memory"}));
     const auto rate_hz = asked.rate->count() > 0 ? std::optional(asked.prepare.rate_hz) : std::nullopt;
     const auto bytes =
         asked.device_memory > 0 ? std::optional(asked.device_memory * sizeof(float)) : std::nullopt;
-    return explain_forces(asked.program.file, asked.device, rate_hz, bytes);
+    return explain_forces(asked.program.file, asked.device, asked.hand, rate_hz, bytes);
   };
 }
 

@@ -39,6 +39,7 @@ struct PlayVerbOptions {
   std::optional<std::string> session;
   std::string script;
   AskedBudget budget;
+  bool hold_stable = false;
   CLI::Option* rate = nullptr;
 };
 
@@ -154,6 +155,7 @@ Result<Report> run_play_forces(const PlayVerbOptions& asked) {
   play.program.file = o.program.file;
   if (asked.rate->count() > 0) play.program.rate_hz = o.prepare.rate_hz;
   play.program.onset_s = o.prepare.onset_s;
+  play.program.hold_stable = asked.hold_stable;
   play.device_uri = o.device_uri;
   play.path = asked.path.file;
   play.script = asked.script;
@@ -175,6 +177,7 @@ Result<Report> run_play_forces(const PlayVerbOptions& asked) {
       .add("slew_limited_ticks", ticks.slew_limited())
       .add("rms_limited_ticks", ticks.energy_limited())
       .add("force_peak_n", ticks.force_peak_n());
+  if (asked.hold_stable) add_held(report, outcome->held);
   cli::warn_grouped(outcome->notes);
   return add_end(std::move(report), *outcome);
 }
@@ -204,10 +207,13 @@ Result<Report> run_play(const PlayVerbOptions& asked) {
 Result<void> check_scene_options(const CLI::App& app, const PlayVerbOptions& asked) {
   const PlayOptions& o = asked.play;
   if (plays_forces(o.program.file, o.device_uri))
-    return check_force_options(app, {"device", "output", "finger-path", "time", "rate", "onset", "script"});
-  if (asked.script.empty()) return {};
-  return schema::fail(schema::ErrorKind::usage, "--script changes a scene of forces", o.program.file,
-                      "leave it out, or play a scene with force patches");
+    return check_force_options(
+        app, {"device", "output", "finger-path", "time", "rate", "onset", "script", "hold-stable"});
+  if (asked.script.empty() && !asked.hold_stable) return {};
+  return schema::fail(
+      schema::ErrorKind::usage,
+      asked.hold_stable ? "--hold-stable is for a scene of forces" : "--script changes a scene of forces",
+      o.program.file, "leave it out, or play a scene with force patches");
 }
 
 cli::Action declare_play(CLI::App& app) {
@@ -229,6 +235,7 @@ cli::Action declare_play(CLI::App& app) {
       "unit of its name ('info' lists the sliders); X,Y is the place of the patch's centre, as in 10mm,20mm; "
       "'raise' makes the patch the topmost one. A command is sent up to 20 ms after its time; the session "
       "has its tick");
+  declare_hold_stable(app, options->hold_stable);
   declare_texture(app, options->play);
   declare_loop(app, *options);
   declare_choices(app, options->play.program.choices);

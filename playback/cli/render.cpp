@@ -44,6 +44,7 @@ struct RenderVerbOptions {
   FingerPathOption path;
   std::string transducer, device, hand, drive, displacement, target;
   schema::Existing existing = schema::Existing::keep;
+  bool hold_stable = false;
   RenderOptions render;
   AskedBudget budget;
   CLI::Option *engine = nullptr, *rate = nullptr;
@@ -65,6 +66,7 @@ void add_files(CLI::App& app, RenderVerbOptions& o) {
                              fmt::join(schema::preset_names(), ", ")));
   declare_force_device(app, o.device);
   declare_hand(app, o.hand);
+  declare_hold_stable(app, o.hold_stable);
   cli::declare_unfit_transducer(app, o.what.unfit_transducer);
   app.add_flag("--implausible", o.what.implausible,
                "Accept a transducer file with impossible numbers, for example a mass of 1e-12 kg");
@@ -320,12 +322,15 @@ cli::Action declare_render(CLI::App& app) {
   add_model(app, *options);
   return [options, &app]() -> Result<Report> {
     const RenderVerbOptions& o = *options;
-    if (o.device.empty() && !o.hand.empty())
-      return schema::fail(schema::ErrorKind::usage, "--hand requires --device");
+    if (o.device.empty() && (!o.hand.empty() || o.hold_stable))
+      return schema::fail(schema::ErrorKind::usage,
+                          o.hold_stable ? "--hold-stable requires --device" : "--hand requires --device");
     if (o.device.empty()) return run_render(o);
-    TACTO_TRY(check_force_options(app, {"finger-path", "device", "hand", "output", "rate", "force"}));
+    TACTO_TRY(check_force_options(
+        app, {"finger-path", "device", "hand", "hold-stable", "output", "rate", "force"}));
     const auto rate_hz = o.rate->count() > 0 ? std::optional(o.render.rate_hz) : std::nullopt;
-    return render_forces({o.what.file, o.device, o.path.file, o.drive, o.hand, rate_hz, o.existing});
+    return render_forces(
+        {o.what.file, o.device, o.path.file, o.drive, o.hand, rate_hz, o.existing, o.hold_stable});
   };
 }
 

@@ -35,6 +35,7 @@ struct SceneOnDevice {
   schema::Device device;
   PreparedScene scene;
   core::ForceSetup setup;
+  std::vector<HeldLayer> held;  // with --hold-stable
 };
 
 void warn_of_newer(const std::string& name, const auto& document) {
@@ -42,8 +43,8 @@ void warn_of_newer(const std::string& name, const auto& document) {
 }
 
 Result<SceneOnDevice> scene_on_device(const std::string& scene_name, const std::string& device_name,
-                                      std::optional<double> rate_hz,
-                                      const std::optional<schema::Hand>& hand = std::nullopt) {
+                                      std::optional<double> rate_hz, const std::optional<schema::Hand>& hand,
+                                      bool held_stable = false) {
   if (!names_a_scene(scene_name))
     return fail(ErrorKind::unsuitable, "is a texture; a force device plays the force patches of a scene",
                 scene_name, "name a scene, or give --transducer instead of --device");
@@ -56,12 +57,18 @@ Result<SceneOnDevice> scene_on_device(const std::string& scene_name, const std::
   TACTO_TRY(setup);
   auto prepared = prepare_scene(*scene, file, *device, double{setup->rate_hz}, hand);
   TACTO_TRY(prepared);
+  std::vector<HeldLayer> held;
+  if (held_stable) {
+    auto scaled = hold_stable(*prepared, *device, double{setup->rate_hz}, hand);
+    TACTO_TRY(scaled);
+    held = std::move(*scaled);
+  }
   warn_of_newer(file, *scene);
   warn_of_newer(device_name, *device);
   if (!scene->layers.empty())
     cli::warn(fmt::format("{}: its {} layers of a tray are left out", file, scene->layers.size()));
   for (const std::string& note : limits_of_device(*prepared, *device, *setup, hand)) cli::warn(note);
-  return SceneOnDevice{std::move(*device), std::move(*prepared), *setup};
+  return SceneOnDevice{std::move(*device), std::move(*prepared), *setup, std::move(held)};
 }
 
 Result<std::optional<schema::Hand>> hand_of(const std::string& name) {
@@ -197,6 +204,7 @@ Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::si
   row.add("bytes", on.scene.layer_bytes(patch, layer)).add("alone_tick_s", layer_cost_s(on, patch, layer));
   if (const double stiffness = local_stiffness_n_per_m(layer); stiffness > 0)
     row.add("stiffness_n_per_m", stiffness);
+  if (is_adaptive(layer)) row.add("adaptive", true);
   const auto at_limit = [&](const char* key, double gain) {
     if (gain > 0) row.add(key, on.device.peak_force_n / gain);
   };
@@ -205,6 +213,7 @@ Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::si
         at_limit("force_limit_at_displacement_m", spring.stiffness_n_per_m.value);
       },
       [&](const schema::DamperLayer& damper) {
+        if (damper.added) row.add("added_damping_n_s_per_m", damper.damping_n_s_per_m.value);
         at_limit("force_limit_at_speed_mps", damper.damping_n_s_per_m.value);
       },
       [&](const schema::GroovesLayer& grooves) { add_grooves(row, grooves, double{on.setup.rate_hz}); },
@@ -257,6 +266,32 @@ void declare_hand(CLI::App& app, std::string& hand) {
                              fmt::join(schema::hand_preset_names(), ", ")));
 }
 
+void declare_hold_stable(CLI::App& app, bool& hold_stable) {
+  app.add_flag(
+      "--hold-stable", hold_stable,
+      fmt::format("Of a scene of forces: where layers that act together are beyond the computed limit of "
+                  "the device, or of the device in the hand that holds it, scale their stiffness and its "
+                  "sliders to the limit divided by {:g}, and list them. Places to which patches are moved "
+                  "later are not considered",
+                  kStableMargin));
+}
+
+void add_held(Report& report, const std::vector<HeldLayer>& held) {
+  if (held.empty()) {
+    report.add("held_stable", "no layer is beyond the limit");
+    return;
+  }
+  std::vector<Report> rows;
+  for (const HeldLayer& layer : held)
+    rows.push_back(Report()
+                       .add("patch", layer.patch)
+                       .add("layer", layer.index)
+                       .add("type", layer.type)
+                       .add("from_n_per_m", layer.from_n_per_m)
+                       .add("to_n_per_m", layer.to_n_per_m));
+  report.add("held_stable", std::move(rows)).add("held_margin", kStableMargin);
+}
+
 Result<void> check_force_options(const CLI::App& app, std::initializer_list<std::string_view> names) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0 || option->get_positional() || option->check_lname("json")) continue;
@@ -273,7 +308,7 @@ Result<Report> render_forces(const ForceRendering& asked) {
   TACTO_TRY(schema::check_table_free(asked.output, asked.existing, is_force_table));
   const auto hand = hand_of(asked.hand);
   TACTO_TRY(hand);
-  const auto on = scene_on_device(asked.scene, asked.device, asked.rate_hz, *hand);
+  const auto on = scene_on_device(asked.scene, asked.device, asked.rate_hz, *hand, asked.hold_stable);
   TACTO_TRY(on);
   const auto paths = read_axis_paths(asked.path, plane_axes_of(on->device));
   TACTO_TRY(paths);
@@ -282,12 +317,17 @@ Result<Report> render_forces(const ForceRendering& asked) {
   schema::PendingFiles files;
   TACTO_TRY(files.write(asked.output, table_of(*rendering)));
   TACTO_TRY(files.commit(asked.existing));
-  return report_of(asked, on->device, *rendering);
+  Report report = report_of(asked, on->device, *rendering);
+  if (asked.hold_stable) add_held(report, on->held);
+  return report;
 }
 
 Result<Report> explain_forces(const std::string& scene, const std::string& device,
-                              std::optional<double> rate_hz, std::optional<std::size_t> device_bytes) {
-  const auto on = scene_on_device(scene, device, rate_hz);
+                              const std::string& hand_name, std::optional<double> rate_hz,
+                              std::optional<std::size_t> device_bytes) {
+  const auto hand = hand_of(hand_name);
+  TACTO_TRY(hand);
+  const auto on = scene_on_device(scene, device, rate_hz, *hand);
   TACTO_TRY(on);
   const core::SceneView view = on->scene.view();
   double tick_s = 0;

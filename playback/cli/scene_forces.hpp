@@ -5,8 +5,10 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "data-schema/command/output_options.hpp"
+#include "playback/prepare/scene/stable_scene.hpp"
 
 namespace tacto::playback {
 
@@ -16,6 +18,12 @@ void declare_force_device(CLI::App& app, std::string& device);
 /// --hand
 void declare_hand(CLI::App& app, std::string& hand);
 
+/// --hold-stable
+void declare_hold_stable(CLI::App& app, bool& hold_stable);
+
+/// The layers whose stiffness was scaled, and by which margin.
+void add_held(cli::Report& report, const std::vector<HeldLayer>& held);
+
 /// Errors: usage, if an option was given that is not among `names`: the others are those of a tray.
 schema::Result<void> check_force_options(const CLI::App& app, std::initializer_list<std::string_view> names);
 
@@ -24,6 +32,7 @@ struct ForceRendering {
   std::string hand;  ///< empty: the path is imposed
   std::optional<double> rate_hz;
   schema::Existing existing = schema::Existing::keep;
+  bool hold_stable = false;
 };
 
 /// Writes the forces along the path as a CSV.
@@ -31,7 +40,7 @@ schema::Result<cli::Report> render_forces(const ForceRendering& asked);
 
 /// The layers with their memory and time, and whether they fit the device.
 schema::Result<cli::Report> explain_forces(const std::string& scene, const std::string& device,
-                                           std::optional<double> rate_hz,
+                                           const std::string& hand, std::optional<double> rate_hz,
                                            std::optional<std::size_t> device_bytes);
 
 }  // namespace tacto::playback

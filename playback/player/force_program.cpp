@@ -111,6 +111,12 @@ Result<ForceProgram> make_force_program(const ForceRequest& request, const schem
   const double rate_hz = request.rate_hz.value_or(device.rates_hz.back());
   auto prepared = prepare_scene(std::move(*scene), file, device, rate_hz, hand);
   TACTO_TRY(prepared);
+  std::vector<HeldLayer> held;
+  if (request.hold_stable) {
+    auto scaled = hold_stable(*prepared, device, rate_hz, hand);
+    TACTO_TRY(scaled);
+    held = std::move(*scaled);
+  }
   const auto limits = limits_for(request, device, own, rate_hz);
   TACTO_TRY(limits);
   if (prepared->bytes() > own.scene_bytes)
@@ -119,7 +125,8 @@ Result<ForceProgram> make_force_program(const ForceRequest& request, const schem
         fmt::format("the scene needs {} bytes, the device has {}", prepared->bytes(), own.scene_bytes), file,
         prepared->remedy_for(own.scene_bytes));
   auto notes = limits_of_device(*prepared, device, *setup, hand);
-  return ForceProgram{std::move(*prepared), *limits, header_of(file, own, rate_hz), std::move(notes)};
+  return ForceProgram{std::move(*prepared), *limits, header_of(file, own, rate_hz), std::move(notes),
+                      std::move(held)};
 }
 
 Result<void> upload_scene(firmware_host::Client& client, const ForceProgram& forces) {

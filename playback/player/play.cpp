@@ -260,6 +260,7 @@ Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std:
   TACTO_TRY(player);
   PlayOutcome outcome;
   outcome.notes = program->notes;
+  outcome.held = program->held;
   outcome.asked_s = options.time_s.value_or(device->path_s.value_or(kUsualS));
   outcome.rests_from_s = rest_from(device->path_s, outcome.asked_s);
   const auto script = script_for(options.script, *program, outcome.asked_s);

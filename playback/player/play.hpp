@@ -52,6 +52,7 @@ struct PlayOutcome {
   std::optional<schema::PlaybackGain> kept_gain;  ///< the gain stored with the texture, if that was used
   std::optional<LimitTally> limits;               ///< of the session; none: unknown, `notes` say why
   std::optional<HostLoopFigures> looped;
+  std::vector<HeldLayer> held;  ///< of forces with hold_stable
 };
 
 /// Emulated devices play as fast as possible, or paced; `stop_asked` ends the playback early, by a ramp. A

@@ -268,6 +268,8 @@ Result<void> Player::arm(const std::string& session_path) {
     return done;
   }
   session_path_ = session_path;
+  if (forces_)
+    for (const HeldLayer& layer : forces_->held) recorder_->event({0, steady_ns(), held_words(layer)});
   if (const auto streams = options_.measured ? Result<void>() : tray_.begin_stream(); !streams)
     recorder_->event({0, steady_ns(), "no samples of the tray: " + schema::message(streams.error())});
   const auto beaten = beat();

@@ -74,7 +74,8 @@ Result<std::int32_t> counts_to(double to_m, double from_m, double step_m) {
 
 Result<std::size_t> layer_place(const schema::Patch& patch, const std::string& name) {
   Words types;
-  for (const schema::ForceLayer& layer : patch.layers) types.emplace_back(type_of(layer));
+  for (const schema::ForceLayer& layer : patch.layers)
+    if (!is_added(layer)) types.emplace_back(type_of(layer));
   for (std::size_t i = 0; i < types.size(); ++i)
     if (name == std::to_string(i)) return i;
   if (std::ranges::count(types, name) > 1)
@@ -104,7 +105,7 @@ Result<wire::Set> target_of(const Words& path, double value, const PreparedScene
   const schema::ForceLayer& layer = patch.layers[*at_layer];
   Words members;
   const auto numbers = numbers_of(layer);
-  for (const auto& [name, number] : numbers) members.emplace_back(name);
+  for (const auto& [name, number, whole] : numbers) members.emplace_back(name);
   const auto at_member = place_of(fmt::format("member in the {} named", type_of(layer)), path[2], members);
   TACTO_TRY(at_member);
   TACTO_TRY(check_value(numbers[*at_member], value));

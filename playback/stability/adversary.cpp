@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 
@@ -12,7 +11,6 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kLongestWay = 32;  // ticks
 
 // A closed motion: in each tick even up to the change of the force, and even after it.
@@ -58,7 +56,7 @@ class Adversary {
     }
     const double lacking_j = friction_j - damper_j;
     if (lacking_j < 0) return 0;
-    return spring > 0 ? lacking_j / spring : kInfinity;
+    return spring > 0 ? lacking_j / spring : INFINITY;
   }
 
  private:
@@ -143,7 +141,7 @@ double least_generating_stiffness(const schema::DeviceAxis& axis, const TickTimi
                                   double virtual_damping_n_s_per_m, double speed_mps, std::size_t paths,
                                   std::uint64_t seed) {
   Adversary adversary(axis, timing, virtual_damping_n_s_per_m, speed_mps, seed);
-  double least = kInfinity;
+  double least = INFINITY;
   for (std::size_t i = 0; i < paths; ++i) least = std::min(least, adversary.next());
   return least;
 }

@@ -8,7 +8,6 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // L of the header.
 double held_ticks(double delay_ticks) {
@@ -29,7 +28,7 @@ double passive_stiffness_limit(const schema::DeviceAxis& axis, const TickTiming&
   if (friction_n < 0) return 0;
   const double left = axis.viscous_n_s_per_m - damping,
                held_s = held_ticks(timing.delay_ticks) * timing.period_s;
-  const double at_rest = step_m > 0 ? 2 * friction_n / step_m : kInfinity;
+  const double at_rest = step_m > 0 ? 2 * friction_n / step_m : INFINITY;
   const double moving = std::isinf(speed_mps)
                             ? left / held_s
                             : (left * speed_mps + friction_n) / (held_s * speed_mps + step_m / 2);
@@ -45,7 +44,7 @@ double largest_passive_speed_mps(const schema::DeviceAxis& axis, const TickTimin
   const double friction_n = friction_left_n(axis, timing, damping) - stiffness * axis.encoder_step_m / 2;
   if (friction_n < 0) return 0;
   const double lacking = passive_damping_needed(timing, stiffness, damping) - axis.viscous_n_s_per_m;
-  return lacking > 0 ? friction_n / lacking : kInfinity;
+  return lacking > 0 ? friction_n / lacking : INFINITY;
 }
 
 double friction_basin_m(const schema::DeviceAxis& axis, const TickTiming& timing, double stiffness,
@@ -54,7 +53,7 @@ double friction_basin_m(const schema::DeviceAxis& axis, const TickTiming& timing
   const double growing =
       stiffness * timing.period_s * (0.5 + timing.delay_ticks) - axis.viscous_n_s_per_m - damping;
   if (frequency * timing.period_s > 0.2) return NAN;
-  return growing > 0 ? 4 * axis.coulomb_n / (std::numbers::pi * frequency * growing) : kInfinity;
+  return growing > 0 ? 4 * axis.coulomb_n / (std::numbers::pi * frequency * growing) : INFINITY;
 }
 
 }  // namespace tacto::playback

@@ -15,6 +15,7 @@
 #include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
 #include "spatial/features/description.hpp"
+#include "spatial/job/description_options.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -103,8 +104,7 @@ cli::Action declare_describe(CLI::App& app) {
   app.add_option("-o,--output", options->output,
                  "Output file, one row per texture: .csv, .json, or NAME (NAME.descriptions.json)");
   cli::declare_force(app, options->existing);
-  cli::add_quantity(app, "--window", options->description.window_m, schema::Dimension::length,
-                    "Window of the spectrum [a quarter of the texture, or 8 times its longest wavelength]");
+  declare_description(app, options->description);
   return [options] { return run_describe(*options); };
 }
 

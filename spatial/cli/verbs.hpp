@@ -12,5 +12,6 @@ extern const cli::Verb kSheetVerb;
 extern const cli::Verb kFormantsVerb;
 extern const cli::Verb kDescribeVerb;
 extern const cli::Verb kCertifyVerb;
+extern const cli::Verb kTransformVerb;
 
 }  // namespace tacto::spatial

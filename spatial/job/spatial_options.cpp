@@ -14,30 +14,6 @@ std::string where_of_band(const std::string& text) {
   return "--band " + text;
 }
 
-struct Edge {
-  double low, high;
-};
-
-// LOW..HIGH, in Hz or in cycles per length.
-Result<Edge> parse_band(const std::string& text, Dimension dimension) {
-  const std::size_t dots = text.find("..");
-  if (dots == std::string::npos)
-    return schema::fail(
-        ErrorKind::usage, "is neither 'off' nor a pair of frequencies", where_of_band(text),
-        dimension == Dimension::frequency ? "write it as 15Hz..500Hz" : "write it as 0.5/mm..10/mm");
-  const auto end = [&](const std::string& words) -> Result<double> {
-    auto value = schema::parse_quantity(words, dimension);
-    if (!value) value.error().where = where_of_band(text);
-    return value;
-  };
-  const auto low = end(text.substr(0, dots)), high = end(text.substr(dots + 2));
-  TACTO_TRY(low);
-  TACTO_TRY(high);
-  if (*low < *high) return Edge{*low, *high};
-  return schema::fail(ErrorKind::usage, "the limits of the band do not increase", where_of_band(text),
-                      "write the lower end first");
-}
-
 Result<SpaceFilter> space_filter(const SpatialOptions& options) {
   const TimeFilter& filter = options.texture.filter;
   if (options.band.empty())
@@ -105,6 +81,25 @@ void declare_filter(CLI::App& app, SpatialOptions& options) {
 }
 
 }  // namespace
+
+Result<BandLimits> parse_band(const std::string& text, Dimension dimension) {
+  const std::size_t dots = text.find("..");
+  if (dots == std::string::npos)
+    return schema::fail(
+        ErrorKind::usage, "is neither 'off' nor a pair of frequencies", where_of_band(text),
+        dimension == Dimension::frequency ? "write it as 15Hz..500Hz" : "write it as 0.5/mm..10/mm");
+  const auto end = [&](const std::string& words) -> Result<double> {
+    auto value = schema::parse_quantity(words, dimension);
+    if (!value) value.error().where = where_of_band(text);
+    return value;
+  };
+  const auto low = end(text.substr(0, dots)), high = end(text.substr(dots + 2));
+  TACTO_TRY(low);
+  TACTO_TRY(high);
+  if (*low < *high) return BandLimits{*low, *high};
+  return schema::fail(ErrorKind::usage, "the limits of the band do not increase", where_of_band(text),
+                      "write the lower end first");
+}
 
 void declare_spatial(CLI::App& app, SpatialOptions& options) {
   app.add_option("recording", options.recordings, "Recordings, by name or file, or folders of them")

@@ -30,10 +30,18 @@ struct SpatialOptions {
   bool list = false, finger_up = false, average = false, both_ways = false;
   bool mix = false;  ///< averages different surfaces, or measured with simulated recordings
   schema::Existing existing = schema::Existing::keep;
+  schema::Sync sync = schema::Sync::now;
   Align align = Align::position;
   double align_range_m = 0.5e-3;
   int jobs = 1;
 };
+
+struct BandLimits {
+  double low, high;
+};
+
+/// The text of --band: LOW..HIGH, in Hz or in cycles per length. Errors: usage.
+schema::Result<BandLimits> parse_band(const std::string& text, schema::Dimension dimension);
 
 /// Declares the options on the verb's parser; `options` must outlive it.
 void declare_spatial(CLI::App& app, SpatialOptions& options);

@@ -2,14 +2,15 @@
 // A contact sheet: many textures side by side with common scales of position, value, frequency and colour.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "spatial/picture/draw/axis.hpp"
+#include "spatial/picture/draw/geometry.hpp"
 #include "spatial/picture/draw/heading.hpp"
 #include "spatial/picture/figure.hpp"
 #include "spatial/picture/heatmap.hpp"
-#include "spatial/picture/sheet_layout.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
 
 namespace tacto::spatial {
@@ -26,6 +27,28 @@ struct SheetScales {
 /// panel.
 schema::Result<SheetScales> sheet_scales(std::span<const SpectrogramPanel> panels,
                                          const SpectrogramPictureOptions& options);
+
+/// The maximum number of cells on one page.
+inline constexpr std::size_t kCellsOfAPage = 24;
+
+/// The place of one texture.
+struct SheetCell {
+  Box title, trace, heat;
+  bool leftmost = false;  ///< has the values of its vertical axes
+  bool lowest = false;    ///< has no cell below it, so it has those of the position axis
+};
+
+/// A page of `cells` cells in `columns` columns. 0 columns: as many as make the page about as wide as high,
+/// at most four.
+struct SheetLayout {
+  SheetLayout(std::size_t cells, std::size_t columns);
+  Size page() const;
+  SheetCell cell(std::size_t index) const;
+  Box heading() const;
+  Box bar() const;  ///< for the colours
+  std::size_t cells = 0, columns = 1, rows = 1;
+  double heading_height;  ///< kHeadingHeight; more for a title of several lines
+};
 
 /// One page: for each texture value against position above the spectrogram, with name and speed. What the
 /// recording could not determine is hatched; simulated textures are labelled.

@@ -9,8 +9,8 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kRounding = 1e-12;  // upper limit of the difference between two roundings of doubles
-constexpr double kEven = 0.01;       // of the moving samples: fewer changes of step are reversals, not a grid
+constexpr double kDoubleRounding = 1e-12;  // upper limit of the difference between two roundings of doubles
+constexpr double kEven = 0.01;  // of the moving samples: fewer changes of step are reversals, not a grid
 constexpr double kLongestLag_s = 1e-3;
 constexpr std::size_t kEvery = 7;  // samples; enough values for a median, and not a factor of usual rates
 const double kSigmaOfMedian = 1 / (0.6745 * std::sqrt(70.0));
@@ -35,7 +35,7 @@ void PositionSteps::add(std::span<const double> x, std::size_t count) {
 }
 
 double PositionSteps::quantum_m(double furthest_m) const {
-  const double rounding = kRounding * furthest_m;
+  const double rounding = kDoubleRounding * furthest_m;
   const double moving = static_cast<double>(steps_.count_above(rounding));
   const double uneven = static_cast<double>(changes_.count_above(rounding));
   return uneven > kEven * moving ? changes_.smallest_above(rounding) : 0;
@@ -44,7 +44,7 @@ double PositionSteps::quantum_m(double furthest_m) const {
 double PositionSteps::noise_m(double quantum_m, double furthest_m) const {
   double noise_m = 0;
   for (const LogHistogram& bends : bends_) noise_m = std::max(noise_m, bends.median() * kSigmaOfMedian);
-  return noise_m > std::max(quantum_m, kRounding * furthest_m) ? noise_m : 0;
+  return noise_m > std::max(quantum_m, kDoubleRounding * furthest_m) ? noise_m : 0;
 }
 
 schema::Result<PositionFacts> position_facts(const ReadFrames& read, std::span<const FrameRange> pieces,

@@ -11,14 +11,42 @@
 #include "data-schema/base/error.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "spatial/strokes/bridged_source.hpp"
+#include "spatial/strokes/counter_wraps.hpp"
+#include "spatial/strokes/frame_range.hpp"
 #include "spatial/strokes/monotone_path.hpp"
 #include "spatial/strokes/position_facts.hpp"
 #include "spatial/strokes/position_jumps.hpp"
-#include "spatial/strokes/position_track.hpp"
 #include "spatial/strokes/strokes.hpp"
 #include "spatial/strokes/touch_source.hpp"
 
 namespace tacto::spatial {
+
+/// Reads stretches of the position. A short record (1e6 frames, 8 MB) is held in memory; of a longer one only
+/// what was requested. The source must outlive it.
+class PositionTrack {
+ public:
+  /// Reads the whole record once, to find the wraps of its counter. Errors: of reading.
+  static schema::Result<PositionTrack> open(TouchSource& source, std::size_t frames,
+                                            std::span<const schema::Gap> gaps);
+
+  /// Positions in m from frame `first` on. Errors: of reading.
+  schema::Result<void> read(std::size_t first, std::span<double> out) const;
+  schema::Result<std::vector<double>> read(FrameRange frames) const;
+
+  bool moves() const { return moves_; }
+  double furthest_m() const { return furthest_m_; }  ///< largest stored |position|, for rounding
+  const CounterWraps& wraps() const { return wraps_; }
+
+ private:
+  explicit PositionTrack(TouchSource& source) : source_(&source) {}
+  schema::Result<void> survey(std::size_t frames, std::span<const schema::Gap> gaps);
+
+  TouchSource* source_;
+  std::vector<double> kept_m_;
+  CounterWraps wraps_;
+  bool moves_ = false;
+  double furthest_m_ = 0;
+};
 
 /// Holds the strokes of a record of any length and reads the rest on demand, so it needs little memory. Not
 /// shared between threads.

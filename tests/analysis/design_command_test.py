@@ -176,6 +176,73 @@ def minskys_cases():
             design("--hand", "h", code=UNSTABLE)
 
 
+def adaptive(stiffness):
+    return {**spring(stiffness), "adaptive": True}
+
+
+def least_damping(held, period, delay_ticks, stiffness, most):
+    """With which 1.2 times the stiffness is stable: from 0, where it is not, up to `most`, where it is."""
+    def stable(damping):
+        return is_stable(*held, period, delay_ticks, 1.2 * stiffness, damping)
+
+    assert not stable(0) and stable(most)
+    bad, good = 0, most
+    while good - bad > 1e-9 * good:
+        middle = (bad + good) / 2
+        bad, good = (bad, middle) if stable(middle) else (middle, good)
+    return good
+
+
+def adaptive_viscosity_is_the_least_that_suffices():
+    """Minsky's case at 100 Hz: 2773 N/m, hand 5 N s/m, 0.8 kg, stable with 15 N s/m; with 0.3 kg no damping suffices."""
+    write_device(0.1, 0, coulomb=0.1, step=1e-6, rates=(100,))
+    write_scene(patch(spring(2773)))
+    write_hand(0.7, 5, 400)
+    remedy = design("--hand", "h", code=UNSTABLE)["remedies"][-1]
+    report = design_of(patch(adaptive(2773)), options=("--hand", "h", "--simulate"))
+    stiff, added = report["layers"]
+    expected = least_damping((0.8, 5, 400), 1e-2, 0, 2773, 30)
+    print(f"  adds {added['damping_n_s_per_m']:.4f} N s/m, of NumPy's eigenvalues {expected:.4f}")
+    close(added["damping_n_s_per_m"], expected, 1e-6)
+    close(expected, 15, 0.02)  # the paper's number; ours follows from the margin of 1.2
+    assert (stiff["verdict"], stiff["simulated"], added["type"]) == ("stable", "rests", "adaptive damper"), report
+    close(stiff["hand_limit_n_per_m"], 1.2 * 2773, 1e-6)
+    assert remedy["change"] == "adaptive viscosity" and remedy["needed"].startswith("adds"), remedy
+    close(float(remedy["needed"].split()[1]), expected, 1e-3)
+    close(remedy["limit_n_per_m"], 1.2 * 2773, 1e-6)
+    # As much damping, written into the scene, is the same.
+    again = design_of(patch(spring(2773), damper(added["damping_n_s_per_m"])), options=("--hand", "h"))
+    assert again["layers"][0]["margin"] == stiff["margin"], again
+    # It is for what holds the device: with 0.1 kg alone nothing suffices.
+    assert design_of(patch(adaptive(2773)), code=UNSTABLE)["remedies"][-1]["needed"].startswith("none")
+    write_hand(0.2, 5, 400)
+    assert not any(is_stable(0.3, 5, 400, 1e-2, 0, 2773, damping) for damping in np.linspace(0, 60, 601))
+    report = design_of(patch(adaptive(2773)), options=("--hand", "h"), code=UNSTABLE)
+    assert [row["type"] for row in report["layers"]] == ["spring"] and report["remedies"][-1]["needed"].startswith("none"), report
+    for what in (("explain", "s.scene.json", "--device", "d", "--hand", "h"), ("play", "s.scene.json", "-d", "sim:planar,device=d,hand=h", "-o", "x")):
+        _, err = run(*what, code=UNSUITABLE)
+        assert "s.scene.json#/patches/0/layers/0/adaptive" in tacto.unwrapped(err), err
+    # With a tick of delay more than K T is needed, so that the Coulomb friction has to carry B D / T.
+    needed = least_damping((0.1, 1, 0), 1e-3, 1, 5000, 20)
+    assert needed > 5, needed
+    for factor, code in ((0.99, UNSTABLE), (1.01, 0)):
+        write_device(0.1, 1, coulomb=factor * needed * 1e-5 / 1e-3, step=1e-5, delay=1e-3)
+        report = design_of(patch(adaptive(5000)), code=code)
+    close(report["layers"][1]["damping_n_s_per_m"], needed, 1e-6)
+
+
+def stiffness_is_held_to_the_limit():
+    write_device(0.1, 1.0)
+    limit = only(design_of(patch(spring(1))))["free_limit_n_per_m"]
+    patches = [patch(spring(limit * (1.2 if i == 6 else 0.9)), name=f"p{i}", x_m=0.019 * (i - 4.5), width_m=0.018) for i in range(10)]
+    held = design_of(*patches, options=("--hold-stable",))
+    assert [(row["patch"], row["type"], row["layer"]) for row in held["held_stable"]] == [("p6", "spring", 0)], held
+    close(held["held_stable"][0]["from_n_per_m"], 1.2 * limit, 1e-9)
+    close(held["held_stable"][0]["to_n_per_m"], limit / held["held_margin"], 1e-9)
+    close(held["layers"][6]["margin"], held["held_margin"], 1e-9)
+    assert held["held_margin"] == 1.2 and isinstance(design_of(patches[0], options=("--hold-stable",))["held_stable"], str)
+
+
 def massies_wall():
     """35 N/cm at 1 kHz: 1.75 N s/m of device and finger, or 0.1 N of friction up to 57 mm/s; with 30 um 27 mm/s."""
     write_scene(patch(spring(3500)))
@@ -291,6 +358,13 @@ def remedies_make_it_stable():
             return json.loads(whatever_the_verdict("--rate", f"{numbers.get('rate', 1000):g}Hz", *options, "--json").stdout)
 
         report = made()
+        viscosity = report["remedies"].pop()
+        assert viscosity["change"] == "adaptive viscosity", report["remedies"]
+        if viscosity["needed"].startswith("adds"):
+            write_scene(patch({**spring(base["stiffness"]), "adaptive": True}, damper(0)))
+            again = json.loads(whatever_the_verdict("--rate", "1000Hz", *options, "--json").stdout)
+            assert again["layers"][0]["verdict"] == "stable", (viscosity, again)
+            close(float(viscosity["needed"].split()[1]), again["layers"][2]["damping_n_s_per_m"], 1e-3)
         for remedy in report["remedies"]:
             found = re.search(r"([\d.e+-]+) (N/m|N s/m|us|ms|um|nm|mm|Hz|kHz)$", remedy["needed"])
             if found is None:
@@ -486,7 +560,8 @@ def wrong_uses_are_refused():
 
 
 if __name__ == "__main__":
-    for test in (the_table_is_that_of_scipy, limits_are_those_of_eigenvalues, minskys_cases, massies_wall, passivity_is_the_integral_condition,
+    for test in (the_table_is_that_of_scipy, limits_are_those_of_eigenvalues, minskys_cases,
+                 adaptive_viscosity_is_the_least_that_suffices, stiffness_is_held_to_the_limit, massies_wall, passivity_is_the_integral_condition,
                  a_delay_of_half_a_tick_needs_more_than_the_mean, virtual_damping_has_a_best, patches_add_up_where_they_overlap,
                  the_layer_that_is_too_stiff_is_named, remedies_make_it_stable, taps_are_simulated, the_adversary_finds_what_is_not_proved,
                  play_rests_with_each_remedy_and_buzzes_without, outputs_are_written_and_valid, what_is_not_known_is_said, grooves_are_as_stiff_as_their_curvature,

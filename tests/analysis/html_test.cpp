@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/demo/demo_page.hpp"
+#include "analysis/demo/demo.hpp"
 
 namespace tacto::analysis {
 namespace {

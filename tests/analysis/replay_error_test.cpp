@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/demo/replay_error.hpp"
+#include "analysis/demo/demo.hpp"
 
 #include <gtest/gtest.h>
 

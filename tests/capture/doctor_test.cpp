@@ -8,9 +8,6 @@
 #include <fstream>
 
 #include "capture/calibrate/tare.hpp"
-#include "capture/doctor/realtime_limits.hpp"
-#include "capture/doctor/udev_rule.hpp"
-#include "capture/record/disk_speed.hpp"
 #include "tests/capture/sim_take.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
@@ -49,6 +46,21 @@ TEST(Doctor, AnEmulatedDeviceCanRecord) {
   EXPECT_EQ(check_named(diagnosis, "calibration").health, Health::warns);
   EXPECT_EQ(diagnosis.next, "tactograph calibrate tare -d sim:surface=C,finger=up,strokes=0");
   EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(Doctor, WarnsOfAFirmwareOlderThanTheProtocol) {
+  firmware_host::Capabilities said;
+  said.firmware = "0.1.0 build 0123abcd";
+  for (const unsigned same_or_newer : {2U, 3U}) {
+    const Check check = check_firmware(said, same_or_newer, 2);
+    EXPECT_EQ(check.health, Health::works);
+    EXPECT_TRUE(check.remedy.empty());
+  }
+  const Check older = check_firmware(said, 1, 2);
+  EXPECT_EQ(older.health, Health::warns);
+  EXPECT_NE(older.found.find("0123abcd"), std::string::npos);
+  EXPECT_NE(older.found.find("1.1, here 1.2"), std::string::npos) << older.found;
+  EXPECT_NE(older.remedy.find("firmware-host/boards/README.md"), std::string::npos);
 }
 
 // The command that the refusal suggests works: a moving finger is not still.

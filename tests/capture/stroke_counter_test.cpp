@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/record/stroke_counter.hpp"
+#include "capture/record/live_view.hpp"
 
 #include <gtest/gtest.h>
 

@@ -41,6 +41,10 @@ def a_scene_is_described_and_validated(folder):
     words, _ = run("info", "bench", cwd=folder)
     assert "wood" in words and "grooves" in words and "depth_m" in words, words
     assert run_json("validate", "bench", cwd=folder)["valid"] is True
+    sand = {"type": "noise", "period_m": 0.003, "octaves": 6, "roughness": 0.5, "seed": 123456789, "depth_m": 1e-4, "kappa_n": 1}
+    (folder / "sand.scene.json").write_text(json.dumps(SCENE | {"patches": [SCENE["patches"][0] | {"layers": [sand]}]}))
+    words, _ = run("info", "sand", cwd=folder)
+    assert "123456789" in words, words  # all digits: with four, it is another texture
     wrong = json.loads(json.dumps(SCENE))
     wrong["patches"][0]["layers"][1]["type"] = "dampr"
     (folder / "wrong.scene.json").write_text(json.dumps(wrong))

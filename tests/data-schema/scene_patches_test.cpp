@@ -104,7 +104,7 @@ TEST(ScenePatches, EveryKindIsReadWithItsNumbersAndDefaults) {
     EXPECT_EQ(type_of(patch.layers[i]), kLayers[i]["type"].get<std::string>());
     EXPECT_EQ(type_of(patch.layers[i]), force_layer_types()[i]);
     EXPECT_EQ(file_of(patch.layers[i]), kLayers[i].value("file", ""));
-    for (const auto& [name, number] : numbers_of(patch.layers[i])) {
+    for (const auto& [name, number, whole] : numbers_of(patch.layers[i])) {
       EXPECT_FALSE(number.slider);
       if (kLayers[i].contains(std::string(name)))
         EXPECT_EQ(number.value, kLayers[i][std::string(name)].get<double>()) << name;
@@ -197,6 +197,28 @@ TEST(ScenePatches, AutoIsAWordAndAFilterANumber) {
                  "s#/patches/0/layers/1/filter_m", "automatic");
 }
 
+TEST(ScenePatches, AdaptiveIsAMemberOfLayersWithAStiffness) {
+  for (std::size_t i = 0; i < kLayers.size(); ++i) {
+    Body body = all_kinds();
+    layer(body, i)["adaptive"] = true;
+    if (i > 4) {  // from damper on
+      const auto scene = parsed(body);
+      ASSERT_FALSE(scene) << i;
+      EXPECT_EQ(scene.error().where, fmt::format("s#/patches/0/layers/{}/adaptive", i));
+      continue;
+    }
+    const auto scene = parsed(body);
+    ASSERT_TRUE(scene) << message(scene.error());
+    for (std::size_t j = 0; j < kLayers.size(); ++j)
+      EXPECT_EQ(is_adaptive(scene->patches[0].layers[j]), i == j) << i << ' ' << j;
+    EXPECT_EQ(written(*scene)["patches"][0]["layers"][i]["adaptive"], true) << i;
+    layer(body, i)["adaptive"] = false;
+    EXPECT_FALSE(written(*parsed(body))["patches"][0]["layers"][i].contains("adaptive")) << i;
+  }
+  expect_refused([](Body& b) { layer(b, 4)["adaptive"] = 1; }, ErrorKind::malformed,
+                 "s#/patches/0/layers/4/adaptive", "");
+}
+
 TEST(ScenePatches, EveryNumberMayHaveASlider) {
   Body body = all_kinds();
   std::size_t numbers = 0;
@@ -214,7 +236,7 @@ TEST(ScenePatches, EveryNumberMayHaveASlider) {
   ASSERT_TRUE(scene) << message(scene.error());
   std::size_t with_slider = 0;
   for (const ForceLayer& each : scene->patches[0].layers)
-    for (const auto& [name, number] : numbers_of(each)) with_slider += number.slider.has_value();
+    for (const auto& [name, number, whole] : numbers_of(each)) with_slider += number.slider.has_value();
   EXPECT_EQ(with_slider, numbers);
   EXPECT_EQ(numbers, 24U);
 }
@@ -395,7 +417,8 @@ TEST(ScenePatches, NanIsNeitherReadNorWritten) {
   scene.patches[0].layers = {SpringLayer{.stiffness_n_per_m = {std::numeric_limits<double>::quiet_NaN()},
                                          .centre_x_m = {},
                                          .centre_y_m = {},
-                                         .extra_json = {}}};
+                                         .extra_json = {},
+                                         .adaptive = false}};
   const auto refused = write_scene(folder / "nan", scene);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().where, "/patches/0/layers/0/stiffness_n_per_m") << message(refused.error());
@@ -439,11 +462,11 @@ TEST(ScenePatches, ANewerMinorVersionIsReadAndItsMembersAreKept) {
 
 // The schema's members are those of the layers in C++: no more, no fewer.
 TEST(ScenePatches, SchemaAndTypesHaveTheSameMembers) {
-  std::set<std::string> known = {"type", "file", "profile", "filter_m"};
+  std::set<std::string> known = {"type", "file", "profile", "filter_m", "adaptive"};
   const auto scene = parsed(all_kinds());
   ASSERT_TRUE(scene);
   for (const ForceLayer& each : scene->patches[0].layers)
-    for (const auto& [name, number] : numbers_of(each)) known.emplace(name);
+    for (const auto& [name, number, whole] : numbers_of(each)) known.emplace(name);
   std::set<std::string> in_schema;
   const auto file = std::ranges::find(embedded_files(), "scene.schema.json", &EmbeddedFile::name);
   const Body layer_rule = Body::parse(file->content)["definitions"]["force_layer"];

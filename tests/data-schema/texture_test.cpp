@@ -125,6 +125,47 @@ TEST_F(TextureFile, AnAverageKeepsItsSpreadAndStrokes) {
   EXPECT_EQ(WavReader::open(folder_ / "oak.texture.wav")->info().channels, 2U);
 }
 
+TEST_F(TextureFile, ATransformIsKept) {
+  Texture made = example();
+  TransformStep mix, stretch;
+  mix.operation = TransformOperation::mix;
+  mix.weights = {1, -0.5};
+  stretch.operation = TransformOperation::stretch;
+  stretch.factor = 0.7;
+  stretch.keep_slope = true;
+  stretch.lengthening = Lengthening::best_fit;
+  stretch.joints = 1;
+  stretch.joint_error = 0.003;
+  stretch.removed_above_per_m = 450000;
+  stretch.removed_share = 0.1;
+  made.transform = TextureTransform{
+      {{"oak.texture.json", std::string(64, 'b')}, {"pine.texture.json", std::string(64, 'c')}},
+      {mix, stretch}};
+  ASSERT_TRUE(write_texture(folder_ / "oak", made));
+  const auto read = read_texture(folder_ / "oak");
+  ASSERT_TRUE(read) << message(read.error());
+  ASSERT_TRUE(read->transform);
+  ASSERT_EQ(read->transform->sources.size(), 2U);
+  EXPECT_EQ(read->transform->sources[1].texture, "pine.texture.json");
+  EXPECT_EQ(read->transform->sources[1].sha256, std::string(64, 'c'));
+  ASSERT_EQ(read->transform->steps.size(), 2U);
+  EXPECT_EQ(read->transform->steps[0].operation, TransformOperation::mix);
+  EXPECT_EQ(read->transform->steps[0].weights, (std::vector<double>{1, -0.5}));
+  EXPECT_FALSE(read->transform->steps[0].factor);
+  const TransformStep& last = read->transform->steps[1];
+  EXPECT_EQ(last.operation, TransformOperation::stretch);
+  EXPECT_EQ(last.factor, 0.7);
+  EXPECT_EQ(last.keep_slope, true);
+  EXPECT_EQ(last.lengthening, Lengthening::best_fit);
+  EXPECT_EQ(last.joints, 1);
+  EXPECT_EQ(last.joint_error, 0.003);
+  EXPECT_EQ(last.removed_above_per_m, 450000);
+  EXPECT_EQ(last.removed_share, 0.1);
+  EXPECT_FALSE(last.left_out_m);
+  ASSERT_TRUE(write_texture(folder_ / "plain", example()));
+  EXPECT_FALSE(read_texture(folder_ / "plain")->transform);
+}
+
 TEST_F(TextureFile, AnAverageWithoutItsSpreadIsBroken) {
   Texture broken = average_example();
   broken.average->spread.pop_back();

@@ -39,6 +39,7 @@ def every_verb_keeps_what_is_there():
     refused_then_forced(["d.csv"], "describe", "oak", "-o", "d.csv")
     refused_then_forced(["d.descriptions.json"], "describe", "oak", "-o", "d")
     refused_then_forced(["f.formants.json"], "formants", "oak", "-o", "f")
+    refused_then_forced(["twice.texture.json", "twice.texture.wav"], "transform", "oak", "-o", "twice", "--gain", "2x")
     refused_then_forced(["sheet.png"], "sheet", "oak", "-o", "sheet.png")
     refused_then_forced(["drive.wav"], *render, "drive.wav")
     refused_then_forced(["c.html", "c.results.json"], "compare", "oak", "oak", "-o", "c.html", "-o", "c.results.json")

@@ -8,11 +8,10 @@
 
 #include "firmware-host/core/wire/device_messages.hpp"
 #include "firmware-host/core/wire/frame_decoder.hpp"
-#include "firmware-host/gadget/drive_watch.hpp"
 #include "firmware-host/gadget/fault_injector.hpp"
 #include "firmware-host/gadget/functionfs_descriptors.hpp"
+#include "firmware-host/gadget/gadget_loop.hpp"
 #include "firmware-host/gadget/gadget_options.hpp"
-#include "firmware-host/gadget/tick_pacer.hpp"
 
 namespace tacto::firmware_host {
 namespace {

@@ -201,6 +201,72 @@ TEST(WireDevice, HalfAFrameOfAnEarlierProgramIsFlushed) {
   }
 }
 
+// A serial line in emulated time: each byte takes ten bits.
+class SlowSerialLine final : public Transport {
+ public:
+  SlowSerialLine(std::unique_ptr<Transport> inner, double baud) : inner_(std::move(inner)), baud_(baud) {}
+  schema::Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override {
+    const double until_s = now_s() + timeout_s;
+    do {
+      std::array<std::uint8_t, 4096> fresh;
+      const std::vector<std::uint8_t> arrived = arrived_by_now(to_device_, fresh.size());
+      if (!arrived.empty()) TACTO_TRY(inner_->write(arrived, 0));
+      const auto came = inner_->read(fresh, kStepS);
+      TACTO_TRY(came);
+      begin(to_host_, std::span(fresh).first(*came));
+      const std::vector<std::uint8_t> received = arrived_by_now(to_host_, bytes.size());
+      std::ranges::copy(received, bytes.begin());
+      if (!received.empty()) return received.size();
+    } while (now_s() < until_s);
+    return std::size_t{0};
+  }
+  schema::Result<void> write(std::span<const std::uint8_t> bytes, double) override {
+    begin(to_device_, bytes);
+    return {};
+  }
+  double now_s() override { return inner_->now_s(); }
+  double baud() const override { return baud_; }
+
+ private:
+  static constexpr double kStepS = 1e-3;
+  struct Way {
+    std::deque<std::pair<double, std::uint8_t>> bytes;  // with the time of arrival
+    double free_s = 0;
+  };
+  void begin(Way& way, std::span<const std::uint8_t> bytes) {
+    for (const std::uint8_t byte : bytes) {
+      way.free_s = std::max(way.free_s, now_s()) + 10 / baud_;
+      way.bytes.emplace_back(way.free_s, byte);
+    }
+  }
+  std::vector<std::uint8_t> arrived_by_now(Way& way, std::size_t most) {
+    std::vector<std::uint8_t> bytes;
+    for (; bytes.size() < most && !way.bytes.empty() && way.bytes.front().first <= now_s();
+         way.bytes.pop_front())
+      bytes.push_back(way.bytes.front().second);
+    return bytes;
+  }
+  std::unique_ptr<Transport> inner_;
+  double baud_;
+  Way to_device_, to_host_;
+};
+
+// The slowest line that is allowed: the zeros take 0.37 s, and the description of this board 0.42 s, twice if
+// the first hello is found in the half frame.
+TEST(WireDevice, HalfAFrameIsFlushedOverTheSlowestLine) {
+  const auto parameters = parse_sim_parameters(kParameters);
+  SimBoard board(*parameters, *schema::read_transducer("wiertlewski2011"),
+                 *make_surface(parameters->surface));
+  wire::Drive drive;
+  drive.count = wire::kMaxChunk;
+  std::uint8_t frame[wire::kMaxFrame];
+  const std::size_t size = wire::encode_frame(drive, 7, frame, sizeof frame);
+  board.from_host().assign(frame, frame + size / 2);
+  const auto device = WireDevice::open(
+      "test:", std::make_unique<SlowSerialLine>(std::make_unique<SimTransport>(board, false), 57'600));
+  ASSERT_TRUE(device) << message(device.error());
+}
+
 // If the stream is read in pieces, a known gap counts as a loss only after it is reached.
 TEST(WireDevice, LossesAreCountedWhenTheirGapIsTold) {
   Bench bench = bench_with(harm_the(10, MessageType::samples, Harm::drop));

@@ -3,6 +3,7 @@
 // that a reader accepts, except for samples and checksum.
 #include "data-schema/calibration/calibration.hpp"
 #include "data-schema/check/check.hpp"
+#include "data-schema/corpus/corpus_plan.hpp"
 #include "data-schema/device/device.hpp"
 #include "data-schema/device/hand.hpp"
 #include "data-schema/kinds/file_kind.hpp"
@@ -42,6 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   sound(path, schema::read_calibration(path));
   sound(path, schema::read_formants(path));
   sound(path, schema::read_descriptions(path));
+  sound(path, schema::read_corpus_plan(path));
   (void)schema::open_recording(path);
   (void)schema::read_texture(path);
   if (const auto files = schema::stored_files(path))

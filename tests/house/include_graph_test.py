@@ -44,14 +44,14 @@ VERBS = r"(.*/)?cli/|data-schema/(command|report)/|spatial/job/"
 CLI_JSON_EXCEPTION = "data-schema/report/report.cpp"
 
 # Code that runs on a device uses no hosted library.
-C_HEADERS = {"firmware-host/core": ["stdint.h", "stddef.h"], "playback/wasm": ["stdint.h", "stddef.h"]}
+C_HEADERS = {"firmware-host/core": ["stdint.h", "stddef.h"], "firmware-host/boards": ["stdint.h", "stddef.h"], "playback/wasm": ["stdint.h", "stddef.h"]}
 
 FOLDERS = ["analysis", "capture", "data-schema", "firmware-host", "playback", "spatial", "tests", "cmake", "LICENSES", ".ci"]
 FILES = ["CMakeLists.txt", "README.md", "tactograph.cpp", "LICENSE", "CONTRIBUTING.md", "CHANGELOG.md", "bootstrap",
          "packages.txt", "CMakePresets.json", ".gitignore", ".clang-format", ".clang-tidy"]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]', re.M)
-SPDX = {"firmware-host/core": "Apache-2.0"}
+SPDX = {"firmware-host/core": "Apache-2.0", "firmware-host/boards": "Apache-2.0"}
 
 
 def spelled_out(row):

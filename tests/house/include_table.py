@@ -7,13 +7,14 @@ MAY_INCLUDE = {
     "data-schema/base": "",
     "data-schema/calibration": "data-schema/{base files json}",
     "data-schema/check":
-        "data-schema/{base device files height json kinds recording results scene session spectrogram texture transducer "
+        "data-schema/{base corpus device files height json kinds recording results scene session spectrogram texture transducer "
         "wav}",
     "data-schema/cli":
-        "data-schema/{base calibration check command device exchange files height kinds recording report results scene session spectrogram "
+        "data-schema/{base calibration check command corpus device exchange files height kinds recording report results scene session spectrogram "
         "texture transducer}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
+    "data-schema/corpus": "data-schema/{base json}",
     "data-schema/device": "data-schema/{base json}",
     "data-schema/experiment": "data-schema/{base files json}",
     "data-schema/exchange": "data-schema/{base texture}",
@@ -32,6 +33,7 @@ MAY_INCLUDE = {
     "data-schema/transducer": "data-schema/{base json}",
     "data-schema/wav": "data-schema/{base files}",
     "firmware-host": "data-schema/base firmware-host/{link replay sim/device sim/physics sim/planar tty usb}",
+    "firmware-host/boards/stm32f405": "firmware-host/core/{firmware wire}",
     "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
     "firmware-host/core/firmware": "firmware-host/{core/kernel core/scene core/wire}",
     "firmware-host/core/kernel": "firmware-host/core/wire",
@@ -52,17 +54,17 @@ MAY_INCLUDE = {
     "firmware-host/usb": "data-schema/base firmware-host/{core/firmware link}",
     "capture/calibrate": "capture/record data-schema/{base calibration recording transducer} firmware-host/link",
     "capture/cli":
-        "capture/{calibrate doctor import record table} data-schema/{base cli command files height recording report} "
+        "capture/{calibrate doctor import record table} data-schema/{base cli command files height kinds recording report} "
         "firmware-host/{. sim/device}",
-    "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. link}",
+    "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. core/wire link}",
     "capture/import": "capture/{calibrate record table} data-schema/{base calibration files height recording texture}",
     "capture/record":
-        "capture/table data-schema/{base calibration files kinds recording} firmware-host/link spatial/strokes",
+        "capture/table data-schema/{base calibration files recording} firmware-host/link spatial/strokes",
     "capture/table": "data-schema/{base files recording wav}",
     "spatial/certificate": "data-schema/{base texture} spatial/features",
     "spatial/cli":
-        "data-schema/{base command files kinds recording report spectrogram texture} spatial/{certificate features "
-        "job picture spectrogram texture}",
+        "data-schema/{base cli command files kinds recording report spectrogram texture} spatial/{certificate features "
+        "job picture spectrogram texture transform}",
     "spatial/dsp/filter": "data-schema/base spatial/{dsp/fourier dsp/resample}",
     "spatial/dsp/fourier": "data-schema/files",
     "spatial/dsp/resample": "spatial/dsp/fourier",
@@ -70,7 +72,7 @@ MAY_INCLUDE = {
     "spatial/features":
         "data-schema/{base spectrogram texture} spatial/{dsp/filter dsp/fourier numbers spectrogram texture}",
     "spatial/job":
-        "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter spectrogram strokes "
+        "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter features spectrogram strokes "
         "texture}",
     "spatial/numbers": "data-schema/{base texture} spatial/dsp/{fourier spectrum}",
     "spatial/picture": "data-schema/{base files spectrogram texture} spatial/{numbers picture/draw spectrogram}",
@@ -81,8 +83,10 @@ MAY_INCLUDE = {
         "data-schema/{base results spectrogram texture} spatial/{dsp/resample dsp/spectrum numbers texture}",
     "spatial/strokes": "data-schema/{base recording} spatial/numbers",
     "spatial/texture":
-        "data-schema/{base recording spectrogram texture transducer} spatial/{dsp/filter dsp/fourier dsp/resample "
-        "numbers strokes}",
+        "data-schema/{base recording spectrogram texture transducer} spatial/{dsp/filter dsp/resample numbers "
+        "strokes}",
+    "spatial/transform":
+        "data-schema/{base files texture} spatial/{dsp/filter dsp/resample numbers texture}",
     "playback/choose": "data-schema/{results scene} playback/{model prepare}",
     "playback/cli":
         "data-schema/{base command control device files recording report scene session texture} "
@@ -122,12 +126,14 @@ MAY_INCLUDE = {
         "render/reference session} spatial/features",
     "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":
-        "analysis/{compare demo design experiment extremes fidelity identify/fit identify/measure identify/report live page report scene "
-        "trade trade/rows} data-schema/{base command files kinds report results scene texture} playback/{model "
-        "player prepare/scene session stability} spatial/{cli picture}",
+        "analysis/{compare corpus demo design experiment extremes fidelity identify/fit identify/measure identify/report live page report scene "
+        "trade trade/rows trade/scene} data-schema/{base command files kinds report results scene texture} playback/{cli "
+        "model player prepare/scene render session stability} spatial/{cli picture}",
     "analysis/compare":
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
         "dsp/fourier dsp/resample dsp/spectrum features numbers spectrogram strokes texture}",
+    "analysis/corpus":
+        "data-schema/{base command corpus files kinds texture} spatial/{features job}",
     "analysis/demo":
         "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
         "sim/bench sim/physics} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
@@ -139,15 +145,14 @@ MAY_INCLUDE = {
         "playback/{prepare/scene stability}",
     "analysis/extremes":
         "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/{base recording} "
-        "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram strokes}",
+        "firmware-host/core/scene playback/{prepare prepare/scene render/reference stability} spatial/{dsp/filter dsp/resample features reference spectrogram strokes}",
     "analysis/fidelity":
         "analysis/{compare page} data-schema/{base results texture transducer} firmware-host/{sim/bench "
         "sim/device sim/physics} playback/{model player render/reference session} spatial/{dsp/filter "
         "features texture}",
     "analysis/identify/fit": "analysis/identify/measure data-schema/{base transducer} playback/model",
     "analysis/identify/measure":
-        "capture/table data-schema/{base files recording transducer} firmware-host/link playback/model "
-        "spatial/dsp/fourier",
+        "capture/table data-schema/{base files recording} firmware-host/link spatial/dsp/fourier",
     "analysis/identify/report":
         "analysis/{identify/fit identify/measure} data-schema/{base report results} firmware-host/sim/physics "
         "spatial/{picture picture/draw}",
@@ -158,7 +163,7 @@ MAY_INCLUDE = {
     "analysis/page": "data-schema/{base results} spatial/picture",
     "analysis/psychometrics": "data-schema/base",
     "analysis/report":
-        "analysis/{identify/measure page} data-schema/{base calibration check device files height kinds recording results "
+        "analysis/{identify/measure page} data-schema/{base calibration check corpus device files height kinds recording results "
         "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
         "texture}",
     "analysis/scene":
@@ -170,6 +175,9 @@ MAY_INCLUDE = {
     "analysis/trade/offline":
         "analysis/trade/rows data-schema/{base results spectrogram texture} playback/{choose model} "
         "spatial/{dsp/spectrum reference spectrogram texture}",
+    "analysis/trade/scene":
+        "analysis/{design page trade/rows} data-schema/{base device report} firmware-host/{core/scene sim/planar} "
+        "playback/{model prepare/relief prepare/scene render render/reference stability}",
     "analysis/trade/rows":
         "data-schema/{base texture} firmware-host/sim/physics playback/{model prepare render/reference} "
         "spatial/{dsp/fourier dsp/resample strokes texture}",

@@ -18,9 +18,25 @@ not judged: the machine stopped
     Test #153: identify_anywhere_test ...........***Timeout 600.00 sec
 """
 
-with tempfile.TemporaryDirectory() as folder:
-    (pathlib.Path(folder) / "long.log").write_text(LOG)
-    lists = subprocess.run([sys.executable, VERDICT, folder, "long"], capture_output=True, text=True, check=True).stdout
+TWO_BUILDS = """
+== tests (test)
+1/2 Test #193: usb_recording ....................   Passed   70.32 sec
+2/2 Test #194: usb_gadget .......................***Failed   63.17 sec
+== tests (sanitize)
+1/2 Test #162: usb_recording ....................   Passed   47.29 sec
+2/2 Test #163: usb_gadget .......................   Passed   50.66 sec
+"""
+
+
+def lists_of(stage, log):
+    with tempfile.TemporaryDirectory() as folder:
+        (pathlib.Path(folder) / f"{stage}.log").write_text(log)
+        return subprocess.run([sys.executable, VERDICT, folder, stage], capture_output=True, text=True, check=True).stdout
+
+
+lists = lists_of("long", LOG)
 assert lists.split("\n\n") == ["\nfailed: 1\n  long: identify_anywhere_test (Timeout)", "passed only at the second try: 1\n  long: long_session",
                                "skipped: 1\n  long: package", "not judged: 1\n  long: the machine stopped\n"], lists
+lists = lists_of("usb", TWO_BUILDS)
+assert "failed: 1\n  usb: usb_gadget (Failed)" in lists and "second try: none" in lists, lists
 print("the lists are those of the log: passed")

@@ -20,7 +20,7 @@ using schema::Result;
 constexpr double kClearly = 0.25;
 constexpr double kBadStart = 0.2;  // of the data's weight; the grid alone fits a good response better
 constexpr double kHalfTurn = 2.2;  // rad: a step between neighbours that is nearer to a half turn than to 0
-constexpr double kLevel = 2;       // largest ratio of neighbouring amplitudes
+constexpr double kAmplitudeRatio = 2;  // largest ratio of neighbouring amplitudes
 constexpr double kOtherUnit = 200;
 constexpr double kOtherFrequency = 3.5;  // below 2 pi, and above 2 for a resonance of half the base's
 
@@ -43,7 +43,7 @@ BodeData without_half_turns(BodeData data, std::size_t& first_step) {
   for (std::size_t i = 1; i < data.size(); ++i) {
     const auto here = data.response[i];
     const double step = std::abs(std::arg(here / before)), ratio = std::abs(here / before);
-    if (step > kHalfTurn && ratio < kLevel && ratio > 1 / kLevel) {
+    if (step > kHalfTurn && ratio < kAmplitudeRatio && ratio > 1 / kAmplitudeRatio) {
       sign = -sign;
       if (first_step == 0) first_step = i;
     }

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/identify/measure/record_response.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <cstddef>
 #include <numeric>
 
-#include "analysis/identify/measure/local_response.hpp"
 #include "analysis/identify/measure/response_estimate.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::analysis {
 namespace {
 
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::VectorXcd;
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
+
 using RecordSpectrum = std::vector<std::complex<double>>;
 
 constexpr std::size_t kMostPlaces = 80;
@@ -39,6 +45,102 @@ RecordSpectrum record_spectrum_of(std::span<const double> x) {
   RecordSpectrum spectrum(transform.bins());
   transform.forward(centred, spectrum);
   return spectrum;
+}
+
+struct LocalResponse {
+  std::complex<double> response;
+  double offset = 0;  // of the result from the middle, bins; there the variance is least
+  // Power of the residuals per bin, and its degrees of freedom (complex).
+  double noise_power = 0, freedom = 0;
+  // Variance of the real part, and of the imaginary part, of the response for noise of power 1 per bin.
+  double variance_for_one = 0;
+};
+
+constexpr std::size_t kLeastLocalBins = 15;  // six unknowns, and nine bins for the noise
+
+using Complex = std::complex<double>;
+
+constexpr Index kLocalTerms = 3;                    // of a polynomial of second degree
+constexpr double kLocalSingular = 1e-7;             // of the largest singular value; below: not determined
+constexpr int kLocalPlaces = 20, kLocalRounds = 6;  // to each side of the best; to 1e-8
+
+struct LocalTable {
+  MatrixXcd columns;  // each of length 1
+  Eigen::VectorXd lengths;
+};
+
+// Powers of the position from -1 to 1: multiplied by the input, and alone.
+LocalTable local_table(std::span<const Complex> input, bool transient) {
+  const auto count = static_cast<Index>(input.size());
+  const double half = static_cast<double>(count - 1) / 2;
+  LocalTable table{MatrixXcd(count, transient ? 2 * kLocalTerms : kLocalTerms), {}};
+  for (Index row = 0; row < count; ++row) {
+    double power = 1;
+    for (Index term = 0; term < kLocalTerms; ++term, power *= (static_cast<double>(row) - half) / half) {
+      table.columns(row, term) = power * input[static_cast<std::size_t>(row)];
+      if (transient) table.columns(row, kLocalTerms + term) = power;
+    }
+  }
+  table.lengths = table.columns.colwise().norm().transpose().cwiseMax(1e-300);
+  for (Index i = 0; i < table.columns.cols(); ++i) table.columns.col(i) /= table.lengths(i);
+  return table;
+}
+
+// The polynomial's terms at a position, scaled for the product with a solution of unit columns.
+VectorXcd local_terms_at(const LocalTable& table, double place) {
+  VectorXcd terms = VectorXcd::Zero(table.columns.cols());
+  double power = 1;
+  for (Index term = 0; term < kLocalTerms; ++term, power *= place) terms(term) = power / table.lengths(term);
+  return terms;
+}
+
+// From -0.5 to 0.5. For a line between two bins the response is known only at the line, so the search is
+// refined in rounds.
+template <class Variance>
+double best_place(const Variance& variance) {
+  double best = 0, least = variance(0), step = 0.5 / kLocalPlaces;
+  for (int round = 0; round < kLocalRounds; ++round, step /= kLocalPlaces) {
+    const double middle = best;
+    for (int i = -kLocalPlaces; i <= kLocalPlaces; ++i) {
+      const double place = std::clamp(middle + step * i, -0.5, 0.5), here = variance(place);
+      if (here < least) least = here, best = place;
+    }
+  }
+  return best;
+}
+
+// Local polynomial method (Pintelon, Schoukens, Vandersteen and Barbe 2010): within these bins of the
+// spectra of a whole record, Y = G U + T + noise. The response G and (if `transient`) the effect of the
+// record's two ends, T, are polynomials of second degree in the frequency. Least squares by singular values.
+// The result is given at the frequency of least variance, within half the bins of their middle: a line
+// between two bins determines the response only at its own frequency. Error: of third degree in bins over
+// the width of the response, in bins. Preconditions: equal numbers of input and output bins, odd, at least
+// kLeastLocalBins.
+LocalResponse local_response(std::span<const Complex> input, std::span<const Complex> output,
+                             bool transient) {
+  const LocalTable table = local_table(input, transient);
+  const Eigen::Map<const VectorXcd> answer(output.data(), static_cast<Index>(output.size()));
+  const Eigen::JacobiSVD<MatrixXcd> parts(table.columns, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::ArrayXd sizes = parts.singularValues().array();
+  // Undetermined directions keep a large variance.
+  const Eigen::ArrayXd told = (sizes.square() + std::pow(kLocalSingular * sizes(0), 2)).inverse();
+  const VectorXcd along = parts.matrixU().adjoint() * answer;
+  const VectorXcd solution = parts.matrixV() * ((sizes * told).cast<Complex>() * along.array()).matrix();
+  LocalResponse local;
+  local.freedom = static_cast<double>(table.columns.rows() - table.columns.cols());
+  local.noise_power = (answer - table.columns * solution).squaredNorm() / local.freedom;
+  const auto variance = [&](double place) {
+    return (parts.matrixV().adjoint() * local_terms_at(table, place))
+        .array()
+        .abs2()
+        .matrix()
+        .dot(told.matrix());
+  };
+  const double best = best_place(variance);
+  local.response = local_terms_at(table, best).transpose() * solution;
+  local.variance_for_one = variance(best) / 2;
+  local.offset = best * static_cast<double>(input.size() - 1) / 2;
+  return local;
 }
 
 RecordSpectra spectra_of(std::span<const double> input, std::span<const double> output, double rate_hz) {

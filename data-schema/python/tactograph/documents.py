@@ -11,7 +11,7 @@ from tactograph.errors import FileProblem
 MAJOR = 1
 COVERED = {  # by numbers_sum
     "recording": ("sample_rate_hz", "channels", "gaps", "transducer"),
-    "texture": ("pitch_m", "quantity", "unit", "direction", "source_origin_m", "valid_band", "source", "average"),
+    "texture": ("pitch_m", "quantity", "unit", "direction", "source_origin_m", "valid_band", "source", "transform", "average"),
 }
 
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
+#include "firmware-host/core/wire/message_types.hpp"
 #include "firmware-host/link/hosted_board.hpp"
 #include "firmware-host/link/wire_fields.hpp"
-#include "firmware-host/sim/device/counter_run.hpp"
-#include "firmware-host/sim/device/scripted_run.hpp"
 #include "firmware-host/sim/device/sim_description.hpp"
 
 namespace tacto::firmware_host {
@@ -17,6 +17,62 @@ namespace {
 constexpr std::uint32_t kClockHz = 1'000'000;
 constexpr std::size_t kForceChannel = 2;   // as in ScriptedRun
 constexpr std::size_t kMessageBytes = 40;  // the bytes of a samples message without its codes: core/WIRE.md
+
+// A finger that follows a given position. The encoder follows a script: frame i is at (i + 1) x period,
+// without the frames in which the script is held at its beginning. Only the channels of position and normal
+// force, the second and third of the emulated device, have values; the others are zero.
+class ScriptedRun final : public FrameSource {
+ public:
+  // `held` must outlive this object; null: never held.
+  ScriptedRun(std::function<double(double)> position_m, std::function<std::int32_t(double)> force_code,
+              double period_s, double quantum_m, const std::atomic<bool>* held = nullptr)
+      : position_m_(std::move(position_m)),
+        force_code_(std::move(force_code)),
+        period_s_(period_s),
+        quantum_m_(quantum_m),
+        held_(held),
+        count_(count_at(0)) {}
+
+  bool next(std::span<std::int32_t> frame) override {
+    if (held_ == nullptr || !held_->load()) ++frames_;
+    count_ = count_at(frames_);
+    std::ranges::fill(frame, 0);
+    if (frame.size() > 1) frame[1] = count_;
+    if (frame.size() > 2) frame[2] = force_code_(static_cast<double>(frames_) * period_s_);
+    return true;
+  }
+  std::int32_t encoder_count() const override { return count_; }
+
+ private:
+  // A 32-bit counter wraps at 2^31.
+  std::int32_t count_at(std::uint64_t frame) const {
+    const double count = std::floor(position_m_(static_cast<double>(frame) * period_s_) / quantum_m_);
+    return static_cast<std::int32_t>(static_cast<std::int64_t>(count));
+  }
+
+  std::function<double(double)> position_m_;
+  std::function<std::int32_t(double)> force_code_;
+  double period_s_, quantum_m_;
+  const std::atomic<bool>* held_;
+  std::uint64_t frames_ = 0;
+  std::int32_t count_;
+};
+
+// Frames with consecutive numbers as codes, so that each lost or repeated frame is detected. The code of
+// channel c in frame i is 16 i + c, modulo 2^32: it wraps after 2^28 frames, 45 min at 100 kHz.
+// No physics, and almost no computation.
+class CounterRun final : public FrameSource {
+ public:
+  bool next(std::span<std::int32_t> frame) override {
+    std::uint32_t code = frames_++ * std::uint32_t{wire::kMaxChannels};
+    for (std::int32_t& sample : frame) sample = static_cast<std::int32_t>(code++);
+    return true;
+  }
+  std::int32_t encoder_count() const override { return 0; }
+
+ private:
+  std::uint32_t frames_ = 0;
+};
 
 }  // namespace
 

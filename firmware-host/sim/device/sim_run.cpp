@@ -3,12 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numbers>
 
 #include "firmware-host/sim/bench/force_bench.hpp"
-#include "firmware-host/sim/bench/touch_bench.hpp"
+#include "firmware-host/sim/physics/lugre_friction.hpp"
+#include "firmware-host/sim/physics/ridge_contact.hpp"
+#include "firmware-host/sim/physics/runge_kutta.hpp"
+#include "firmware-host/sim/physics/sensor_motion.hpp"
 
 namespace tacto::firmware_host {
 namespace {
+
+constexpr int kLoadCellBits = 16;
+constexpr double kNoiseN = 1.0 / 320;   // ATI Nano17, SI-12-0.12: resolution
+constexpr double kNativeRateHz = 1000;  // ours
+constexpr double kCutoffHz = 200;       // ours: well below half of the native rate
 
 enum Stream : std::uint64_t {
   kSpeedStream = 100,
@@ -49,6 +59,107 @@ double noise_rms_v(const SimParameters& parameters, const schema::Transducer& tr
          std::sqrt(parameters.sample_rate_hz / 2);
 }
 
+// States: position and speed of the pulp, bristles, and the state of the sensor (SensorState). The bone
+// pulls the pulp through spring and damper; friction and slopes act on the pulp and, with the opposite sign,
+// on the tray:
+//   m_f x_f'' = k_f (X - x_f) + c_f (X' - x_f') - f_d,   f_d = mu(z, x_f' - x') N + sum p_i h'_i(x_f - x).
+// Runge-Kutta steps of at most 12.5 us, ten to twenty per period of the fastest mode (a sticking pulp on its
+// bristles, about 700 Hz).
+class TouchBench final : public Bench {
+ public:
+  TouchBench(const schema::Transducer& transducer, const FingerParameters& finger,
+             const HeightProfile& profile, double sample_rate_hz, double start_m, std::uint64_t seed,
+             const std::optional<SecondMode>& second_mode = std::nullopt);
+
+  // Diverged: a value that is not a number, or a distance of more than the patch between pulp and bone.
+  bool step(const FingerPlace& bone, double load_n) override;
+  BenchReading reading() const override { return reading_; }
+
+ private:
+  using State = OdeState<8>;
+  struct Drag {
+    double position_m, speed_mps, load_n;
+  };
+  double tray_force_n(const State& state, double load_n, double& bristle_rate_mps);
+  State rate(const State& state, const Drag& drag);
+  bool sane(const State& state, double bone_m) const;
+
+  FingerParameters finger_;
+  SensorMotion sensor_;
+  RidgeContact ridges_;
+  double period_s_;
+  int substeps_;
+  State state_{};
+  BenchReading reading_;
+};
+
+enum : std::size_t {
+  kPulpM,
+  kPulpMps,
+  kBristleM,
+  kBenchTrayM,
+  kBenchTrayMps,
+  kChargeLagN,
+  kBenchInnerM,
+  kBenchInnerMps
+};
+
+SensorState sensor_part(const OdeState<8>& s) {
+  return {s[kBenchTrayM], s[kBenchTrayMps], s[kChargeLagN], s[kBenchInnerM], s[kBenchInnerMps]};
+}
+
+TouchBench::TouchBench(const schema::Transducer& transducer, const FingerParameters& finger,
+                       const HeightProfile& profile, double sample_rate_hz, double start_m,
+                       std::uint64_t seed, const std::optional<SecondMode>& second_mode)
+    : finger_(finger),
+      sensor_(transducer, second_mode),
+      ridges_(finger, profile, seed),
+      period_s_(1 / sample_rate_hz),
+      substeps_(substeps_in(period_s_)) {
+  state_[kPulpM] = start_m;
+}
+
+double TouchBench::tray_force_n(const State& s, double load_n, double& bristle_rate_mps) {
+  const LugreFriction friction = lugre_friction(finger_, s[kBristleM], s[kPulpMps] - s[kBenchTrayMps]);
+  bristle_rate_mps = friction.bristle_rate_mps;
+  return friction.coefficient * load_n + ridges_.slope_force_n(s[kPulpM] - s[kBenchTrayM], load_n);
+}
+
+TouchBench::State TouchBench::rate(const State& s, const Drag& bone) {
+  double bristle_rate_mps = 0;
+  const double force_n = tray_force_n(s, bone.load_n, bristle_rate_mps);
+  const double pull_n = finger_.stiffness_n_per_m * (bone.position_m - s[kPulpM]) +
+                        finger_.damping_n_s_per_m * (bone.speed_mps - s[kPulpMps]);
+  const SensorState sensor = sensor_.rate(sensor_part(s), force_n);
+  return {s[kPulpMps],      (pull_n - force_n) / finger_.mass_kg,
+          bristle_rate_mps, sensor.tray_m,
+          sensor.tray_mps,  sensor.charge_lag_n,
+          sensor.inner_m,   sensor.inner_mps};
+}
+
+bool TouchBench::sane(const State& s, double bone_m) const {
+  double sum = 0;
+  for (const double value : s) sum += value;
+  return std::isfinite(sum) && std::abs(s[kPulpM] - bone_m) < finger_.patch_m;
+}
+
+bool TouchBench::step(const FingerPlace& bone, double load_n) {
+  const double h = period_s_ / substeps_;
+  State state = state_;
+  for (int i = 0; i < substeps_; ++i) {
+    const double start_m = bone.position_m - bone.speed_mps * h * (substeps_ - i);
+    state = runge_kutta_step(state, h, [&](const State& s, double part) {
+      return rate(s, {start_m + bone.speed_mps * h * part, bone.speed_mps, load_n});
+    });
+  }
+  if (!sane(state, bone.position_m)) return false;
+  state_ = state;
+  double bristle_rate_mps = 0;
+  reading_ = {sensor_.output_v(sensor_part(state)), tray_force_n(state, load_n, bristle_rate_mps), load_n,
+              bone.position_m};
+  return true;
+}
+
 std::unique_ptr<Bench> bench_for(const SimParameters& p, const schema::Transducer& transducer,
                                  const HeightProfile& profile, double start_m) {
   const auto mode = p.tray().second_mode;
@@ -58,6 +169,22 @@ std::unique_ptr<Bench> bench_for(const SimParameters& p, const schema::Transduce
 }
 
 }  // namespace
+
+LoadCell::LoadCell(double range_n, double sample_rate_hz, bool noise, Random random)
+    : converter_(kLoadCellBits, range_n),
+      random_(random),
+      every_(std::max(1, static_cast<int>(std::lround(sample_rate_hz / kNativeRateHz)))),
+      native_rate_hz_(sample_rate_hz / every_),
+      follow_(1 / (1 + sample_rate_hz / (2 * std::numbers::pi * kCutoffHz))),
+      noise_n_(noise ? kNoiseN : 0) {}
+
+std::int32_t LoadCell::step(double force_n) {
+  filtered_n_ += follow_ * (force_n - filtered_n_);
+  if (until_next_-- > 0) return held_;
+  until_next_ = every_ - 1;
+  held_ = converter_.convert(filtered_n_ + noise_n_ * random_.normal());
+  return held_;
+}
 
 SimRun::SimRun(const SimParameters& p, const schema::Transducer& transducer, const HeightProfile& profile)
     : parameters_(p),

@@ -2,6 +2,7 @@
 // One run of the emulated device, from its first frame on.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -13,10 +14,32 @@
 #include "firmware-host/sim/physics/converter.hpp"
 #include "firmware-host/sim/physics/finger_path.hpp"
 #include "firmware-host/sim/physics/height_profile.hpp"
-#include "firmware-host/sim/physics/load_cell.hpp"
+#include "firmware-host/sim/physics/random.hpp"
 #include "firmware-host/sim/physics/spline_noise.hpp"
 
 namespace tacto::firmware_host {
+
+/// After the ATI Nano17 of Wiertlewski 2011, section III-D (calibration SI-12-0.12: 12 N tangentially, 17 N
+/// normally, resolution 1/320 N): slow, and much noisier than the piezo. A first-order low-pass, noise of the
+/// size of the resolution, 16 bits; sampled about 1000 times per second and held in between.
+class LoadCell {
+ public:
+  LoadCell(double range_n, double sample_rate_hz, bool noise, Random random);
+
+  /// The code for one sample of the recording.
+  std::int32_t step(double force_n);
+  const Converter& converter() const { return converter_; }
+  double native_rate_hz() const { return native_rate_hz_; }
+
+ private:
+  Converter converter_;
+  Random random_;
+  int every_;
+  double native_rate_hz_, follow_, noise_n_;
+  double filtered_n_ = 0;
+  int until_next_ = 0;
+  std::int32_t held_ = 0;
+};
 
 /// The bench (a finger on a surface, or a known force) and its instruments: the piezo's converter with the
 /// noise floor before it, the encoder or LVDT, the load cell's axes, and with a known force a cell that is as

@@ -15,6 +15,7 @@
 #include "playback/model/texture_lookup.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
+#include "playback/prepare/scene/stable_scene.hpp"
 #include "playback/prepare/texture_check.hpp"
 #include "playback/stability/free_limit.hpp"
 #include "playback/stability/hand_limit.hpp"
@@ -184,6 +185,17 @@ Result<void> check_types(const schema::Scene& scene, const std::string& where) {
             fmt::format("{}#/patches/{}/layers/{}/type", where, i, j),
             "the types that can be played are spring, damper, grooves, noise, height_map and texture");
   return {};
+}
+
+// With the dampers that were added.
+Result<void> check_layer_count(const schema::Scene& scene, const std::string& where) {
+  std::size_t layers = 0;
+  for (const schema::Patch& patch : scene.patches) layers += patch.layers.size();
+  if (layers <= core::kMostSceneLayers) return {};
+  return fail(ErrorKind::unsuitable,
+              fmt::format("with the dampers that adaptive layers add, the scene has {} layers, more than {}",
+                          layers, core::kMostSceneLayers),
+              where, "make two scenes of it");
 }
 
 std::vector<float> numbers_in(const ForceLayer& layer, const std::vector<std::string_view>& members) {
@@ -395,6 +407,8 @@ Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& wher
   auto reliefs = read_reliefs(scene, where, rate_hz);
   TACTO_TRY(reliefs);
   base.reliefs = std::move(*reliefs);
+  TACTO_TRY(add_adaptive_damping(scene, where, device, rate_hz, hand));
+  TACTO_TRY(check_layer_count(scene, where));
   std::ranges::reverse(scene.patches);
   std::ranges::stable_sort(scene.patches, std::ranges::greater(), &schema::Patch::order);
   return base.with(std::move(scene.patches));

@@ -38,7 +38,7 @@ struct Reliefs {
 
 /// The block for one device, and the patches from which it was made, both from the topmost patch on.
 struct PreparedScene {
-  std::vector<schema::Patch> patches;  ///< filter_m of grooves is always a number
+  std::vector<schema::Patch> patches;  ///< filter_m of grooves is a number; with the dampers that were added
   std::vector<std::uint32_t> words;    ///< the block (core::SceneHeader), little-endian
   PlaneSteps steps;
   double stiffness_limit_n_per_m = 0;  ///< stiffness_limit_of()
@@ -83,7 +83,7 @@ double length_across(const schema::Patch& patch, double direction_deg);
 /// scene's file. Preconditions: a scene as read_scene() gives it; the device has this rate, and an axis x or
 /// y. Errors: unsuitable, if it has no patches; by JSON pointer, for a type of layer that cannot be played
 /// yet (with those that can), and for the filter of grooves on a device without viscous friction; as
-/// read_reliefs.
+/// read_reliefs and add_adaptive_damping.
 schema::Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& where,
                                             const schema::Device& device, double rate_hz,
                                             const std::optional<schema::Hand>& hand = std::nullopt);

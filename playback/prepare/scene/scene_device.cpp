@@ -12,7 +12,7 @@
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
 #include "playback/prepare/scene/acting_load.hpp"
-#include "playback/stability/acting_patches.hpp"
+#include "playback/prepare/scene/stable_scene.hpp"
 
 namespace tacto::playback {
 
@@ -221,24 +221,15 @@ void note_instability(const PreparedScene& scene, const Device& device, double r
                       const std::optional<schema::Hand>& hand, std::vector<std::string>& notes) {
   if (!(device.axes.front().mass_kg > 0)) return;
   const std::vector<schema::Patch> patches(scene.patches.rbegin(), scene.patches.rend());  // as in a file
-  double farthest = 1;
-  std::string note;
-  for (const ActingPatches& place : acting_patches(patches, device)) {
-    const ActingLoad load = load_of(patches, place.patches);
-    for (const double damping : {load.least_damping_n_s_per_m, load.most_damping_n_s_per_m}) {
-      if (load.stiffness_n_per_m <= 0 && damping <= 0) continue;
-      const double limit = stiffness_limit_of(device, rate_hz, hand, damping);
-      const double beyond = limit > 0 ? load.stiffness_n_per_m / limit : INFINITY;
-      if (beyond < farthest) continue;
-      farthest = beyond;
-      note = fmt::format(
-          "{} is unstable on this device with {}: {:.4g} N/m and {:.4g} N s/m act there together, the limit "
-          "is {:.4g} N/m (computed); 'tactograph design' lists what would prevent it",
-          largest_share(patches, place.patches), hand ? "hand " + hand->name : "nothing held",
-          load.stiffness_n_per_m, damping, limit);
-    }
-  }
-  if (!note.empty()) notes.push_back(std::move(note));
+  const std::vector<PlaceLimit> limits = place_limits(patches, device, rate_hz, hand);
+  const auto worst = std::ranges::max_element(limits, {}, &PlaceLimit::used);
+  if (worst == limits.end() || worst->used() < 1) return;
+  notes.push_back(fmt::format(
+      "{} is unstable on this device with {}: {:.4g} N/m and {:.4g} N s/m act there together, the "
+      "limit is {:.4g} N/m (computed); 'play' and 'render' with --hold-stable scale its stiffness down, and "
+      "'tactograph design' lists what else would prevent it",
+      largest_share(patches, worst->place.patches), hand ? "hand " + hand->name : "nothing held",
+      worst->load.stiffness_n_per_m, worst->damping_n_s_per_m, worst->limit_n_per_m));
 }
 
 }  // namespace

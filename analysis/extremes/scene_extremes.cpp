@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <numbers>
+
+#include "analysis/extremes/extreme.hpp"
+#include "firmware-host/core/scene/scene_kernel.hpp"
+#include "playback/prepare/scene/scene_device.hpp"
+#include "playback/stability/sampled_spring.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+constexpr double kStatedLimitError = 1e-9;  // stiffness_limit()
+constexpr double kStatedForceError = 3e-7;  // SceneKernel
+
+// C = K T / B of the free device for x = B T / M, in extended precision: with e = exp(-x),
+// phi = (e - 1 + x) / x^2 and q = ((1 - e) / x)^2 - phi e, in units of T^2 / M, the limit is the lesser of
+// (1 - e) / q and, where phi > q, 2 (1 + e) / (phi - q) (free_limit.hpp).
+long double closed_form_of_c(long double x) {
+  const long double e = std::exp(-x), first = -std::expm1(-x) / x;  // (1 - e) / x
+  long double phi = (1 - first) / x;
+  if (x < 1e-2L) {  // 1/2 - x/6 + x^2/24 - ...
+    long double term = 0.5L;
+    phi = 0;
+    for (int n = 3; n < 15; ++n) {
+      phi += term;
+      term *= -x / static_cast<long double>(n);
+    }
+  }
+  const long double q = first * first - phi * e;
+  const long double by_speed = first * x / q, by_place = phi > q ? 2 * (1 + e) / (phi - q) : INFINITY;
+  return std::min(by_speed, by_place) / x;
+}
+
+// Masses of 1 g to 10 kg, rates of 100 Hz to 20 kHz, dampings of 1 mN s/m to 100 N s/m.
+double limit_error() {
+  double worst = 0;
+  for (const double mass : {1e-3, 0.1, 10.0})
+    for (const double rate_hz : {100.0, 1e3, 20e3})
+      for (const double damping : {1e-3, 1.0, 100.0}) {
+        const double found = playback::stiffness_limit({mass, damping, 0}, {1 / rate_hz, 0}, 0);
+        const auto exact = static_cast<double>(
+            closed_form_of_c(static_cast<long double>(damping) / (static_cast<long double>(mass) * rate_hz)) *
+            static_cast<long double>(damping) * rate_hz);
+        worst = std::max(worst, std::abs(found / exact - 1));
+      }
+  return worst;
+}
+
+// With B T / M = 1e-7 the limit is that of the linear term, but for some 1e-7 times the delay.
+double delay_error() {
+  double worst = 0;
+  for (const double delay : {0.0, 0.001, 0.5, 1.0, 1.999, 5.25, 20.0}) {
+    const double found = playback::stiffness_limit({1, 1e-7, 0}, {1, delay}, 0);
+    worst = std::max(worst, std::abs(found * (0.5 + delay) / 1e-7 - 1));
+  }
+  return worst;
+}
+
+// Without limits of force.
+schema::Device boundless(double step_m, double rate_hz) {
+  schema::Device device = *schema::read_device("sandpaper-1990");
+  for (schema::DeviceAxis& axis : device.axes) {
+    axis.encoder_step_m = step_m;
+    axis.peak_force_n = axis.continuous_force_n = 1e9;
+  }
+  device.peak_force_n = device.continuous_force_n = 1e9;
+  device.slew_n_per_s = 1e15;
+  device.rates_hz = {rate_hz};
+  return device;
+}
+
+// The kernel of a scene with one layer.
+class OneLayer {
+ public:
+  OneLayer(schema::ForceLayer layer, double step_m, double rate_hz, double x_m = 0, double width_m = 1)
+      : device_(boundless(step_m, rate_hz)), setup_(*playback::force_setup_of(device_, rate_hz)) {
+    schema::Patch patch;
+    patch.name = "patch";
+    patch.x_m = x_m;
+    patch.width_m = patch.height_m = width_m;
+    patch.layers = {std::move(layer)};
+    schema::Scene scene;
+    scene.patches = {patch};
+    prepared_ = *playback::prepare_scene(scene, "extremes", device_, rate_hz);
+    live_.resize(prepared_.view().live_words());
+    kernel_.set(prepared_.view(), setup_, live_.data());
+  }
+  OneLayer(const OneLayer&) = delete;
+  OneLayer& operator=(const OneLayer&) = delete;
+  // Along x, before the limits.
+  double force_n(std::int32_t count) {
+    const std::int32_t counts[2] = {count, 0};
+    return double{kernel_.tick(counts, true).unlimited_n[0]};
+  }
+
+ private:
+  schema::Device device_;
+  core::ForceSetup setup_;
+  playback::PreparedScene prepared_;
+  std::vector<float> live_;
+  core::SceneKernel kernel_;
+};
+
+// Springs of 1e-3 to 1e6 N/m, encoders of 1 nm to 1 mm, within 0.1 m.
+double spring_error() {
+  double worst = 0;
+  for (const double stiffness : {1e-3, 1.0, 1e6})
+    for (const double step_m : {1e-9, 1e-6, 1e-3}) {
+      schema::SpringLayer spring;
+      spring.stiffness_n_per_m = {stiffness};
+      OneLayer scene(spring, step_m, 1000);
+      for (int i = -50; i <= 50; ++i) {
+        const auto count = static_cast<std::int32_t>(std::lround(2e-3 * i / step_m));
+        const double exact_n = -stiffness * count * step_m;
+        worst = std::max(worst, std::abs(scene.force_n(count) - exact_n) / (stiffness * 0.1));
+      }
+    }
+  return worst;
+}
+
+// Whole counts per tick have no grain: -B v.
+double damper_error() {
+  double worst = 0;
+  for (const double rate_hz : {100.0, 1e3, 20e3}) {
+    OneLayer scene(schema::DamperLayer{{5}, ""}, 1e-6, rate_hz);
+    const double exact_n = -5 * 3e-6 * rate_hz;
+    for (int tick = 0; tick < 100; ++tick) {
+      const double force_n = scene.force_n(3 * tick);
+      if (tick > 20) worst = std::max(worst, std::abs(force_n / exact_n - 1));
+    }
+  }
+  return worst;
+}
+
+schema::GroovesLayer sine_of(double period_m) {
+  schema::GroovesLayer sine;
+  sine.period_m = {period_m};
+  sine.depth_m = {1e-4};
+  sine.kappa_n = {2};
+  return sine;
+}
+
+// -kappa h' of h = depth / 2 cos(2 pi x / period), from the patch's centre, at 1 count per tick.
+double far_patch_error() {
+  constexpr double kStep_m = 1e-6, kPeriod_m = 1e-3, kFar_m = 10;
+  OneLayer scene(sine_of(kPeriod_m), kStep_m, 1000, kFar_m, 0.1);
+  const double most_n = 2 * 1e-4 * std::numbers::pi / kPeriod_m;
+  double worst = 0;
+  for (int i = -2000; i < 2000; ++i) {
+    const double exact_n = most_n * std::sin(2 * std::numbers::pi * i * kStep_m / kPeriod_m);
+    worst = std::max(worst, std::abs(scene.force_n(10'000'000 + i) - exact_n) / most_n);
+  }
+  return worst;
+}
+
+// A period of 2^20 counts of 2^-30 m: 2^31 counts are whole periods, exactly.
+double counter_difference() {
+  constexpr double kStep_m = 0x1p-30, kPeriod_m = 0x1p-10;
+  OneLayer near(sine_of(kPeriod_m), kStep_m, 1000, 0, 10), far(sine_of(kPeriod_m), kStep_m, 1000, 0, 10);
+  double worst = 0, most = 0;
+  for (int i = -2000; i < 2000; ++i) {
+    const std::int32_t count = 700 * i;
+    const auto over = static_cast<std::int32_t>(static_cast<std::uint32_t>(count) + (UINT32_C(1) << 31));
+    const double one = near.force_n(count), other = far.force_n(over);
+    worst = std::max(worst, std::abs(one - other));
+    most = std::max(most, std::abs(one));
+  }
+  return most > 0.1 ? worst / most : 1;
+}
+
+}  // namespace
+
+std::vector<Extreme> scene_extremes() {
+  return {{"playback", "masses of 1 g to 10 kg at 100 Hz to 20 kHz: the largest stable stiffness",
+           "the exact discretisation in closed form, in long double", limit_error(), kStatedLimitError,
+           "friction of 1 mN s/m to 100 N s/m"},
+          {"playback", "delays of 0 to 20 ticks: the largest stable stiffness",
+           "B / (T (1/2 + delay)) for B T / M = 1e-7", delay_error(), 1e-5, "beyond 50 ticks it is refused"},
+          {"firmware-host", "springs of 1e-3 to 1e6 N/m on encoders of 1 nm to 1 mm: the force", "-K x",
+           spring_error(), kStatedForceError, ""},
+          {"firmware-host", "a damper at 100 Hz to 20 kHz, 3 counts a tick: the force", "-B v",
+           damper_error(), kStatedForceError, ""},
+          {"firmware-host", "a sine of 1 mm on a patch 10 m from the origin: the force", "its derivative",
+           far_patch_error(), kStatedForceError, "places are whole counts, so no digits are lost"},
+          {"firmware-host", "grooves through the end of the counter, 2^31 counts",
+           "the same way about 0, to the bit", counter_difference(), 0, ""}};
+}
+
+}  // namespace tacto::analysis

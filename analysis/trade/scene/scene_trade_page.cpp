@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/trade/scene/scene_trade_page.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "analysis/page/html.hpp"
+#include "analysis/page/picture_svg.hpp"
+#include "analysis/trade/rows/pareto.hpp"
+#include "data-schema/base/decibels.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/report/value_text.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::Dimension;
+using schema::for_people;
+
+std::vector<TradeRow> trade_rows(const SceneTrade& trade) {
+  std::vector<TradeRow> rows;
+  for (const SceneTradeRow& each : trade.rows) rows.push_back(each.row);
+  return rows;
+}
+
+// Keys and SI values; NaN: nothing.
+using TradeCells = std::vector<std::pair<std::string, std::variant<double, std::string>>>;
+
+TradeCells trade_cells(const SceneTradeRow& row, const Worth& worth) {
+  return {{"choice_of", row.row.knob},
+          {"choice", row.row.choice},
+          {"error_n", row.error_n},
+          {"error_rms_n", row.error_rms_n},
+          {"promised_n", row.promised_n},
+          {"cost_ns", row.row.cost_ns},
+          {"per", row.row.per},
+          {"memory_kib", row.row.memory_bytes / 1024},
+          {"stiffness_n_per_m", row.stiffness_n_per_m},
+          {"limit_n_per_m", row.limit_n_per_m},
+          {"stability", row.verdict},
+          {"worth_it", worth_words(worth)},
+          {"note", row.row.note}};
+}
+
+std::vector<std::string> column_keys() {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : trade_cells({}, {})) keys.push_back(key);
+  return keys;
+}
+
+cli::Report report_row(const TradeCells& cells) {
+  cli::Report report;
+  for (const auto& [key, value] : cells)
+    if (const auto* number = std::get_if<double>(&value); number == nullptr)
+      report.add(key, std::get<std::string>(value));
+    else if (std::isfinite(*number))
+      report.add(key, *number);
+  return report;
+}
+
+std::string best_of(const SceneTrade& trade) {
+  std::string words;
+  for (const PlainAnswer& answer : plain_answers(trade_rows(trade)))
+    if (answer.knee_row)
+      words += fmt::format("{}{}: {}", words.empty() ? "" : "; ", answer.knob,
+                           trade.rows[*answer.knee_row].row.choice);
+  return words.empty() ? "no best choice" : words;
+}
+
+std::string scene_answer(const SceneTrade& trade) {
+  if (!trade.chosen) return "best for its cost: " + best_of(trade);
+  const SceneChoice& chosen = *trade.chosen;
+  return fmt::format(
+      "{}: an error of at most {} at any place, a tick of {} on this computer",
+      chosen.changed.empty() ? "the scene as it is" : fmt::format("{}", fmt::join(chosen.changed, "; ")),
+      for_people(chosen.promised_n, Dimension::force), for_people(chosen.tick_s, Dimension::time));
+}
+
+cli::Report trade_head(const SceneTrade& trade) {
+  cli::Report head;
+  head.add("answer", scene_answer(trade)).add("scene", trade.scene).add("device", trade.device);
+  head.add("rate_hz", trade.rate_hz).add("machine", trade.machine).add("paths", trade.paths);
+  head.add("largest_force_n", trade.largest_force_n).add("rounding_n", trade.rounding_n);
+  if (trade.chosen) {
+    const SceneChoice& chosen = *trade.chosen;
+    head.add("changed", chosen.changed).add("promised_n", chosen.promised_n);
+    head.add("error_n", chosen.error_n).add("tick_s", chosen.tick_s).add("memory_bytes", chosen.bytes);
+    head.add("stability", chosen.verdict);
+  }
+  head.add("not_promised", trade.not_promised);
+  if (!trade.without_choice.empty())
+    head.add("without_choice", fmt::format("{}", fmt::join(trade.without_choice, ", ")));
+  return head;
+}
+
+double error_level(const SceneTradeRow& row) {
+  constexpr double kLeast_n = 1e-9;
+  return schema::amplitude_db(std::max(row.error_rms_n, kLeast_n));
+}
+
+constexpr const char* kSceneTradeNotes =
+    "<h2>What the columns mean</h2>\n"
+    "<p><em>Error</em>: the largest difference of the force from the reference in double precision, along "
+    "the paths, and its RMS. <em>Promised</em>: the largest difference at any place and speed, with the "
+    "worse ends of the "
+    "sliders and the patches in their places; empty where it is measured only. Both are of the force before "
+    "the limits of the device. <em>Cost</em>: CPU time on this computer, of a tick of the whole scene, of a "
+    "rate per ms of playing. <em>Memory</em>: the scene's block and the kernel's state. <em>Stiffness</em> "
+    "and <em>limit</em>: of all layers that act there, and the largest stable one, as design computes it; of "
+    "a rate those of the layer nearest to its limit.</p>\n"
+    "<p>The interpolant of relief (a cubic B-spline with 12 samples to the shortest period of a level), the "
+    "precision of the tick (single) and the filter of the velocity have no choice: the program has one of "
+    "each.</p>\n";
+
+}  // namespace
+
+cli::Report scene_trade_report(const SceneTrade& trade) {
+  cli::Report report = trade_head(trade);
+  const auto rows = trade_rows(trade);
+  const auto worth = worth_of(rows);
+  std::vector<cli::Report> answers, choices;
+  for (const PlainAnswer& answer : plain_answers(rows))
+    answers.push_back(cli::Report()
+                          .add("choice_of", answer.knob)
+                          .add("knee", answer.knee_row ? rows[*answer.knee_row].choice : answer.knee)
+                          .add("never_worth_it", answer.never));
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    choices.push_back(report_row(trade_cells(trade.rows[i], worth[i])));
+  return report.add("answers", std::move(answers)).add("choices", std::move(choices));
+}
+
+std::vector<schema::ResultFigure> scene_trade_figures(const SceneTrade& trade) {
+  std::vector<schema::ResultFigure> figures;
+  const cli::Report head = trade_head(trade);
+  for (const auto& [key, value] : cli::ReportPrinter::entries(head))
+    figures.push_back({cli::labels_of({key}).front(), cli::cell_text(key, value)});
+  return figures;
+}
+
+std::vector<schema::ResultPicture> scene_trade_pictures(const SceneTrade& trade) {
+  const auto worth = worth_of(trade_rows(trade));
+  std::vector<schema::ResultPicture> pictures;
+  for (const char* per : {"tick", "ms"}) {
+    schema::ResultPicture picture{fmt::format("Error against cost per {}", per),
+                                  fmt::format("CPU time (ns per {})", per),
+                                  "error, RMS (dB re 1 N)",
+                                  true,
+                                  {}};
+    std::vector<schema::ResultCurve> knees;
+    for (std::size_t i = 0; i < trade.rows.size(); ++i) {
+      const SceneTradeRow& row = trade.rows[i];
+      if (row.row.per != per) continue;
+      if (picture.curves.empty() || picture.curves.back().name != row.row.knob)
+        picture.curves.push_back({row.row.knob, {}, {}, false, false});
+      picture.curves.back().x.push_back(row.row.cost_ns);
+      picture.curves.back().y.push_back(error_level(row));
+      if (worth[i].knee)
+        knees.push_back({row.row.choice + " (knee)", {row.row.cost_ns}, {error_level(row)}, false, true});
+    }
+    if (picture.curves.empty()) continue;
+    picture.curves.insert(picture.curves.end(), knees.begin(), knees.end());
+    pictures.push_back(std::move(picture));
+  }
+  return pictures;
+}
+
+std::string scene_trade_csv(const SceneTrade& trade) {
+  const auto quoted = [](std::string text) {
+    for (std::size_t at = 0; (at = text.find('"', at)) != text.npos; at += 2) text.insert(at, 1, '"');
+    return '"' + text + '"';
+  };
+  const auto worth = worth_of(trade_rows(trade));
+  std::string csv = fmt::format("{}", fmt::join(column_keys(), ","));
+  for (std::size_t i = 0; i < trade.rows.size(); ++i) {
+    char separator = '\n';
+    for (const auto& [key, value] : trade_cells(trade.rows[i], worth[i])) {
+      csv += separator;
+      separator = ',';
+      if (const auto* number = std::get_if<double>(&value); number == nullptr)
+        csv += quoted(std::get<std::string>(value));
+      else if (std::isfinite(*number))
+        csv += fmt::format("{:.9g}", *number);
+    }
+  }
+  return csv + '\n';
+}
+
+schema::Result<std::string> scene_trade_page(const SceneTrade& trade) {
+  const auto drawn = pictures_html(scene_trade_pictures(trade), "");
+  TACTO_TRY(drawn);
+  std::vector<schema::ResultFigure> figures = scene_trade_figures(trade);
+  std::erase_if(figures, [](const auto& figure) { return figure.name == "answer"; });
+  const auto worth = worth_of(trade_rows(trade));
+  std::vector<TradeCells> rows;
+  for (std::size_t i = 0; i < trade.rows.size(); ++i) rows.push_back(trade_cells(trade.rows[i], worth[i]));
+  const auto cell = [&](std::size_t row, std::size_t column) {
+    const auto& [key, value] = rows[row][column];
+    if (const auto* text = std::get_if<std::string>(&value)) return *text;
+    const double number = std::get<double>(value);
+    return std::isfinite(number) ? cli::cell_text(key, number) : std::string("-");
+  };
+  return html_document("Speed for accuracy: " + trade.scene,
+                       fmt::format("<h1>{}</h1>\n", escaped(trade.scene + " on " + trade.device)) +
+                           answer(scene_answer(trade)) + figures_html(figures) + *drawn +
+                           "<h2>Choices</h2>\n" +
+                           html_table(cli::labels_of(column_keys()), rows.size(), cell) + kSceneTradeNotes);
+}
+
+}  // namespace tacto::analysis

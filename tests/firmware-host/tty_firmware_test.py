@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The firmware of the board stm32f405 in QEMU, behind a serial line: the image that ./bootstrap firmware makes.
+
+The emulated chip counts its own ticks: the codes of the two analogue channels contain the tick, so that each frame is
+checked. Losses, bits and the board's own words are judged, never time. QEMU has neither the chip's clocks, ports,
+converters nor its watchdog. Usage: tty_firmware_test.py stm32f405.elf
+"""
+import json
+import pathlib
+import signal
+import subprocess
+import sys
+
+import numpy as np
+import soundfile
+
+import tacto
+from qemu_board import QemuBoard
+from wire_document_test import crc32c
+
+IMAGE = pathlib.Path(sys.argv[1])
+VECTORS = 4 * 98                     # bytes; then comes the check of the flash
+SAMPLES = 12_000                     # of a texture, in the board's RAM
+UNSUITABLE, DEVICE = 5, 8            # exit codes
+PLAYING, FAULTED, HOST_SILENT = 2, 4, 1  # flags of a tick, the code of a fault (core/WIRE.md)
+RATE_HZ = 2000
+RECORD_S = 5
+
+
+def checks(port, code=0):
+    report = json.loads(tacto.run("doctor", "-d", f"tty:{port}", "--json", code=code)[0])
+    return {row["check"]: row for row in report["checks"]}
+
+
+def doctor_works_twice(board):
+    """Each opens the port again. The firmware's build is the check of the image's flash."""
+    flash = IMAGE.with_suffix(".bin").read_bytes()
+    build = f"{crc32c(flash[:VECTORS] + flash[VECTORS + 4:]):08x}"
+    assert flash[VECTORS:VECTORS + 4] == bytes.fromhex(build)[::-1]
+    for _ in range(2):
+        rows = checks(board.port)
+        assert rows["device"]["state"] == rows["firmware"]["state"] == "works", rows
+        assert rows["round trip"]["state"] in ("works", "warning") and build in rows["firmware"]["found"], rows
+
+
+def codes_of(name):
+    return soundfile.read(f"{name}.wav", dtype="int32", always_2d=True)[0]
+
+
+def is_every_frame_true(codes):
+    """Returns the ticks of the frames."""
+    ticks = codes[:, 1].view(np.uint32) >> 12
+    at = ticks.astype(np.int64) * 20 % 60000
+    assert np.array_equal(codes[:, 2].view(np.uint32) >> 12, ~ticks & 0xFFFFF)
+    assert np.array_equal(codes[:, 0], np.where(at < 30000, at, 60000 - at))
+    return ticks
+
+
+def every_frame_comes(board):
+    tacto.run("record", "-d", f"tty:{board.port}", "--time", f"{RECORD_S}s", "-o", "counted")
+    ticks = is_every_frame_true(codes_of("counted"))
+    assert len(ticks) >= RECORD_S * RATE_HZ and ticks[0] == 1 and np.all(np.diff(ticks) == 1), ticks
+
+
+def play_command(board, name, time_s):
+    return [tacto.COMMAND, "play", "oak", "-d", f"tty:{board.port}", "--transducer", "wiertlewski2011", "--rate", "2kHz", "--gain",
+            "0.1mm/N", "--interpolation", "sinc", "--time", f"{time_s}s", "-o", name, "--json"]
+
+
+def make_texture():
+    tacto.run("record", "-d", "sim:surface=C,speed=50mm/s,seed=1", "--time", "1s", "-o", "oak")
+    tacto.run("spatial", "oak", "-o", "oak", "--stroke", "1")
+
+
+def a_texture_replays(board):
+    """A fault of the board's watchdog is right if this machine stopped for longer; that session replays, too."""
+    for attempt in range(5):
+        name = f"played-{attempt}"
+        done = subprocess.run(play_command(board, name, 2), capture_output=True, text=True, timeout=600)
+        assert done.returncode in (0, DEVICE), done
+        if done.returncode == DEVICE and not pathlib.Path(f"{name}.session").exists():
+            continue  # an answer took too long
+        assert tacto.run_json("replay", name)["same_to_the_bit"], done
+        if done.returncode == 0:
+            played = json.loads(done.stdout)
+            assert played["lost_ticks"] == 0 and played["ticks"] >= 2 * RATE_HZ, played
+            assert max(abs(drive_v) for _, drive_v, _ in board.ticks()) > 0.01
+            return
+    raise AssertionError(f"in five attempts this machine stopped for longer than the watchdog's time: {done}")
+
+
+def falls_to_zero(board):
+    """By the board's own words: it was driven, it names the silent host, and the drive is zero from 20 ms on."""
+    board.wait_for(lambda: HOST_SILENT in board.faults())
+    ticks = []
+
+    def is_at_rest():
+        ticks[:] = list(board.ticks())
+        return ticks[-1][2] & FAULTED and ticks[-1][1] == 0
+    board.wait_for(is_at_rest)
+    first = next(i for i, (_, _, flags) in enumerate(ticks) if flags & FAULTED)
+    assert max(abs(drive_v) for _, drive_v, _ in ticks[:first]) > 0.01
+    assert all(drive_v == 0 for _, drive_v, _ in ticks[first + RATE_HZ // 50:]), ticks[first:first + 60]
+
+
+def start_playing(board, name):
+    """A program that plays, from the time on at which the board reports a second of it."""
+    program = subprocess.Popen(play_command(board, name, 600), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    before = len(list(board.ticks()))
+    board.wait_for(lambda: sum(flags & PLAYING > 0 for _, _, flags in list(board.ticks())[before:]) > RATE_HZ)
+    return program
+
+
+def a_stopped_host():
+    with QemuBoard(str(IMAGE)) as board:
+        board.await_start()
+        program = start_playing(board, "stopped")
+        program.send_signal(signal.SIGSTOP)
+        falls_to_zero(board)
+        program.send_signal(signal.SIGCONT)
+        _, error = program.communicate(timeout=120)
+        assert program.returncode == DEVICE, (program.returncode, error)
+        checks(board.port)
+
+
+def an_unplugged_board():
+    with QemuBoard(str(IMAGE)) as board:
+        board.await_start()
+        program = start_playing(board, "pulled")
+        board.unplug()
+        _, error = program.communicate(timeout=120)
+        assert program.returncode == DEVICE and "unplugged" in error, (program.returncode, error)
+        falls_to_zero(board)
+
+
+def a_texture_that_is_too_large(board):
+    """With hermite this texture takes more than the RAM holds. The error names what fits."""
+    _, error = tacto.run("play", "oak", "-d", f"tty:{board.port}", "--transducer", "wiertlewski2011", "--interpolation", "hermite",
+                         "--time", "1s", "-o", "none", code=UNSUITABLE)
+    assert str(SAMPLES) in error, error
+    assert not pathlib.Path("none.session").exists()
+
+
+def damaged_bytes_are_gaps(board):
+    """Whatever arrives is true, and the line works again afterwards. The board has received random bytes, too."""
+    board.corrupt(3000)
+    done = subprocess.run([tacto.COMMAND, "record", "-d", f"tty:{board.port}", "--time", f"{RECORD_S}s", "-o", "noisy", "--allow-gaps"],
+                          capture_output=True, text=True, timeout=300)
+    assert done.returncode in (0, DEVICE), done
+    ticks = is_every_frame_true(codes_of("noisy"))
+    lost = np.diff(ticks.astype(np.int64), prepend=0) - 1  # the first frame is that of the first tick
+    gaps = json.loads(pathlib.Path("noisy.json").read_text()).get("gaps", [])
+    assert np.all(lost >= 0) and lost.sum() > 0 and sum(gap["count"] for gap in gaps) == lost.sum(), (lost.sum(), gaps)
+    board.corrupt(0)
+    board.send(np.random.default_rng(1).bytes(5000))
+    assert checks(board.port)["device"]["state"] == "works"
+
+
+def a_damaged_flash_is_refused():
+    image = bytearray(IMAGE.read_bytes())
+    image[image.index(b"flash check failed") + 40] ^= 1
+    pathlib.Path("damaged.elf").write_bytes(image)
+    with QemuBoard("damaged.elf") as board:
+        board.wait_for(lambda: board.said, again=lambda: board.send(b"?"))
+        assert "flash check failed" in checks(board.port, DEVICE)["device"]["found"]
+
+
+def test():
+    make_texture()
+    with QemuBoard(str(IMAGE)) as board:
+        board.await_start()
+        for step in (doctor_works_twice, every_frame_comes, a_texture_replays, a_texture_that_is_too_large, damaged_bytes_are_gaps):
+            step(board)
+            print(step.__name__, flush=True)
+    for step in (a_stopped_host, an_unplugged_board, a_damaged_flash_is_refused):
+        step()
+        print(step.__name__, flush=True)
+
+
+tacto.in_folder(test)
