@@ -19,16 +19,16 @@ using cli::Report;
 using schema::ErrorKind;
 using schema::Result;
 
-struct NewOptions {
+struct NewStudyOptions {
   std::string what, stem, seed = "1";
   schema::Existing existing = schema::Existing::keep;
 };
 
-struct CheckOptions {
+struct CheckStudyOptions {
   std::string study, device;
 };
 
-struct RunOptions {
+struct RunStudyOptions {
   std::string what;  ///< the study, or the run to be resumed
   std::string device, participant, observer, answers;
 };
@@ -55,7 +55,7 @@ Result<Report> warn_and_report(const Study& study) {
   return study_report(study);
 }
 
-Result<Report> run_new(const NewOptions& o) {
+Result<Report> run_new_study(const NewStudyOptions& o) {
   if (o.what != "stretch")
     return schema::fail(ErrorKind::usage,
                         fmt::format("'{}' is not a protocol that comes with tactograph", o.what),
@@ -68,7 +68,7 @@ Result<Report> run_new(const NewOptions& o) {
                                                          schema::key_path(study->stem), study->stem + "/"});
 }
 
-Result<Report> run_check(const CheckOptions& o) {
+Result<Report> run_check_study(const CheckStudyOptions& o) {
   const auto study = read_study(o.study);
   TACTO_TRY(study);
   if (!o.device.empty()) TACTO_TRY(check_on_device(*study, o.device));
@@ -78,7 +78,7 @@ Result<Report> run_check(const CheckOptions& o) {
 }
 
 // Counts only: no screen names a stimulus.
-Report run_report(const Run& run) {
+Report report_of_run(const Run& run) {
   Report report;
   report.add("run", run.stem).add("complete", run.queue.has_ended());
   report.add("trials", run.queue.trials()).add("delivered_and_answered", run.queue.counted());
@@ -93,7 +93,7 @@ Report run_report(const Run& run) {
 
 // Calls `work` with what a run needs from outside. `protocol` belongs to the study.
 template <class Work>
-Result<Report> with_participant(const RunOptions& o, const schema::Protocol& protocol, bool simulated,
+Result<Report> with_participant(const RunStudyOptions& o, const schema::Protocol& protocol, bool simulated,
                                 const Work& work) {
   const cli::StopSignals signals;
   RunRequest request;
@@ -118,10 +118,10 @@ Result<Report> with_participant(const RunOptions& o, const schema::Protocol& pro
   auto run = work(std::move(request));
   TACTO_TRY(run);
   if (screen && run->queue.has_ended()) screen->show_end();
-  return run_report(*run);
+  return report_of_run(*run);
 }
 
-Result<Report> run_run(const RunOptions& o) {
+Result<Report> run_run_study(const RunStudyOptions& o) {
   std::optional<Observer> observer;
   if (!o.observer.empty()) {
     auto parsed = parse_observer(o.observer);
@@ -136,7 +136,7 @@ Result<Report> run_run(const RunOptions& o) {
   });
 }
 
-Result<Report> run_resume(const RunOptions& o) {
+Result<Report> run_resume_study(const RunStudyOptions& o) {
   const auto run = read_run(o.what);
   TACTO_TRY(run);
   const bool simulated = !run->journal.plan.observer.empty();
@@ -153,7 +153,7 @@ std::string proof_in_words(const Proof& proof) {
       proof.delivered, proof.trials, proof.stretch_error, proof.same_to_the_bit, proof.sessions);
 }
 
-Result<Report> run_prove(const std::string& name) {
+Result<Report> run_prove_run(const std::string& name) {
   const auto run = read_run(name);
   TACTO_TRY(run);
   cli::Progress progress("proving");
@@ -179,23 +179,23 @@ Result<Report> run_prove(const std::string& name) {
 }  // namespace
 
 cli::Action declare_new_study(CLI::App& app) {
-  auto options = std::make_shared<NewOptions>();
+  auto options = std::make_shared<NewStudyOptions>();
   app.add_option("PROTOCOL", options->what, "stretch: experiment 2 of Wiertlewski 2011")->required();
   app.add_option("-o,--output", options->stem, "Stem of the study's files; default: the protocol's name");
   app.add_option("--seed", options->seed, "Seed of codes and order: letters and digits");
   cli::declare_force(app, options->existing);
-  return [options] { return run_new(*options); };
+  return [options] { return run_new_study(*options); };
 }
 
 cli::Action declare_check_study(CLI::App& app) {
-  auto options = std::make_shared<CheckOptions>();
+  auto options = std::make_shared<CheckStudyOptions>();
   app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
   app.add_option("-d,--device", options->device, "Check also that this device can play each stimulus");
-  return [options] { return run_check(*options); };
+  return [options] { return run_check_study(*options); };
 }
 
 cli::Action declare_run_study(CLI::App& app) {
-  auto options = std::make_shared<RunOptions>();
+  auto options = std::make_shared<RunStudyOptions>();
   app.add_option("STUDY", options->what, "Stem of the study, or STUDY.protocol.json")->required();
   app.add_option("-d,--device", options->device, kDeviceHelp)->required();
   app.add_option("--participant", options->participant, "Code of the participant, such as P07")->required();
@@ -209,15 +209,15 @@ cli::Action declare_run_study(CLI::App& app) {
       "decided before its\nanswer is read; what was not delivered comes again at the end. Ctrl-C ends the "
       "run; "
       "'resume' continues it, also after a crash.");
-  return [options] { return run_run(*options); };
+  return [options] { return run_run_study(*options); };
 }
 
 cli::Action declare_resume_study(CLI::App& app) {
-  auto options = std::make_shared<RunOptions>();
+  auto options = std::make_shared<RunStudyOptions>();
   app.add_option("RUN", options->what, "STUDY-P07, or its journal")->required();
   app.add_option("-d,--device", options->device, "Device; default: that of the run");
   app.add_option("--answers", options->answers, kAnswersHelp);
-  return [options] { return run_resume(*options); };
+  return [options] { return run_resume_study(*options); };
 }
 
 cli::Action declare_prove_run(CLI::App& app) {
@@ -229,7 +229,7 @@ cli::Action declare_prove_run(CLI::App& app) {
       "ticks and drive;\nthe displacement is predicted by the transducer's model, and the normal force is in "
       "no "
       "session. Exit code 5: not proven.");
-  return [name] { return run_prove(*name); };
+  return [name] { return run_prove_run(*name); };
 }
 
 }  // namespace tacto::analysis

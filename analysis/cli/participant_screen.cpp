@@ -20,7 +20,7 @@ using schema::Result;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using ScreenClock = std::chrono::steady_clock;
 
 void show(const std::string& text) {
   fmt::print(stderr, "\n{}\n", text);
@@ -54,10 +54,10 @@ Participant ParticipantScreen::participant() {
   };
   const auto answer = [this](std::size_t /*number*/) -> Result<std::optional<GivenAnswer>> {
     show(protocol_.texts.question);
-    const Clock::time_point asked = Clock::now();
+    const ScreenClock::time_point asked = ScreenClock::now();
     const char key = wait_for(protocol_.first.key + protocol_.second.key);
     if (key == 0) return std::nullopt;
-    const std::chrono::duration<double> after = Clock::now() - asked;
+    const std::chrono::duration<double> after = ScreenClock::now() - asked;
     return GivenAnswer{key == protocol_.first.key.front() ? 1 : 2, after.count()};
   };
   return {go_ahead, answer};

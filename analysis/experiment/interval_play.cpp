@@ -19,7 +19,7 @@ using schema::Result;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 constexpr double kRestS = 0.05, kTurnS = 0.05, kKnotS = 0.005;
@@ -32,7 +32,7 @@ bool is_emulated(const std::string& device_uri) {
 
 // The way after `t` seconds of a stroke that lasts `moving_s` + kTurnS: even acceleration in the first
 // kTurnS, even deceleration in the last.
-double way_m(double t, double speed_mps, double moving_s) {
+double stroke_way_m(double t, double speed_mps, double moving_s) {
   const double a = speed_mps / kTurnS;
   if (t < kTurnS) return a * t * t / 2;
   if (t < moving_s) return speed_mps * (t - kTurnS / 2);
@@ -56,10 +56,11 @@ playback::PlayOptions options_of(const schema::Protocol& protocol, const Interva
 }
 
 // Waits for a time of the clock; whether that was still ahead.
-bool wait_until(Clock::time_point when, const std::function<bool()>& stop_asked) {
-  const bool ahead = Clock::now() <= when + std::chrono::duration_cast<Clock::duration>(Seconds(kLateStartS));
-  while (Clock::now() < when && !stop_asked())
-    std::this_thread::sleep_until(std::min(when, Clock::now() + std::chrono::milliseconds(10)));
+bool wait_until(SteadyClock::time_point when, const std::function<bool()>& stop_asked) {
+  const bool ahead =
+      SteadyClock::now() <= when + std::chrono::duration_cast<SteadyClock::duration>(Seconds(kLateStartS));
+  while (SteadyClock::now() < when && !stop_asked())
+    std::this_thread::sleep_until(std::min(when, SteadyClock::now() + std::chrono::milliseconds(10)));
   return ahead;
 }
 
@@ -73,7 +74,7 @@ playback::FingerPath paced_path(const schema::ProtocolPace& pace) {
   const int knots = static_cast<int>(std::ceil(whole_s / kKnotS));
   for (int stroke = 0; stroke < pace.strokes; ++stroke)
     for (int i = 1; i <= knots; ++i) {
-      const double t = whole_s * i / knots, way = way_m(t, speed_mps, moving_s);
+      const double t = whole_s * i / knots, way = stroke_way_m(t, speed_mps, moving_s);
       path.time_s.push_back(kRestS + stroke * whole_s + t);
       path.position_m.push_back(stroke % 2 == 0 ? pace.from_m + way : pace.to_m - way);
     }
@@ -83,13 +84,13 @@ playback::FingerPath paced_path(const schema::ProtocolPace& pace) {
 }
 
 Result<std::string> play_interval(const schema::Protocol& protocol, const IntervalPlay& play) {
-  const Clock::time_point asked = Clock::now();
+  const SteadyClock::time_point asked = SteadyClock::now();
   std::string late;
   playback::PlayOptions options = options_of(protocol, play);
   options.ready = [&](bool real_time) {
-    const auto begin = asked + std::chrono::duration_cast<Clock::duration>(Seconds(protocol.lead_s));
+    const auto begin = asked + std::chrono::duration_cast<SteadyClock::duration>(Seconds(protocol.lead_s));
     if (!real_time || wait_until(begin, play.stop_asked)) return;
-    late = fmt::format("began {:.3f} s late", Seconds(Clock::now() - begin).count());
+    late = fmt::format("began {:.3f} s late", Seconds(SteadyClock::now() - begin).count());
   };
   const auto outcome = playback::play_once(options, play.stop_asked);
   TACTO_TRY(outcome);

@@ -38,7 +38,7 @@ bool seemed_longer(const Attempt& attempt) {
   return attempt.trial.standard_comes_first() == (attempt.answered->interval == 1);
 }
 
-AnswerGroup<LevelCount> group_of(const Run& run) {
+AnswerGroup<LevelCount> answers_of_run(const Run& run) {
   std::map<double, LevelCount> levels;
   for (const Attempt& attempt : run.queue.attempts()) {
     if (!attempt.counts()) continue;
@@ -75,7 +75,7 @@ Result<AnswersTable> study_answers(const std::string& name, bool unblind) {
     const auto run = read_run(stem);
     TACTO_TRY(run);
     complete += run->queue.has_ended();
-    if (auto group = group_of(*run); !group.rows.empty()) table.groups.push_back(std::move(group));
+    if (auto group = answers_of_run(*run); !group.rows.empty()) table.groups.push_back(std::move(group));
   }
   if (table.groups.empty())
     return fail(ErrorKind::unsuitable, "has no answers yet", study->stem, "run it first");

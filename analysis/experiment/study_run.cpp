@@ -28,7 +28,7 @@ class LiveSteps {
 
   TrialSteps steps() {
     return {[this](const schema::JournalEntry& entry) { return keep(entry); },
-            [this](const Trial& trial, int attempt) { return begun(trial, attempt); },
+            [this](const StudyTrial& trial, int attempt) { return begun(trial, attempt); },
             [this](const Attempt& attempt) { return play(attempt); },
             [this](const Attempt& attempt) { return answer(attempt); }};
   }
@@ -51,7 +51,7 @@ class LiveSteps {
     return (std::filesystem::path(run_.stem).parent_path() / session).string();
   }
 
-  schema::AttemptBegun begun(const Trial& trial, int attempt) const {
+  schema::AttemptBegun begun(const StudyTrial& trial, int attempt) const {
     const std::string& standard = standard_of(run_.study.key).code;
     schema::AttemptBegun begun{attempt, trial.name(), {standard, trial.code}, {}};
     if (!trial.standard_comes_first()) std::swap(begun.stimuli[0], begun.stimuli[1]);

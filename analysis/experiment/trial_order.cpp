@@ -23,13 +23,13 @@ std::vector<Value> sorted_by_sum(std::vector<Value> values, const TextOf& text_o
 
 }  // namespace
 
-std::vector<Trial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
-                                  const std::string& participant) {
-  std::vector<Trial> trials;
+std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
+                                       const std::string& participant) {
+  std::vector<StudyTrial> trials;
   for (const schema::CodedStimulus& stimulus : key.stimuli)
     for (int i = 1; i <= protocol.repetitions && stimulus.stretch != 0; ++i)
       trials.push_back({stimulus.code, i});
-  return sorted_by_sum(std::move(trials), [&](const Trial& trial) {
+  return sorted_by_sum(std::move(trials), [&](const StudyTrial& trial) {
     return fmt::format("{}/{}/1/{}", protocol.seed, participant, trial.name());
   });
 }

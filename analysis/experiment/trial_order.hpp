@@ -9,7 +9,7 @@
 
 namespace tacto::analysis {
 
-struct Trial {
+struct StudyTrial {
   std::string code;  ///< of the stretched stimulus
   int repetition = 0;
 
@@ -19,8 +19,8 @@ struct Trial {
 
 /// All trials of a participant, sorted by the SHA-256 of SEED/PARTICIPANT/BLOCK/CODE.REPETITION. There is one
 /// block, 1.
-std::vector<Trial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
-                                  const std::string& participant);
+std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
+                                       const std::string& participant);
 
 /// The stretches of a protocol, with the standard's 0, in the order of their codes K1, K2 ...: sorted by the
 /// SHA-256 of SEED/code/STRETCH, with the stretch as in 0.3.

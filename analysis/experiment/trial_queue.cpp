@@ -20,7 +20,7 @@ tl::unexpected<schema::Error> does_not_follow(const std::string& what) {
 
 }  // namespace
 
-TrialQueue::TrialQueue(std::vector<Trial> order, int most_attempts)
+TrialQueue::TrialQueue(std::vector<StudyTrial> order, int most_attempts)
     : queue_(order.begin(), order.end()), trials_(order.size()), most_attempts_(most_attempts) {}
 
 Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
@@ -43,7 +43,7 @@ Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
   return {};
 }
 
-std::optional<Trial> TrialQueue::next() const {
+std::optional<StudyTrial> TrialQueue::next() const {
   return queue_.empty() ? std::nullopt : std::optional(queue_.front());
 }
 

@@ -15,7 +15,7 @@ namespace tacto::analysis {
 
 struct Attempt {
   schema::AttemptBegun begun;
-  Trial trial;
+  StudyTrial trial;
   std::optional<schema::DeliveryJudged> judged;
   std::optional<schema::AttemptAnswered> answered;
 
@@ -27,13 +27,13 @@ struct Attempt {
 /// at the end, up to `most_attempts` times in all.
 class TrialQueue {
  public:
-  TrialQueue(std::vector<Trial> order, int most_attempts);
+  TrialQueue(std::vector<StudyTrial> order, int most_attempts);
 
   /// Takes the next entry of the journal. Errors: unsuitable, if it does not follow from those before.
   schema::Result<void> take(const schema::JournalEntry& entry);
 
   /// The trial whose turn it is; none: all are done.
-  std::optional<Trial> next() const;
+  std::optional<StudyTrial> next() const;
   /// Whether an attempt has no answer yet.
   bool is_open() const { return open_; }
   bool has_ended() const { return ended_; }
@@ -47,7 +47,7 @@ class TrialQueue {
   schema::Result<Attempt*> open_attempt(int number);
   void close();
 
-  std::deque<Trial> queue_;
+  std::deque<StudyTrial> queue_;
   std::map<std::string, int> tried_;
   std::vector<Attempt> attempts_;
   std::size_t trials_;

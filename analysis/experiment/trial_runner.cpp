@@ -15,7 +15,7 @@ Result<void> keep_and_take(TrialQueue& queue, const TrialSteps& steps, const sch
 }
 
 // False: the run is ended.
-Result<bool> run_trial(TrialQueue& queue, const TrialSteps& steps, const Trial& trial) {
+Result<bool> run_trial(TrialQueue& queue, const TrialSteps& steps, const StudyTrial& trial) {
   const int number = static_cast<int>(queue.attempts().size()) + 1;
   TACTO_TRY(keep_and_take(queue, steps, steps.begin(trial, number)));
   const auto judged = steps.play(queue.attempts().back());

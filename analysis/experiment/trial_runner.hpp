@@ -15,7 +15,7 @@ struct TrialSteps {
   /// Returns when the entry is on the disk.
   std::function<schema::Result<void>(const schema::JournalEntry&)> keep;
   /// The attempt that begins now, for the journal.
-  std::function<schema::AttemptBegun(const Trial&, int attempt)> begin;
+  std::function<schema::AttemptBegun(const StudyTrial&, int attempt)> begin;
   /// Plays both intervals, and decides whether they were delivered. None: the participant or a signal ends
   /// the run.
   std::function<schema::Result<std::optional<schema::DeliveryJudged>>(const Attempt&)> play;

@@ -112,7 +112,7 @@ struct EntryWriter {
 };
 
 // Throws where the members are missing or of another type.
-JournalEntry entry_from(const Json& body) {
+JournalEntry journal_entry_from(const Json& body) {
   const auto event = body.at("event").get<std::string>();
   if (event == "plan") {
     RunPlanned plan;
@@ -134,7 +134,7 @@ JournalEntry entry_from(const Json& body) {
   return RunEnded{body.at("created")};
 }
 
-std::string check_of(std::string_view body) {
+std::string line_check(std::string_view body) {
   return sha256_of(body).substr(0, kCheckDigits);
 }
 
@@ -144,7 +144,7 @@ std::string checked_body(std::string_view line) {
   if (line.size() <= tail) return {};
   const std::string_view end = line.substr(line.size() - tail);
   std::string body = std::string(line.substr(0, line.size() - tail)) + "}";
-  const bool right = end == fmt::format("{}{}\"}}", kCheckMember, check_of(body));
+  const bool right = end == fmt::format("{}{}\"}}", kCheckMember, line_check(body));
   return right ? body : std::string();
 }
 
@@ -152,7 +152,7 @@ std::string checked_body(std::string_view line) {
 std::optional<JournalEntry> entry_in(std::string_view line, std::size_t number) try {
   const auto body = parse_json(checked_body(line), {});
   if (!body || body->at("line") != number) return std::nullopt;
-  auto entry = entry_from(*body);
+  auto entry = journal_entry_from(*body);
   const bool plan = std::holds_alternative<RunPlanned>(entry);
   return plan == (number == 1) ? std::optional(std::move(entry)) : std::nullopt;
 } catch (const std::exception&) {
@@ -165,7 +165,7 @@ std::string journal_line(const JournalEntry& entry, std::size_t number) {
   Json body = {{"line", number}};
   std::visit(EntryWriter{body}, entry);
   std::string text = body.dump(-1, ' ', false, Json::error_handler_t::replace);
-  const std::string check = check_of(text);
+  const std::string check = line_check(text);
   text.pop_back();
   return text + fmt::format("{}{}\"}}\n", kCheckMember, check);
 }

@@ -65,7 +65,7 @@ class TextRun {
     if (const auto taken = queue_.take(first); !taken) return taken;
     TrialSteps steps;
     steps.keep = [this](const schema::JournalEntry& entry) { return keep(entry); };
-    steps.begin = [](const Trial& trial, int attempt) {
+    steps.begin = [](const StudyTrial& trial, int attempt) {
       return schema::AttemptBegun{attempt, trial.name(), {"K1", trial.code}, {"a", "b"}};
     };
     steps.play = [](const Attempt& attempt) -> Result<std::optional<schema::DeliveryJudged>> {
@@ -174,7 +174,7 @@ TEST(ExperimentRun, HalfOfTheTrialsBeginWithTheStandard) {
   EXPECT_EQ(trials.size(), 80u);
   std::map<std::string, int> first;
   std::set<std::string> names;
-  for (const Trial& trial : trials) {
+  for (const StudyTrial& trial : trials) {
     first[trial.code] += trial.standard_comes_first();
     names.insert(trial.name());
   }
