@@ -97,7 +97,7 @@ Result<void> check_stimulus(const Study& study, const schema::CodedStimulus& sti
   const auto sum = schema::sha256_of_file(wav->path);
   TACTO_TRY(sum);
   if (*sum != stimulus.sha256 || wav->sha256 != stimulus.sha256)
-    return fail(ErrorKind::unsuitable, "is not the texture that the key names", wav->path,
+    return fail(ErrorKind::unsuitable, "is not the texture that the key names", stem,
                 "it was changed or swapped: take it from a copy, or make the study again");
   const auto texture = schema::read_texture(stem);
   TACTO_TRY(texture);
