@@ -3,9 +3,11 @@
 
 #include <memory>
 
+#include "analysis/cli/experiment_study.hpp"
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/experiment/answers_page.hpp"
+#include "analysis/experiment/study_answers.hpp"
 #include "analysis/page/picture_svg.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/report/progress.hpp"
@@ -19,6 +21,7 @@ using schema::ErrorKind;
 using schema::Result;
 
 struct FitOptions {
+  std::string verb = "experiment fit";
   std::string file;
   AnswerColumns columns;
   PsychometricOptions fit;
@@ -142,7 +145,7 @@ OutputKind svg_output(const Findings& findings) {
 // Writes the outputs; `details` is for --json and results.
 Result<Report> write_fit(const FitOptions& o, const Findings& findings, Report details, bool json) {
   schema::Results results;
-  results.verb = "experiment fit";
+  results.verb = o.verb;
   results.inputs = {o.file};
   results.figures = findings.figures;
   results.pictures = findings.pictures;
@@ -153,15 +156,19 @@ Result<Report> write_fit(const FitOptions& o, const Findings& findings, Report d
   return o.outputs.empty() ? printed : printed.add("written", o.outputs);
 }
 
-Result<Report> fit_levels(const FitOptions& o, bool json) {
-  auto table = read_answers(o.file, o.columns);
-  TACTO_TRY(table);
+Result<Report> fit_table(const FitOptions& o, AnswersTable table, bool json) {
   cli::Progress progress("fitting");
-  auto fit = fit_answers(std::move(*table), o.fit, [&](double part) { progress.update(part); });
+  auto fit = fit_answers(std::move(table), o.fit, [&](double part) { progress.update(part); });
   if (!fit) fit.error().where = o.file + (fit.error().where.empty() ? "" : ": " + fit.error().where);
   TACTO_TRY(fit);
   const Findings findings = findings_of(*fit);
   return write_fit(o, findings, answers_report(*fit, findings.verdict()), json);
+}
+
+Result<Report> fit_levels(const FitOptions& o, bool json) {
+  auto table = read_answers(o.file, o.columns);
+  TACTO_TRY(table);
+  return fit_table(o, std::move(*table), json);
 }
 
 Result<Report> fit_pairs(const FitOptions& o, bool json) {
@@ -226,20 +233,79 @@ cli::Action declare_fit(CLI::App& app) {
   return [options, verb] { return run_fit(*options, verb->count("--json") > 0); };
 }
 
+struct AnalyseOptions {
+  FitOptions fit;
+  bool unblind = false;
+};
+
+Result<Report> run_analyse(const AnalyseOptions& o, bool json) {
+  const Findings nothing_yet;
+  const OutputKind svg = svg_output(nothing_yet);
+  TACTO_TRY(check_outputs(o.fit.outputs, o.fit.existing, {&svg, 1}));
+  auto table = study_answers(o.fit.file, o.unblind);
+  TACTO_TRY(table);
+  return fit_table(o.fit, std::move(*table), json);
+}
+
+cli::Action declare_analyse(CLI::App& app) {
+  auto options = std::make_shared<AnalyseOptions>();
+  options->fit.verb = "experiment analyse";
+  app.add_option("STUDY", options->fit.file, "Stem of the study, or STUDY.protocol.json")->required();
+  app.add_flag("--unblind", options->unblind,
+               "Analyse before the planned participants are complete; STUDY.unblinded.txt keeps the date");
+  app.add_option("-o,--output", options->fit.outputs,
+                 "Output: a page (.html), results for 'report' (.results.json), or a single picture (.svg); "
+                 "may be repeated");
+  cli::declare_force(app, options->fit.existing);
+  app.footer(
+      "The trials that were delivered and answered, of all participants; the JND is the Weber fraction, re "
+      "the "
+      "standard's period.");
+  CLI::App* const verb = app.get_parent();
+  return [options, verb] { return run_analyse(*options, verb->count("--json") > 0); };
+}
+
+struct ExperimentPart {
+  const char *name, *summary;
+  cli::Action (*declare)(CLI::App& app);
+};
+
+constexpr ExperimentPart kExperimentParts[] = {
+    {"new", "Write a protocol, its stimuli under codes, and the key of the codes", declare_new_study},
+    {"check", "Check a study's files: protocol, key, stimuli", declare_check_study},
+    {"run", "Run a study with one participant, or with a simulated observer", declare_run_study},
+    {"resume", "Continue an interrupted run", declare_resume_study},
+    {"prove", "Compute from the sessions of a run what was delivered", declare_prove_run},
+    {"analyse", "Fit psychometric functions to the answers of a study", declare_analyse},
+    {"fit", "Fit psychometric functions, or a scale, to a table of answers", declare_fit},
+};
+
 cli::Action declare_experiment(CLI::App& app) {
-  CLI::App* const fit =
-      app.add_subcommand("fit", "Fit psychometric functions, or a scale, to a table of answers");
-  auto action = std::make_shared<cli::Action>(declare_fit(*fit));
-  fit->fallthrough();  // --json and --rows are options of the verb
+  auto actions = std::make_shared<std::vector<std::pair<CLI::App*, cli::Action>>>();
+  for (const ExperimentPart& part : kExperimentParts) {
+    CLI::App* const one = app.add_subcommand(part.name, part.summary);
+    actions->emplace_back(one, part.declare(*one));
+    one->fallthrough();  // --json and --rows are options of the verb
+  }
   app.require_subcommand(1);
-  return [action] { return (*action)(); };
+  return [actions]() -> Result<Report> {
+    for (const auto& [one, action] : *actions)
+      if (one->parsed()) return action();
+    return schema::fail(ErrorKind::usage, "the part is missing", "experiment", "give new, check, run ...");
+  };
 }
 
 }  // namespace
 
 const cli::Verb kExperimentVerb{"experiment",
-                                "Psychophysics: fit thresholds and scales to the answers of people",
-                                "tactograph experiment fit answers.csv --guess 50% -o answers.html\n"
+                                "Psychophysics: run a protocol, prove what was delivered, fit the answers",
+                                "tactograph experiment new stretch -o stretch\n"
+                                "  tactograph experiment run stretch -d usb: --participant P01\n"
+                                "  tactograph experiment run stretch -d sim: --participant P02 --observer "
+                                "weber=25%,lapse=2%\n"
+                                "  tactograph experiment prove stretch-P01\n"
+                                "  tactograph experiment analyse stretch --unblind -o stretch.html\n"
+                                "  tactograph experiment fit answers.csv --guess 50% -o answers.html\n"
                                 "  tactograph experiment fit answers.csv --by participant,vibration_hz\n"
                                 "  tactograph experiment fit --pairs preferences.csv",
                                 declare_experiment};

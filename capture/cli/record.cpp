@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/ioctl.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,6 +21,7 @@
 #include "capture/table/text_encoding.hpp"
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/command/stop_signals.hpp"
+#include "data-schema/command/terminal_keys.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/report/pace.hpp"
 #include "data-schema/report/progress.hpp"
@@ -318,44 +318,6 @@ std::string live_line(const LiveView& view, const schema::RecordingHeader& heade
   return line.substr(0, columns);
 }
 
-// Single key presses, read without blocking. While this object exists, a terminal on stdin delivers each key
-// at once and without echo; Ctrl-C remains a signal. If stdin is not a terminal, no key is ever delivered.
-class TerminalKeys {
- public:
-  TerminalKeys();
-  TerminalKeys(const TerminalKeys&) = delete;
-  TerminalKeys& operator=(const TerminalKeys&) = delete;
-  ~TerminalKeys();
-
-  // The next key in the input, 0 if there is none.
-  char next();
-
- private:
-  bool terminal_ = false;
-  termios before_{};
-};
-
-TerminalKeys::TerminalKeys() {
-  // A background process that changes the terminal's settings is stopped by the kernel.
-  terminal_ = isatty(STDIN_FILENO) == 1 && tcgetpgrp(STDIN_FILENO) == getpgrp() &&
-              tcgetattr(STDIN_FILENO, &before_) == 0;
-  if (!terminal_) return;
-  termios keys = before_;
-  keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-  terminal_ = tcsetattr(STDIN_FILENO, TCSANOW, &keys) == 0;
-}
-
-TerminalKeys::~TerminalKeys() {
-  if (terminal_) tcsetattr(STDIN_FILENO, TCSANOW, &before_);
-}
-
-char TerminalKeys::next() {
-  pollfd waiting{STDIN_FILENO, POLLIN, 0};
-  char key = 0;
-  if (!terminal_ || poll(&waiting, 1, 0) != 1 || read(STDIN_FILENO, &key, 1) != 1) return 0;
-  return key;
-}
-
 // The user interface of a recording: signals and keys are the input, a line of figures is the output.
 class Console {
  public:
@@ -397,7 +359,7 @@ class Console {
   }
 
   cli::StopSignals signals_;
-  std::optional<TerminalKeys> keys_;  // one of these two
+  std::optional<cli::TerminalKeys> keys_;  // one of these two
   std::optional<CommandLines> lines_;
   cli::Progress progress_{"recording"};
   bool stopped_ = false;

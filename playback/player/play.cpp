@@ -228,6 +228,7 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   TACTO_TRY((*player)->load(std::move(*program)));
   TACTO_TRY((*player)->gain(options.gain));
   if (*here) lock_memory();
+  if (options.ready) options.ready(device->device->is_real_time());
   TACTO_TRY(play_through({*device, *here, **player}, options.session, stop_asked, progress, outcome));
   if (*here) outcome.looped = looped_by(*here->loop);
   tell_limits(options.session, outcome);

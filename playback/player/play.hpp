@@ -22,6 +22,9 @@ struct PlayOptions {
   bool loop_here = false;  ///< closed by this computer, on a device that keeps time
   PrepareOptions prepare;  ///< rate, inverse, delay ...; gain, ends, encoder and limits are set later
   std::string session;     ///< its file
+  /// Called when the texture is prepared, before the device is armed; may wait. `real_time`: the device keeps
+  /// time.
+  std::function<void(bool real_time)> ready = {};
 };
 
 /// Figures of a loop on this computer.

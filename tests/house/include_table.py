@@ -16,6 +16,7 @@ MAY_INCLUDE = {
     "data-schema/control": "data-schema/{base json results scene}",
     "data-schema/corpus": "data-schema/{base json}",
     "data-schema/device": "data-schema/{base json}",
+    "data-schema/experiment": "data-schema/{base files json}",
     "data-schema/exchange": "data-schema/{base texture}",
     "data-schema/files": "data-schema/base",
     "data-schema/height": "data-schema/{base files spectrogram}",
@@ -136,7 +137,9 @@ MAY_INCLUDE = {
     "analysis/demo":
         "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
         "sim/bench sim/physics} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
-    "analysis/experiment": "analysis/{page psychometrics} capture/table data-schema/{base results}",
+    "analysis/experiment":
+        "analysis/{page psychometrics} capture/table data-schema/{base experiment files results session texture} firmware-host/core/wire "
+        "playback/{model player prepare render session strokes} spatial/{features transform}",
     "analysis/design":
         "analysis/page data-schema/{base device report results scene} firmware-host/{core/scene sim/planar} "
         "playback/{prepare/scene stability}",

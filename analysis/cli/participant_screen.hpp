@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the participant of an experiment sees and presses; or a file of answers.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "analysis/experiment/study_run.hpp"
+#include "data-schema/command/terminal_keys.hpp"
+
+namespace tacto::analysis {
+
+/// Shows the protocol's texts on stderr and reads its keys from the terminal, each without Enter. Neither a
+/// stimulus nor a score is shown. Both references must outlive this.
+class ParticipantScreen {
+ public:
+  ParticipantScreen(const schema::Protocol& protocol, const std::function<bool()>& stop_asked);
+
+  /// Errors: usage, if stdin is no terminal.
+  schema::Result<void> check_terminal() const;
+  Participant participant();
+  void show_end() const;
+
+ private:
+  char wait_for(std::string_view keys);
+
+  const schema::Protocol& protocol_;
+  const std::function<bool()>& stop_asked_;
+  cli::TerminalKeys keys_;
+  bool welcomed_ = false;
+};
+
+/// The answers of a file, one on each line: a word or a key of the protocol. After the last one the run ends.
+/// Errors: not_found; malformed, with the line.
+schema::Result<Participant> answers_from(const std::string& file, const schema::Protocol& protocol);
+
+}  // namespace tacto::analysis

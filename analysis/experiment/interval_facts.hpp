@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What was delivered in one interval, by its session alone.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "data-schema/experiment/journal.hpp"
+#include "data-schema/experiment/protocol.hpp"
+
+namespace tacto::analysis {
+
+/// The facts of a session; the same whenever they are computed. Ticks and drive are recorded; the
+/// displacement is that of the transducer's model; the normal force is in no session. Errors: not_found;
+/// malformed, for a file without a header.
+schema::Result<schema::IntervalFacts> interval_facts(const std::string& session);
+
+/// Why an interval is not delivered, each reason in words without the stimulus; empty: it is. `sha256` is
+/// that of the stimulus by the key.
+std::vector<std::string> reasons_against(const schema::IntervalFacts& facts, const schema::Protocol& protocol,
+                                         const std::string& sha256);
+
+/// The same for both intervals of an attempt. `late_start` holds further reasons, which are in no session.
+schema::DeliveryJudged judged_delivery(int attempt, std::vector<schema::IntervalFacts> intervals,
+                                       const std::array<std::string, 2>& sha256,
+                                       const schema::Protocol& protocol,
+                                       const std::vector<std::string>& late_start);
+
+}  // namespace tacto::analysis

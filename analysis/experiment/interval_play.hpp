@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plays one interval of a trial, as the verb `play` does.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "analysis/experiment/study.hpp"
+#include "playback/model/finger_path.hpp"
+
+namespace tacto::analysis {
+
+/// The finger's path at the protocol's pace, with 50 ms of rest before and after, and even
+/// acceleration over 50 ms at both ends of each stroke.
+playback::FingerPath paced_path(const schema::ProtocolPace& pace);
+
+struct IntervalPlay {
+  std::string device_uri;
+  std::string stimulus;  ///< stem of the texture
+  std::string session;   ///< to be written
+  bool hurried = false;  ///< an emulated finger moves at twice the speed
+  std::function<bool()> stop_asked;
+};
+
+/// Begins `lead_s` after this call on a device that keeps time, and lasts as long as the pace. An emulated
+/// finger follows the pace. Returns words if it could begin only later, else nothing. Errors: those of
+/// playback::play_once.
+schema::Result<std::string> play_interval(const schema::Protocol& protocol, const IntervalPlay& play);
+
+/// Whether the device can play every stimulus: what make_program refuses, without its code. Errors: those of
+/// opening the device, of make_program.
+schema::Result<void> check_on_device(const Study& study, const std::string& device_uri);
+
+}  // namespace tacto::analysis

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiment/proof.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "analysis/experiment/interval_facts.hpp"
+#include "analysis/experiment/trial_runner.hpp"
+#include "playback/session/session_replay.hpp"
+
+namespace tacto::analysis {
+
+using schema::ErrorKind;
+using schema::fail;
+using schema::Result;
+
+namespace {
+
+constexpr const char* kTrialColumns =
+    "attempt\ttrial\tstandard_interval\tnominal_stretch\tpredicted_stretch\tpredicted_error_db\t"
+    "measured_error_db\tanswer_interval\tanswer\tanswer_s\tdelivered\twhy\tsimulated";
+
+std::string folder_with(const std::string& stem) {
+  const auto folder = std::filesystem::path(stem).parent_path().string();
+  return folder.empty() ? "" : folder + "/";
+}
+
+Result<void> check_unchanged(const schema::RunPlanned& plan, const Study& study) {
+  const auto changed = [&](const std::string& path) {
+    return fail(ErrorKind::unsuitable, "has changed since the run began", path,
+                "take it from a copy; a changed protocol is a new study");
+  };
+  if (plan.protocol_sha256 != study.protocol.sha256) return changed(schema::protocol_path(study.stem));
+  if (plan.key_sha256 != study.key.sha256) return changed(schema::key_path(study.stem));
+  return {};
+}
+
+// Reasons that no session contains.
+std::vector<std::string> other_reasons(const schema::DeliveryJudged& judged) {
+  std::vector<std::string> others;
+  for (const std::string& reason : judged.why)
+    if (!reason.starts_with("interval ")) others.push_back(reason);
+  return others;
+}
+
+class Prover {
+ public:
+  Prover(const Run& run, Proof& proof) : run_(run), proof_(proof) {}
+
+  void take(const Attempt& attempt) {
+    if (!attempt.answered) ++proof_.interrupted;
+    if (!attempt.judged) return;
+    if (!attempt.judged->delivered) ++proof_.failed;
+    std::vector<schema::IntervalFacts> facts;
+    for (std::size_t i = 0; i < attempt.judged->intervals.size(); ++i)
+      if (auto again = facts_again(attempt, i)) facts.push_back(std::move(*again));
+    if (facts.size() < attempt.judged->intervals.size()) return;
+    compare(attempt, std::move(facts));
+  }
+
+ private:
+  std::optional<schema::IntervalFacts> facts_again(const Attempt& attempt, std::size_t interval) {
+    const std::string session = folder_with(run_.stem) + attempt.begun.sessions[interval];
+    ++proof_.sessions;
+    auto facts = interval_facts(session);
+    if (!facts) {
+      proof_.faults.push_back(schema::message(facts.error()));
+      return std::nullopt;
+    }
+    if (!facts->simulated.empty()) proof_.simulated = facts->simulated;
+    const auto replayed = playback::replay_session(session);
+    if (replayed && replayed->same())
+      ++proof_.same_to_the_bit;
+    else
+      proof_.faults.push_back(session + ": computed again, its drive is not the same to the bit");
+    return std::move(*facts);
+  }
+
+  void compare(const Attempt& attempt, std::vector<schema::IntervalFacts> facts) {
+    const auto sum = [&](std::size_t i) {
+      return stimulus_of(run_.study.key, attempt.begun.stimuli[i]).sha256;
+    };
+    Attempt again = attempt;
+    again.judged = judged_delivery(attempt.begun.attempt, std::move(facts), {sum(0), sum(1)},
+                                   run_.study.protocol, other_reasons(*attempt.judged));
+    if (again.judged->why != attempt.judged->why)
+      proof_.faults.push_back(fmt::format("attempt {}: its sessions say '{}', the journal '{}'",
+                                          attempt.begun.attempt, fmt::join(again.judged->why, "; "),
+                                          fmt::join(attempt.judged->why, "; ")));
+    if (!again.counts()) return;
+    ++proof_.delivered;
+    const double nominal = stimulus_of(run_.study.key, attempt.trial.code).stretch;
+    if (const auto predicted = predicted_stretch(again))
+      proof_.stretch_error = std::max(proof_.stretch_error, std::abs(*predicted - nominal));
+    else
+      proof_.faults.push_back(fmt::format("attempt {}: its sessions have no period", attempt.begun.attempt));
+  }
+
+  const Run& run_;
+  Proof& proof_;
+};
+
+std::string level_cell(const Attempt& attempt, std::optional<double> schema::IntervalFacts::*member) {
+  std::optional<double> worst;
+  for (const schema::IntervalFacts& facts : attempt.judged->intervals) {
+    if (!(facts.*member)) return "";
+    worst = std::max(worst.value_or(-INFINITY), *(facts.*member));
+  }
+  return worst ? fmt::format("{:.9g}", *worst) : "";
+}
+
+std::string trial_row(const Run& run, const Attempt& attempt) {
+  const auto predicted = attempt.judged ? predicted_stretch(attempt) : std::nullopt;
+  std::string row = fmt::format("{}\t{}\t{}\t{:.9g}\t{}", attempt.begun.attempt, attempt.trial.name(),
+                                attempt.trial.standard_comes_first() ? 1 : 2,
+                                stimulus_of(run.study.key, attempt.trial.code).stretch,
+                                predicted ? fmt::format("{:.9g}", *predicted) : "");
+  for (const auto member :
+       {&schema::IntervalFacts::predicted_error_db, &schema::IntervalFacts::measured_error_db})
+    row += "\t" + (attempt.judged ? level_cell(attempt, member) : "");
+  if (const auto& answered = attempt.answered)
+    row += fmt::format("\t{}\t{}\t{:.3f}", answered->interval, answered->word, answered->answer_s);
+  else
+    row += "\t\t\t";
+  row += std::string("\t") + (!attempt.judged ? "unknown" : attempt.judged->delivered ? "yes" : "no");
+  std::vector<std::string> why = attempt.judged ? attempt.judged->why : std::vector<std::string>();
+  if (!attempt.answered) why.emplace_back("interrupted before the answer");
+  row += fmt::format("\t{}\t{}", fmt::join(why, "; "), run.journal.plan.observer);
+  return row;
+}
+
+}  // namespace
+
+Result<Run> read_run(const std::string& name) {
+  auto journal = schema::read_journal(schema::journal_path(name));
+  TACTO_TRY(journal);
+  return run_of(schema::run_stem(name), std::move(*journal));
+}
+
+Result<Run> run_of(const std::string& stem, schema::Journal journal) {
+  auto study = read_study(folder_with(stem) + journal.plan.study);
+  TACTO_TRY(study);
+  TACTO_TRY(check_unchanged(journal.plan, *study));
+  auto queue = queue_of(journal, study->protocol, study->key);
+  if (!queue) queue.error().where = schema::journal_path(stem);
+  TACTO_TRY(queue);
+  return Run{stem, std::move(journal), std::move(*study), std::move(*queue)};
+}
+
+Proof prove(const Run& run, const std::function<void(double)>& tell) {
+  Proof proof;
+  proof.trials = run.queue.trials();
+  proof.attempts = run.queue.attempts().size();
+  Prover prover(run, proof);
+  double done = 0;
+  for (const Attempt& attempt : run.queue.attempts()) {
+    prover.take(attempt);
+    tell(++done / static_cast<double>(proof.attempts));
+  }
+  return proof;
+}
+
+std::optional<double> predicted_stretch(const Attempt& attempt) {
+  if (attempt.judged->intervals.size() != 2) return std::nullopt;
+  const std::size_t standard = attempt.trial.standard_comes_first() ? 0 : 1;
+  const auto& of_standard = attempt.judged->intervals[standard].predicted_period_m;
+  const auto& of_stretched = attempt.judged->intervals[1 - standard].predicted_period_m;
+  if (!of_standard || !of_stretched) return std::nullopt;
+  return *of_stretched / *of_standard - 1;
+}
+
+std::string trials_table(const Run& run) {
+  std::string table = std::string(kTrialColumns) + "\n";
+  for (const Attempt& attempt : run.queue.attempts()) table += trial_row(run, attempt) + "\n";
+  return table;
+}
+
+}  // namespace tacto::analysis

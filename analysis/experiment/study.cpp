@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiment/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "analysis/experiment/trial_order.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/texture/texture_wav.hpp"
+#include "data-schema/version.hpp"
+#include "playback/prepare/prepare.hpp"
+#include "playback/render/at_speed.hpp"
+#include "spatial/features/band_kept.hpp"
+#include "spatial/transform/stretch.hpp"
+
+namespace tacto::analysis {
+
+using schema::ErrorKind;
+using schema::fail;
+using schema::Result;
+
+namespace {
+
+constexpr double kStimulusPitchM = 5e-6;  // 100 samples in the shortest period of `stretch`
+constexpr double kStimulusGain = 1e-3;    // m/N: 12.8 um are 12.8 mN
+
+schema::Texture standard_texture(const schema::Protocol& protocol) {
+  const schema::StandardStimulus& standard = protocol.standard;
+  schema::Texture texture;
+  texture.signal.pitch_m = kStimulusPitchM;
+  texture.signal.values.resize(static_cast<std::size_t>(std::lround(standard.length_m / kStimulusPitchM)) +
+                               1);
+  for (std::size_t i = 0; i < texture.signal.values.size(); ++i)
+    texture.signal.values[i] =
+        standard.amplitude_m / protocol.gain_m_per_n *
+        std::sin(2 * std::numbers::pi * texture.signal.position_m(i) / standard.period_m);
+  texture.surface = "computed sinusoid";
+  texture.created = schema::creation_time();
+  texture.creator = kCreator;
+  return texture;
+}
+
+Result<schema::Texture> stimulus_texture(const schema::Protocol& protocol, const schema::Texture& standard,
+                                         double stretch) {
+  if (stretch == 0) return standard;
+  spatial::Stretch by;
+  by.factor = 1 + stretch;
+  by.keep_slope = protocol.keep_slope;
+  by.period_m = protocol.standard.period_m;
+  return spatial::stretch(standard, by);
+}
+
+std::string code_of(std::size_t index) {
+  return fmt::format("K{}", index + 1);
+}
+
+Result<void> write_stimuli(const Study& study, const std::vector<double>& stretches,
+                           schema::Existing existing) {
+  const schema::Texture standard = standard_texture(study.protocol);
+  schema::PendingFiles pending;
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    const auto texture = stimulus_texture(study.protocol, standard, stretches[i]);
+    TACTO_TRY(texture);
+    TACTO_TRY(schema::add_texture(pending, study.stimulus(code_of(i)), *texture));
+  }
+  return pending.commit(existing);
+}
+
+Result<void> check_free(const Study& study, const std::vector<double>& stretches, schema::Existing existing) {
+  TACTO_TRY(schema::check_output_free(schema::protocol_path(study.stem), existing));
+  TACTO_TRY(schema::check_output_free(schema::key_path(study.stem), existing));
+  for (std::size_t i = 0; i < stretches.size(); ++i)
+    TACTO_TRY(schema::check_texture_free(study.stimulus(code_of(i)), existing));
+  return {};
+}
+
+Result<void> check_key(const Study& study, const std::string& path) {
+  std::vector<double> expected = study.protocol.levels, found;
+  expected.push_back(0);
+  for (const schema::CodedStimulus& stimulus : study.key.stimuli) found.push_back(stimulus.stretch);
+  std::ranges::sort(expected);
+  std::ranges::sort(found);
+  if (found == expected) return {};
+  return fail(ErrorKind::malformed, "has other stretches than the protocol", path + "#/stimuli",
+              "it belongs to another protocol: make the study again");
+}
+
+Result<void> check_stimulus(const Study& study, const schema::CodedStimulus& stimulus) {
+  const std::string stem = study.stimulus(stimulus.code);
+  const auto wav = schema::texture_wav(stem);
+  TACTO_TRY(wav);
+  const auto sum = schema::sha256_of_file(wav->path);
+  TACTO_TRY(sum);
+  if (*sum != stimulus.sha256 || wav->sha256 != stimulus.sha256)
+    return fail(ErrorKind::unsuitable, "is not the texture that the key names", stem,
+                "it was changed or swapped: take it from a copy, or make the study again");
+  const auto texture = schema::read_texture(stem);
+  TACTO_TRY(texture);
+  if (texture->signal.length_m() >= study.protocol.pace.to_m) return {};
+  return fail(ErrorKind::unsuitable,
+              fmt::format("ends at {:g} m, before the path's end at {:g} m", texture->signal.length_m(),
+                          study.protocol.pace.to_m),
+              wav->path, "make the standard longer, or end the path earlier");
+}
+
+}  // namespace
+
+std::string Study::name() const {
+  return std::filesystem::path(stem).filename().string();
+}
+
+std::string Study::stimulus(const std::string& code) const {
+  return stem + "/" + code;
+}
+
+std::string Study::run(const std::string& participant) const {
+  return stem + "-" + participant;
+}
+
+schema::Protocol stretch_protocol(const std::string& seed) {
+  schema::Protocol protocol;
+  protocol.standard = {1.76e-3, 12.8e-6, 0.06};
+  protocol.keep_slope = true;
+  protocol.levels = {-0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7};
+  protocol.repetitions = 10;
+  protocol.seed = seed;
+  protocol.gain_m_per_n = kStimulusGain;
+  protocol.pace = {0.01, 0.05, 0.06, 2};
+  protocol.lead_s = 0.5;
+  protocol.first = {"f", "first"};
+  protocol.second = {"j", "second"};
+  protocol.begin_key = " ";
+  protocol.most_attempts = 3;
+  protocol.participants = 8;
+  // At 45 mm/s the longest period, 2.99 mm, is at 15.04 Hz: still in the band from 15 Hz.
+  protocol.delivered = {0, 0, 10, 0, -40, -20, 0.045, 0.085};
+  protocol.texts = {
+      "You feel two textures, one after the other. Say which of them has the smaller period.",
+      "Put the finger at the left end and press the space bar.", "Move the finger to the right end and back.",
+      "Which one had the smaller period? f: the first, j: the second.", "That was all. Thank you."};
+  return protocol;
+}
+
+Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,
+                          schema::Existing existing) {
+  TACTO_TRY(schema::check_stem(stem));
+  const auto protocol_text = schema::protocol_text(protocol);
+  TACTO_TRY(protocol_text);
+  Study study{stem, protocol, {}};
+  const std::vector<double> stretches = stretches_by_code(protocol);
+  TACTO_TRY(check_free(study, stretches, existing));
+  TACTO_TRY(write_stimuli(study, stretches, existing));
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    const auto wav = schema::texture_wav(study.stimulus(code_of(i)));
+    TACTO_TRY(wav);
+    study.key.stimuli.push_back({code_of(i), stretches[i], wav->sha256});
+  }
+  const auto key_text = schema::protocol_key_text(study.key);
+  TACTO_TRY(key_text);
+  schema::PendingFiles pending;
+  TACTO_TRY(pending.write(schema::key_path(stem), *key_text));
+  TACTO_TRY(pending.write(schema::protocol_path(stem), *protocol_text));
+  TACTO_TRY(pending.commit(existing));
+  return study;
+}
+
+Result<Study> read_study(const std::string& name) {
+  Study study;
+  study.stem = schema::stem_of(name, ".protocol");
+  auto protocol = schema::read_protocol(name);
+  TACTO_TRY(protocol);
+  study.protocol = std::move(*protocol);
+  auto key = schema::read_protocol_key(schema::key_path(name));
+  TACTO_TRY(key);
+  study.key = std::move(*key);
+  TACTO_TRY(check_key(study, schema::key_path(name)));
+  for (const schema::CodedStimulus& stimulus : study.key.stimuli) TACTO_TRY(check_stimulus(study, stimulus));
+  return study;
+}
+
+const schema::CodedStimulus& standard_of(const schema::ProtocolKey& key) {
+  return *std::ranges::find(key.stimuli, 0.0, &schema::CodedStimulus::stretch);
+}
+
+const schema::CodedStimulus& stimulus_of(const schema::ProtocolKey& key, const std::string& code) {
+  return *std::ranges::find(key.stimuli, code, &schema::CodedStimulus::code);
+}
+
+Result<std::vector<std::string>> lost_band(const Study& study) {
+  const spatial::Band band = playback::PrepareOptions{}.band;
+  std::vector<std::string> notes;
+  for (const double speed_mps :
+       {study.protocol.delivered.slowest_mps, study.protocol.delivered.fastest_mps}) {
+    double least = 100;
+    for (const schema::CodedStimulus& stimulus : study.key.stimuli) {
+      const auto texture = schema::read_texture(study.stimulus(stimulus.code));
+      TACTO_TRY(texture);
+      least = std::min(least, spatial::band_kept_percent(*texture, speed_mps, band));
+    }
+    if (least < playback::kLeastPowerPercent)
+      notes.push_back(fmt::format("at {} the band of {} to {} keeps only {:.3g} % of a stimulus' power",
+                                  schema::for_people(speed_mps, schema::Dimension::speed),
+                                  schema::for_people(band.low_hz, schema::Dimension::frequency),
+                                  schema::for_people(band.high_hz, schema::Dimension::frequency), least));
+  }
+  return notes;
+}
+
+}  // namespace tacto::analysis

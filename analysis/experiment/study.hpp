@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The files of an experiment: protocol, key, and stimuli under their codes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "data-schema/experiment/protocol.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/texture/texture.hpp"
+
+namespace tacto::analysis {
+
+/// STEM.protocol.json, STEM.key.json and the textures STEM/K1 ...; runs are STEM-P01.
+struct Study {
+  std::string stem;
+  schema::Protocol protocol;
+  schema::ProtocolKey key;
+
+  std::string name() const;                               ///< the stem without its folder
+  std::string stimulus(const std::string& code) const;    ///< stem of its texture
+  std::string run(const std::string& participant) const;  ///< STEM-P01
+};
+
+/// Experiment 2 of Wiertlewski, Lozada and Hayward 2011: a sinusoid of 1.76 mm and 12.8 um; its period and
+/// amplitude stretched by +-10, 30, 50 and 70 %, ten times each; which one has the smaller period.
+schema::Protocol stretch_protocol(const std::string& seed);
+
+/// Makes the stimuli (spatial/transform) and writes all files. Errors: usage, if there is one of them and it
+/// is to be kept; cannot_write; those of stretching.
+schema::Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,
+                                  schema::Existing existing);
+
+/// Reads protocol and key, and checks that the key has the protocol's stretches and that each texture is the
+/// one of the key. `name`: STEM or STEM.protocol.json. Errors: of read_protocol, read_protocol_key and
+/// read_texture; malformed: another key; unsuitable: a texture that was changed or swapped, or is shorter
+/// than the path.
+schema::Result<Study> read_study(const std::string& name);
+
+/// The code and the SHA-256 of the standard. Precondition: a study that was read.
+const schema::CodedStimulus& standard_of(const schema::ProtocolKey& key);
+const schema::CodedStimulus& stimulus_of(const schema::ProtocolKey& key, const std::string& code);
+
+/// The stimuli that lose more than a tenth of their power at the slowest or fastest accepted speed, in words,
+/// without their codes.
+schema::Result<std::vector<std::string>> lost_band(const Study& study);
+
+}  // namespace tacto::analysis

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiment/study_answers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "analysis/experiment/proof.hpp"
+#include "data-schema/base/creation_time.hpp"
+
+namespace tacto::analysis {
+
+using schema::ErrorKind;
+using schema::fail;
+using schema::Result;
+
+namespace {
+
+std::vector<std::string> runs_of(const Study& study) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(study.stem).parent_path();
+  std::vector<std::string> runs;
+  std::error_code ignored;
+  for (const auto& file : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, ignored)) {
+    const std::string name = file.path().filename().string();
+    if (!name.starts_with(study.name() + "-") || schema::run_stem(name) == name) continue;
+    const std::string participant = schema::run_stem(name).substr(study.name().size() + 1);
+    if (schema::check_participant(participant)) runs.push_back(study.run(participant));
+  }
+  std::ranges::sort(runs);
+  return runs;
+}
+
+// Interval `interval` has the smaller period by the answer: whether that is the standard's.
+bool seemed_longer(const Attempt& attempt) {
+  return attempt.trial.standard_comes_first() == (attempt.answered->interval == 1);
+}
+
+AnswerGroup<LevelCount> answers_of_run(const Run& run) {
+  std::map<double, LevelCount> levels;
+  for (const Attempt& attempt : run.queue.attempts()) {
+    if (!attempt.counts()) continue;
+    const double stretch = stimulus_of(run.study.key, attempt.trial.code).stretch;
+    LevelCount& level = levels[stretch];
+    level.level = stretch;
+    level.yes += seemed_longer(attempt) ? 1 : 0;
+    level.trials += 1;
+  }
+  AnswerGroup<LevelCount> group{{run.journal.plan.participant}, {}};
+  for (const auto& [stretch, level] : levels) group.rows.push_back(level);
+  return group;
+}
+
+// Reads the file and writes it with a further line.
+Result<void> log_unblinding(const Study& study, std::size_t complete) {
+  const std::string path = study.stem + ".unblinded.txt";
+  std::string text = schema::is_file(path) ? schema::read_file(path).value_or("") : "";
+  text += fmt::format("{}\t{} of {} planned participants complete\n", schema::creation_time(), complete,
+                      study.protocol.participants);
+  schema::PendingFiles pending;
+  TACTO_TRY(pending.write(path, text));
+  return pending.commit();
+}
+
+}  // namespace
+
+Result<AnswersTable> study_answers(const std::string& name, bool unblind) {
+  const auto study = read_study(name);
+  TACTO_TRY(study);
+  AnswersTable table;
+  std::size_t complete = 0;
+  for (const std::string& stem : runs_of(*study)) {
+    const auto run = read_run(stem);
+    TACTO_TRY(run);
+    complete += run->queue.has_ended();
+    if (auto group = answers_of_run(*run); !group.rows.empty()) table.groups.push_back(std::move(group));
+  }
+  if (table.groups.empty())
+    return fail(ErrorKind::unsuitable, "has no answers yet", study->stem, "run it first");
+  if (complete < static_cast<std::size_t>(study->protocol.participants)) {
+    if (!unblind)
+      return fail(
+          ErrorKind::unsuitable,
+          fmt::format("{} of {} planned participants are complete", complete, study->protocol.participants),
+          study->stem, "wait for the others; --unblind analyses now, and that is logged");
+    TACTO_TRY(log_unblinding(*study, complete));
+  }
+  table.columns.by = {"participant"};
+  table.columns.level = table.level_name = "stretch";
+  table.columns.yes = "seemed longer";
+  return table;
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiment/study_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "analysis/experiment/interval_facts.hpp"
+#include "analysis/experiment/interval_play.hpp"
+#include "analysis/experiment/trial_runner.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/version.hpp"
+
+namespace tacto::analysis {
+
+using schema::ErrorKind;
+using schema::fail;
+using schema::Result;
+
+namespace {
+
+// The steps of a run on a device.
+class LiveSteps {
+ public:
+  LiveSteps(Run& run, schema::JournalFile& file, const RunRequest& request)
+      : run_(run), file_(file), request_(request) {}
+
+  TrialSteps steps() {
+    return {[this](const schema::JournalEntry& entry) { return keep(entry); },
+            [this](const StudyTrial& trial, int attempt) { return begun(trial, attempt); },
+            [this](const Attempt& attempt) { return play(attempt); },
+            [this](const Attempt& attempt) { return answer(attempt); }};
+  }
+
+  Result<void> keep(const schema::JournalEntry& entry) {
+    run_.journal.entries.push_back(entry);
+    return file_.append(entry);
+  }
+
+ private:
+  // A session of an attempt whose line was lost keeps its name.
+  std::string free_session(int attempt, int interval) const {
+    const std::string folder = std::filesystem::path(run_.stem).filename().string();
+    std::string name = fmt::format("{}/{:03}-{}", folder, attempt, interval);
+    while (schema::is_file(full(name + ".session"))) name += "x";
+    return name + ".session";
+  }
+
+  std::string full(const std::string& session) const {
+    return (std::filesystem::path(run_.stem).parent_path() / session).string();
+  }
+
+  schema::AttemptBegun begun(const StudyTrial& trial, int attempt) const {
+    const std::string& standard = standard_of(run_.study.key).code;
+    schema::AttemptBegun begun{attempt, trial.name(), {standard, trial.code}, {}};
+    if (!trial.standard_comes_first()) std::swap(begun.stimuli[0], begun.stimuli[1]);
+    begun.sessions = {free_session(attempt, 1), free_session(attempt, 2)};
+    return begun;
+  }
+
+  std::string place(const Attempt& attempt) const {
+    return fmt::format("{}/{}", run_.journal.plan.participant, attempt.begun.attempt);
+  }
+
+  bool go_ahead(int interval) const { return request_.observer || request_.participant.go_ahead(interval); }
+
+  Result<std::optional<schema::DeliveryJudged>> play(const Attempt& attempt) {
+    request_.tell(static_cast<double>(run_.queue.counted()) / static_cast<double>(run_.queue.trials()));
+    std::vector<std::string> late;
+    std::array<std::string, 2> sums;
+    IntervalPlay interval{request_.device_uri, {}, {}, false, request_.stop_asked};
+    interval.hurried = request_.observer && hurries(*request_.observer, place(attempt));
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!go_ahead(static_cast<int>(i) + 1)) return std::nullopt;
+      interval.stimulus = run_.study.stimulus(attempt.begun.stimuli[i]);
+      interval.session = full(attempt.begun.sessions[i]);
+      sums[i] = stimulus_of(run_.study.key, attempt.begun.stimuli[i]).sha256;
+      const auto played = play_interval(run_.study.protocol, interval);
+      TACTO_TRY(played);
+      if (request_.stop_asked()) return std::nullopt;
+      if (!played->empty()) late.push_back(*played);
+    }
+    std::vector<schema::IntervalFacts> facts;
+    for (const std::string& session : attempt.begun.sessions) {
+      auto each = interval_facts(full(session));
+      TACTO_TRY(each);
+      facts.push_back(std::move(*each));
+    }
+    return judged_delivery(attempt.begun.attempt, std::move(facts), sums, run_.study.protocol, late);
+  }
+
+  Result<std::optional<schema::AttemptAnswered>> answer(const Attempt& attempt) {
+    const auto given = given_answer(attempt);
+    TACTO_TRY(given);
+    if (!*given) return std::nullopt;
+    const schema::Protocol& protocol = run_.study.protocol;
+    const auto& [key, word] = (*given)->interval == 1 ? protocol.first : protocol.second;
+    return schema::AttemptAnswered{attempt.begun.attempt, (*given)->interval, word, (*given)->answer_s};
+  }
+
+  Result<std::optional<GivenAnswer>> given_answer(const Attempt& attempt) const {
+    if (!request_.observer) return request_.participant.answer(run_.queue.answers());
+    const auto& intervals = attempt.judged->intervals;
+    const int interval = smaller_period(*request_.observer, place(attempt),
+                                        {intervals[0].predicted_period_m, intervals[1].predicted_period_m},
+                                        run_.study.protocol.standard.period_m);
+    return GivenAnswer{interval, 0};
+  }
+
+  Run& run_;
+  schema::JournalFile& file_;
+  const RunRequest& request_;
+};
+
+Result<void> write_table(const Run& run) {
+  schema::PendingFiles pending;
+  TACTO_TRY(pending.write(run.stem + ".trials.tsv", trials_table(run)));
+  return pending.commit();
+}
+
+// Runs what is left. `first`: the entry with which this begins.
+Result<void> go_on(Run& run, schema::JournalFile& file, const RunRequest& request,
+                   const schema::JournalEntry& first) {
+  LiveSteps live(run, file, request);
+  TACTO_TRY(live.keep(first));
+  TACTO_TRY(run.queue.take(first));
+  TACTO_TRY(run_trials(run.queue, live.steps()));
+  return run.queue.has_ended() ? write_table(run) : Result<void>();
+}
+
+}  // namespace
+
+Result<Run> begin_run(const std::string& study_name, const std::string& participant,
+                      const RunRequest& request) {
+  TACTO_TRY(schema::check_participant(participant));
+  auto study = read_study(study_name);
+  TACTO_TRY(study);
+  TACTO_TRY(check_on_device(*study, request.device_uri));
+  const std::string stem = study->run(participant);
+  auto file = schema::JournalFile::create(schema::journal_path(stem));
+  TACTO_TRY(file);
+  schema::RunPlanned plan{study->name(),           participant,
+                          study->protocol.sha256,  study->key.sha256,
+                          request.device_uri,      request.observer ? request.observer->text : "",
+                          schema::creation_time(), std::string(kCreator)};
+  TrialQueue queue(ordered_trials(study->protocol, study->key, participant), study->protocol.most_attempts);
+  Run run{stem, {plan, {}, 0}, std::move(*study), std::move(queue)};
+  TACTO_TRY(go_on(run, *file, request, plan));
+  return run;
+}
+
+Result<Run> resume_run(const std::string& name, RunRequest request) {
+  schema::Journal journal;
+  auto file = schema::JournalFile::resume(schema::journal_path(name), journal);
+  TACTO_TRY(file);
+  auto run = run_of(schema::run_stem(name), std::move(journal));
+  TACTO_TRY(run);
+  if (run->queue.has_ended())
+    return fail(ErrorKind::usage, "this run is complete", schema::journal_path(name), "");
+  const schema::RunPlanned& plan = run->journal.plan;
+  if (request.device_uri.empty()) request.device_uri = plan.device;
+  request.observer.reset();
+  if (!plan.observer.empty()) {
+    auto observer = parse_observer(plan.observer);
+    TACTO_TRY(observer);
+    request.observer = std::move(*observer);
+  }
+  TACTO_TRY(check_on_device(run->study, request.device_uri));
+  TACTO_TRY(go_on(*run, *file, request, schema::RunResumed{schema::creation_time()}));
+  return std::move(*run);
+}
+
+}  // namespace tacto::analysis

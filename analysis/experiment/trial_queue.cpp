@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiment/trial_queue.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace tacto::analysis {
+
+using schema::ErrorKind;
+using schema::Result;
+
+namespace {
+
+tl::unexpected<schema::Error> does_not_follow(const std::string& what) {
+  return schema::fail(ErrorKind::unsuitable, what + " does not follow from the entries before it", {},
+                      "the protocol, the key or the journal was changed");
+}
+
+}  // namespace
+
+TrialQueue::TrialQueue(std::vector<StudyTrial> order, int most_attempts)
+    : queue_(order.begin(), order.end()), trials_(order.size()), most_attempts_(most_attempts) {}
+
+Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
+  if (const auto* begun = std::get_if<schema::AttemptBegun>(&entry)) return begin(*begun);
+  if (const auto* judged = std::get_if<schema::DeliveryJudged>(&entry)) {
+    const auto attempt = open_attempt(judged->attempt);
+    TACTO_TRY(attempt);
+    if ((*attempt)->judged) return does_not_follow(fmt::format("attempt {}", judged->attempt));
+    (*attempt)->judged = *judged;
+  }
+  if (const auto* answered = std::get_if<schema::AttemptAnswered>(&entry)) {
+    const auto attempt = open_attempt(answered->attempt);
+    TACTO_TRY(attempt);
+    if (!(*attempt)->judged) return does_not_follow(fmt::format("attempt {}", answered->attempt));
+    (*attempt)->answered = *answered;
+    close();
+  }
+  if (std::holds_alternative<schema::RunResumed>(entry) && open_) close();
+  if (std::holds_alternative<schema::RunEnded>(entry)) ended_ = true;
+  return {};
+}
+
+std::optional<StudyTrial> TrialQueue::next() const {
+  return queue_.empty() ? std::nullopt : std::optional(queue_.front());
+}
+
+std::size_t TrialQueue::counted() const {
+  return static_cast<std::size_t>(std::ranges::count_if(attempts_, &Attempt::counts));
+}
+
+std::size_t TrialQueue::answers() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(attempts_, [](const Attempt& each) { return each.answered.has_value(); }));
+}
+
+Result<void> TrialQueue::begin(const schema::AttemptBegun& begun) {
+  const int number = static_cast<int>(attempts_.size()) + 1;
+  if (open_ || begun.attempt != number || queue_.empty() || queue_.front().name() != begun.trial)
+    return does_not_follow(fmt::format("attempt {} at trial {}", begun.attempt, begun.trial));
+  attempts_.push_back({begun, queue_.front(), {}, {}});
+  ++tried_[begun.trial];
+  queue_.pop_front();
+  open_ = true;
+  return {};
+}
+
+Result<Attempt*> TrialQueue::open_attempt(int number) {
+  if (open_ && attempts_.back().begun.attempt == number) return &attempts_.back();
+  return does_not_follow(fmt::format("attempt {}", number));
+}
+
+void TrialQueue::close() {
+  const Attempt& attempt = attempts_.back();
+  if (!attempt.counts() && tried_[attempt.begun.trial] < most_attempts_) queue_.push_back(attempt.trial);
+  open_ = false;
+}
+
+}  // namespace tacto::analysis

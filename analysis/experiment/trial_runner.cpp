@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiment/trial_runner.hpp"
+
+#include "data-schema/base/creation_time.hpp"
+
+namespace tacto::analysis {
+
+using schema::Result;
+
+namespace {
+
+Result<void> keep_and_take(TrialQueue& queue, const TrialSteps& steps, const schema::JournalEntry& entry) {
+  TACTO_TRY(steps.keep(entry));
+  return queue.take(entry);
+}
+
+// False: the run is ended.
+Result<bool> run_trial(TrialQueue& queue, const TrialSteps& steps, const StudyTrial& trial) {
+  const int number = static_cast<int>(queue.attempts().size()) + 1;
+  TACTO_TRY(keep_and_take(queue, steps, steps.begin(trial, number)));
+  const auto judged = steps.play(queue.attempts().back());
+  TACTO_TRY(judged);
+  if (!*judged) return false;
+  TACTO_TRY(keep_and_take(queue, steps, **judged));
+  const auto answered = steps.answer(queue.attempts().back());
+  TACTO_TRY(answered);
+  if (!*answered) return false;
+  TACTO_TRY(keep_and_take(queue, steps, **answered));
+  return true;
+}
+
+}  // namespace
+
+Result<void> run_trials(TrialQueue& queue, const TrialSteps& steps) {
+  while (const auto trial = queue.next()) {
+    const auto goes_on = run_trial(queue, steps, *trial);
+    TACTO_TRY(goes_on);
+    if (!*goes_on) return {};
+  }
+  return keep_and_take(queue, steps, schema::RunEnded{schema::creation_time()});
+}
+
+Result<TrialQueue> queue_of(const schema::Journal& journal, const schema::Protocol& protocol,
+                            const schema::ProtocolKey& key) {
+  TrialQueue queue(ordered_trials(protocol, key, journal.plan.participant), protocol.most_attempts);
+  for (const schema::JournalEntry& entry : journal.entries) TACTO_TRY(queue.take(entry));
+  return queue;
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// STUDY-P07.trials.jsonl: what happened in one participant's run, line by line. Each line is on the disk
+// before the next step, and has its number and its check.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "data-schema/base/error.hpp"
+#include "data-schema/files/event_file.hpp"
+
+namespace tacto::schema {
+
+/// The first line: who takes part in what, on which device.
+struct RunPlanned {
+  std::string study, participant;
+  std::string protocol_sha256, key_sha256;
+  std::string device;
+  std::string observer;  ///< simulated; empty: a person
+  std::string created, creator;
+};
+
+/// An attempt at a trial begins: the first line of it.
+struct AttemptBegun {
+  int attempt = 0;                      ///< 1, 2 ... of the run
+  std::string trial;                    ///< CODE.REPETITION
+  std::array<std::string, 2> stimuli;   ///< codes, in the order of the intervals
+  std::array<std::string, 2> sessions;  ///< from the journal's folder
+};
+
+/// What a session says of one interval.
+struct IntervalFacts {
+  std::uint64_t ticks = 0, lost_ticks = 0, fault_ticks = 0, late_ticks = 0, blind_ticks = 0;
+  bool closed = false;                         ///< the session is whole
+  std::string stimulus_sha256;                 ///< of the texture that was played
+  std::string simulated;                       ///< by which device; empty: a real one
+  std::uint64_t strokes = 0;                   ///< of at least 5 mm
+  double slowest_mps = 0, fastest_mps = 0;     ///< mean speeds of strokes
+  std::optional<double> removed_by_limits_db;  ///< -300: nothing; none: unknown
+  std::optional<double> predicted_error_db;    ///< of the worst stroke; none: the target is unknown
+  std::optional<double> measured_error_db;     ///< the same, if the tray has a sensor
+  std::optional<double> predicted_period_m;    ///< of the predicted displacement along position
+  bool operator==(const IntervalFacts&) const = default;
+};
+
+/// Decided before the answer is read.
+struct DeliveryJudged {
+  int attempt = 0;
+  bool delivered = false;
+  std::vector<std::string> why;          ///< not delivered: each reason
+  std::vector<IntervalFacts> intervals;  ///< those that were played
+};
+
+struct AttemptAnswered {
+  int attempt = 0;
+  int interval = 0;     ///< 1 or 2
+  std::string word;     ///< as the protocol names it
+  double answer_s = 0;  ///< from the question to the key; 0 of an observer and of a file
+};
+
+/// The run continues after an interruption: an attempt without an answer is over.
+struct RunResumed {
+  std::string created;
+};
+
+struct RunEnded {
+  std::string created;
+};
+
+using JournalEntry =
+    std::variant<RunPlanned, AttemptBegun, DeliveryJudged, AttemptAnswered, RunResumed, RunEnded>;
+
+/// The line of an entry, with its end: a JSON object whose last member `check` has the first 16 hexadecimal
+/// digits of the SHA-256 of the line without that member (and with the closing brace).
+std::string journal_line(const JournalEntry& entry, std::size_t number);
+
+struct Journal {
+  RunPlanned plan;
+  std::vector<JournalEntry> entries;  ///< with the plan
+  std::size_t sound_bytes = 0;        ///< of the whole lines; what follows was not written completely
+};
+
+/// Reads the whole lines. A last line that is incomplete or wrong is left out. Errors: malformed, with the
+/// line: a wrong check or number before other lines, or an entry that is none; unsuitable: no whole line.
+Result<Journal> parse_journal(std::string_view text, const std::string& where);
+
+/// STUDY-P07.trials.jsonl of a run's name (STUDY-P07, with or without that ending).
+std::string journal_path(const std::string& run);
+/// The run's name: the path without the ending.
+std::string run_stem(const std::string& run);
+
+/// Errors: not_found; as parse_journal.
+Result<Journal> read_journal(const std::string& path);
+
+/// The open file, locked for this process.
+class JournalFile {
+ public:
+  /// Errors: usage, if the file exists; cannot_write.
+  static Result<JournalFile> create(const std::string& path);
+  /// Reads an existing journal into `journal`, and removes its incomplete end. Errors: as read_journal;
+  /// unsuitable, while another process writes it; cannot_write.
+  static Result<JournalFile> resume(const std::string& path, Journal& journal);
+
+  /// Returns when the line is on the disk. Errors: cannot_write.
+  Result<void> append(const JournalEntry& entry);
+
+ private:
+  JournalFile(EventFile file, std::string path, std::size_t lines)
+      : file_(std::move(file)), path_(std::move(path)), lines_(lines) {}
+  EventFile file_;
+  std::string path_;
+  std::size_t lines_;
+};
+
+}  // namespace tacto::schema

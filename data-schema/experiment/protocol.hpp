@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// NAME.protocol.json: what an experiment asks of whom, and what counts as delivered; NAME.key.json: which
+// stimulus plays under which code.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "data-schema/base/error.hpp"
+
+namespace tacto::schema {
+
+/// The standard: a sinusoid of the tray's displacement along position.
+struct StandardStimulus {
+  double period_m = 0, amplitude_m = 0, length_m = 0;
+};
+
+/// How the finger is to move in each interval.
+struct ProtocolPace {
+  double from_m = 0, to_m = 0;  ///< on the texture
+  double speed_mps = 0;
+  int strokes = 0;  ///< alternately forth and back
+};
+
+/// An interval with more of these, or beyond them, is not delivered. The levels in dB are those of the verb
+/// `session`: the worst stroke counts.
+struct DeliveryLimits {
+  int lost_ticks = 0, fault_ticks = 0, late_ticks = 0, blind_ticks = 0;
+  double removed_by_limits_db = 0;          ///< RMS of what the limits removed of the drive, re the drive
+  double error_db = 0;                      ///< RMS of predicted displacement - target, re the target
+  double slowest_mps = 0, fastest_mps = 0;  ///< mean speed of each stroke
+};
+
+struct AnswerWord {
+  std::string key;   ///< one character
+  std::string word;  ///< as it is shown and stored
+};
+
+/// What the participant reads. The names of the keys are inserted by the runner.
+struct ProtocolTexts {
+  std::string welcome, begin, interval, question, end;
+};
+
+/// Task two_interval: in each trial the standard and a stretched version of it are played, one after the
+/// other, and the participant says which of them has the smaller period.
+struct Protocol {
+  StandardStimulus standard;
+  bool keep_slope = false;     ///< the amplitude is stretched alike
+  std::vector<double> levels;  ///< stretch of the period: 0.3 is 30 % longer; ascending, never 0
+  int repetitions = 0;         ///< of each level; in the odd ones the standard comes first
+  std::string seed;            ///< of codes and order
+  double gain_m_per_n = 0;     ///< of playback
+  ProtocolPace pace;
+  double lead_s = 0;         ///< from the participant's go-ahead to the beginning of an interval
+  AnswerWord first, second;  ///< the answers
+  std::string begin_key;
+  int most_attempts = 0;  ///< of one trial; then the run goes on without it
+  int participants = 0;   ///< planned: before they are complete, the analysis needs --unblind
+  DeliveryLimits delivered;
+  ProtocolTexts texts;
+  std::string notes;
+  std::string extra_json;  ///< members that the schema does not name
+  std::string newer_version;
+  std::vector<std::string> unknown_members = {};
+  std::string sha256;  ///< of the file that was read
+};
+
+/// By stem or NAME.protocol.json. Errors: not_found; malformed, with the place: also an
+/// unknown member (with the nearest known one), levels that do not rise or include 0, doubled keys or words,
+/// a path that leaves the texture, limits of speed that exclude the pace; unsupported_version.
+Result<Protocol> read_protocol(const std::string& name);
+
+/// The text of the file. Errors: unsuitable, by the schema.
+Result<std::string> protocol_text(const Protocol& protocol);
+
+/// The protocol and the key of a study of this stem.
+std::string protocol_path(const std::string& study);
+std::string key_path(const std::string& study);
+
+/// One stimulus as it is played.
+struct CodedStimulus {
+  std::string code;    ///< "K3"
+  double stretch = 0;  ///< 0: the standard
+  std::string sha256;  ///< of its WAV
+};
+
+struct ProtocolKey {
+  std::vector<CodedStimulus> stimuli;  ///< by code
+  std::string sha256;                  ///< of the file that was read
+};
+
+/// Errors: as read_protocol; malformed: a code or stretch twice.
+Result<ProtocolKey> read_protocol_key(const std::string& path);
+Result<std::string> protocol_key_text(const ProtocolKey& key);
+
+/// Errors: usage, if it is not a code, such as P07: letters and digits, at least one digit.
+Result<void> check_participant(const std::string& participant);
+
+}  // namespace tacto::schema

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+#include "data-schema/experiment/protocol.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/json/json_document.hpp"
+#include "data-schema/json/known_members.hpp"
+#include "data-schema/json/named_document.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::string_view kProtocolKind = "protocol";
+constexpr std::string_view kKeyKind = "protocol_key";
+
+struct LimitCount {
+  const char* name;
+  int DeliveryLimits::*member;
+};
+constexpr LimitCount kLimitCounts[] = {{"lost_ticks", &DeliveryLimits::lost_ticks},
+                                       {"fault_ticks", &DeliveryLimits::fault_ticks},
+                                       {"late_ticks", &DeliveryLimits::late_ticks},
+                                       {"blind_ticks", &DeliveryLimits::blind_ticks}};
+
+struct LimitNumber {
+  const char* name;
+  double DeliveryLimits::*member;
+};
+constexpr LimitNumber kLimitNumbers[] = {{"removed_by_limits_db", &DeliveryLimits::removed_by_limits_db},
+                                         {"error_db", &DeliveryLimits::error_db},
+                                         {"slowest_mps", &DeliveryLimits::slowest_mps},
+                                         {"fastest_mps", &DeliveryLimits::fastest_mps}};
+
+struct ShownText {
+  const char* name;
+  std::string ProtocolTexts::*member;
+};
+constexpr ShownText kShownTexts[] = {{"welcome", &ProtocolTexts::welcome},
+                                     {"begin", &ProtocolTexts::begin},
+                                     {"interval", &ProtocolTexts::interval},
+                                     {"question", &ProtocolTexts::question},
+                                     {"end", &ProtocolTexts::end}};
+
+AnswerWord answer_from(const Json& body) {
+  return {body["key"], body["word"]};
+}
+
+Protocol protocol_from(const Document& document) {
+  const Json& body = document.body;
+  Protocol protocol;
+  const Json &standard = body["standard"], &pace = body["pace"], &answers = body["answers"];
+  protocol.standard = {standard["period_m"], standard["amplitude_m"], standard["length_m"]};
+  protocol.keep_slope = body["keep"] == "slope";
+  protocol.levels = body["levels"].get<std::vector<double>>();
+  protocol.repetitions = body["repetitions"];
+  protocol.seed = body["seed"];
+  protocol.gain_m_per_n = body["gain_m_per_n"];
+  protocol.pace = {pace["from_m"], pace["to_m"], pace["speed_mps"], pace["strokes"]};
+  protocol.lead_s = body["lead_s"];
+  protocol.first = answer_from(answers["first"]);
+  protocol.second = answer_from(answers["second"]);
+  protocol.begin_key = answers["begin_key"];
+  protocol.most_attempts = body["most_attempts"];
+  protocol.participants = body["participants"];
+  const Json &delivered = body["delivered"], &texts = body["texts"];
+  for (const auto& [name, member] : kLimitCounts) protocol.delivered.*member = delivered[name];
+  for (const auto& [name, member] : kLimitNumbers) protocol.delivered.*member = delivered[name];
+  for (const auto& [name, member] : kShownTexts) protocol.texts.*member = texts[name];
+  protocol.notes = text_or(body, "notes");
+  keep_unknown(document, protocol);
+  return protocol;
+}
+
+Json protocol_body(const Protocol& protocol) {
+  Json body = Json::object();
+  put_text(body, "version", protocol.newer_version);
+  body["task"] = "two_interval";
+  body["standard"] = {{"period_m", protocol.standard.period_m},
+                      {"amplitude_m", protocol.standard.amplitude_m},
+                      {"length_m", protocol.standard.length_m}};
+  body["keep"] = protocol.keep_slope ? "slope" : "amplitude";
+  body["levels"] = protocol.levels;
+  body["repetitions"] = protocol.repetitions;
+  body["seed"] = protocol.seed;
+  body["gain_m_per_n"] = protocol.gain_m_per_n;
+  body["pace"] = {{"from_m", protocol.pace.from_m},
+                  {"to_m", protocol.pace.to_m},
+                  {"speed_mps", protocol.pace.speed_mps},
+                  {"strokes", protocol.pace.strokes}};
+  body["lead_s"] = protocol.lead_s;
+  body["answers"] = {{"first", {{"key", protocol.first.key}, {"word", protocol.first.word}}},
+                     {"second", {{"key", protocol.second.key}, {"word", protocol.second.word}}},
+                     {"begin_key", protocol.begin_key}};
+  body["most_attempts"] = protocol.most_attempts;
+  body["participants"] = protocol.participants;
+  body["delivered"] = Json::object();
+  for (const auto& [name, member] : kLimitCounts) body["delivered"][name] = protocol.delivered.*member;
+  for (const auto& [name, member] : kLimitNumbers) body["delivered"][name] = protocol.delivered.*member;
+  body["texts"] = Json::object();
+  for (const auto& [name, member] : kShownTexts) body["texts"][name] = protocol.texts.*member;
+  put_text(body, "notes", protocol.notes);
+  return body;
+}
+
+Result<void> malformed_at(const std::string& path, const char* member, const std::string& what,
+                          const std::string& remedy) {
+  return fail(ErrorKind::malformed, what, path + "#/" + member, remedy);
+}
+
+Result<void> check_levels(const Protocol& protocol, const std::string& path) {
+  for (std::size_t i = 0; i < protocol.levels.size(); ++i) {
+    const std::string place = fmt::format("levels/{}", i);
+    if (protocol.levels[i] == 0)
+      return malformed_at(path, place.c_str(), "the stretch 0 is that of the standard", "leave it out");
+    if (i > 0 && !(protocol.levels[i] > protocol.levels[i - 1]))
+      return malformed_at(path, place.c_str(), "the levels do not rise", "sort them; each occurs once");
+  }
+  return {};
+}
+
+Result<void> check_answers(const Protocol& protocol, const std::string& path) {
+  const std::set<std::string> keys = {protocol.first.key, protocol.second.key, protocol.begin_key};
+  if (keys.size() < 3)
+    return malformed_at(path, "answers", "one key has two meanings",
+                        "give first, second and begin_key different keys");
+  if (protocol.first.word == protocol.second.word)
+    return malformed_at(path, "answers/second/word", "both answers have the same word",
+                        "give them different words");
+  return {};
+}
+
+Result<void> check_pace(const Protocol& protocol, const std::string& path) {
+  const ProtocolPace& pace = protocol.pace;
+  if (!(pace.to_m - pace.from_m >= 5e-3))
+    return malformed_at(path, "pace/to_m", "a stroke from from_m to to_m is shorter than 5 mm",
+                        "give a longer path: shorter movements are not strokes");
+  if (pace.to_m > protocol.standard.length_m)
+    return malformed_at(
+        path, "pace/to_m",
+        fmt::format("the path ends at {:g} m, the texture at {:g} m", pace.to_m, protocol.standard.length_m),
+        "end the path earlier, or make standard/length_m longer");
+  if (!(protocol.delivered.slowest_mps <= pace.speed_mps && pace.speed_mps <= protocol.delivered.fastest_mps))
+    return malformed_at(
+        path, "pace/speed_mps",
+        fmt::format("{:g} m/s is not between delivered/slowest_mps and fastest_mps", pace.speed_mps),
+        "every trial would fail: change one of them");
+  return {};
+}
+
+Result<void> check_protocol(const Protocol& protocol, const std::string& path) {
+  TACTO_TRY(check_levels(protocol, path));
+  TACTO_TRY(check_answers(protocol, path));
+  return check_pace(protocol, path);
+}
+
+std::string stem_of_study(const std::string& study) {
+  return stem_of(study, ".protocol");
+}
+
+Result<Document> open_known(const std::string& path, std::string_view kind) {
+  auto document = open_document(path, kind);
+  TACTO_TRY(document);
+  TACTO_TRY(check_document_known(*document, kind, path));
+  return document;
+}
+
+}  // namespace
+
+std::string protocol_path(const std::string& study) {
+  return stem_of_study(study) + ".protocol.json";
+}
+
+std::string key_path(const std::string& study) {
+  return stem_of_study(study) + ".key.json";
+}
+
+Result<Protocol> read_protocol(const std::string& name) {
+  const std::string path = protocol_path(name);
+  const auto document = open_known(path, kProtocolKind);
+  TACTO_TRY(document);
+  Protocol protocol = protocol_from(*document);
+  TACTO_TRY(check_protocol(protocol, path));
+  const auto sum = sha256_of_file(path);
+  TACTO_TRY(sum);
+  protocol.sha256 = *sum;
+  return protocol;
+}
+
+Result<std::string> protocol_text(const Protocol& protocol) {
+  TACTO_TRY(check_protocol(protocol, std::string(kProtocolKind)));
+  return document_text(kProtocolKind, protocol_body(protocol), protocol.extra_json);
+}
+
+Result<ProtocolKey> read_protocol_key(const std::string& path) {
+  const auto document = open_known(path, kKeyKind);
+  TACTO_TRY(document);
+  ProtocolKey key;
+  std::set<std::string> codes;
+  std::set<double> stretches;
+  for (const Json& body : document->body["stimuli"]) {
+    const CodedStimulus& stimulus =
+        key.stimuli.emplace_back(CodedStimulus{body["code"], body["stretch"], body["sha256"]});
+    if (!codes.insert(stimulus.code).second || !stretches.insert(stimulus.stretch).second)
+      return fail(ErrorKind::malformed, "its code or its stretch occurs twice",
+                  fmt::format("{}#/stimuli/{}", path, key.stimuli.size() - 1), "each has one code");
+  }
+  const auto sum = sha256_of_file(path);
+  TACTO_TRY(sum);
+  key.sha256 = *sum;
+  return key;
+}
+
+Result<std::string> protocol_key_text(const ProtocolKey& key) {
+  Json body = {{"stimuli", Json::array()}};
+  for (const CodedStimulus& each : key.stimuli)
+    body["stimuli"].push_back({{"code", each.code}, {"stretch", each.stretch}, {"sha256", each.sha256}});
+  return document_text(kKeyKind, body, {});
+}
+
+Result<void> check_participant(const std::string& participant) {
+  const auto is = [](int (*kind)(int)) {
+    return [kind](char c) { return kind(static_cast<unsigned char>(c)) != 0; };
+  };
+  if (!participant.empty() && participant.size() <= 16 &&
+      std::ranges::all_of(participant, is(std::isalnum)) &&
+      std::ranges::any_of(participant, is(std::isdigit)))
+    return {};
+  return fail(ErrorKind::usage, fmt::format("'{}' is not the code of a participant", participant),
+              "--participant",
+              "give letters and digits, such as P07: names of people do not belong in files");
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The run of an experiment without a device: order, journal cut at each byte, decisions, observer, period.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "analysis/experiment/interval_facts.hpp"
+#include "analysis/experiment/observer.hpp"
+#include "analysis/experiment/spatial_period.hpp"
+#include "analysis/experiment/study.hpp"
+#include "analysis/experiment/trial_runner.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::ErrorKind;
+using schema::Result;
+
+// Ten levels, twice each: 20 trials.
+schema::Protocol twenty_trials() {
+  schema::Protocol protocol = stretch_protocol("7");
+  protocol.levels = {-0.5, -0.4, -0.3, -0.2, -0.1, 0.1, 0.2, 0.3, 0.4, 0.5};
+  protocol.repetitions = 2;
+  protocol.most_attempts = 100;
+  return protocol;
+}
+
+schema::ProtocolKey key_of(const schema::Protocol& protocol) {
+  schema::ProtocolKey key;
+  for (const double stretch : stretches_by_code(protocol))
+    key.stimuli.push_back({"K" + std::to_string(key.stimuli.size() + 1), stretch, "sum"});
+  return key;
+}
+
+// A run whose journal is a text: every seventh attempt is not delivered.
+class TextRun {
+ public:
+  // Begins a run, or resumes what is whole in `journal`. Errors: of parse_journal.
+  Result<void> go_on(const std::string& journal) {
+    if (journal.empty()) return run_from(schema::RunPlanned{"lab", "P01", "", "", "none", "", "", ""});
+    const auto parsed = schema::parse_journal(journal, "journal");
+    if (!parsed) return schema::forward_error(parsed);
+    text_ = journal.substr(0, parsed->sound_bytes);
+    lines_ = parsed->entries.size();
+    auto queue = queue_of(*parsed, protocol_, key_);
+    if (!queue) return schema::forward_error(queue);
+    queue_ = std::move(*queue);
+    return queue_.has_ended() ? Result<void>() : run_from(schema::RunResumed{""});
+  }
+
+  const std::string& text() const { return text_; }
+  const TrialQueue& queue() const { return queue_; }
+
+ private:
+  Result<void> keep(const schema::JournalEntry& entry) {
+    text_ += schema::journal_line(entry, ++lines_);
+    return {};
+  }
+
+  Result<void> run_from(const schema::JournalEntry& first) {
+    if (const auto kept = keep(first); !kept) return kept;
+    if (const auto taken = queue_.take(first); !taken) return taken;
+    TrialSteps steps;
+    steps.keep = [this](const schema::JournalEntry& entry) { return keep(entry); };
+    steps.begin = [](const StudyTrial& trial, int attempt) {
+      return schema::AttemptBegun{attempt, trial.name(), {"K1", trial.code}, {"a", "b"}};
+    };
+    steps.play = [](const Attempt& attempt) -> Result<std::optional<schema::DeliveryJudged>> {
+      const bool delivered = attempt.begun.attempt % 7 != 0;
+      return schema::DeliveryJudged{attempt.begun.attempt, delivered, {}, {}};
+    };
+    steps.answer = [](const Attempt& attempt) -> Result<std::optional<schema::AttemptAnswered>> {
+      return schema::AttemptAnswered{attempt.begun.attempt, 1 + attempt.begun.attempt % 2, "word", 0};
+    };
+    return run_trials(queue_, steps);
+  }
+
+  const schema::Protocol protocol_ = twenty_trials();
+  const schema::ProtocolKey key_ = key_of(protocol_);
+  TrialQueue queue_{ordered_trials(protocol_, key_, "P01"), protocol_.most_attempts};
+  std::string text_;
+  std::size_t lines_ = 0;
+};
+
+std::map<std::string, int> counted_trials(const TrialQueue& queue) {
+  std::map<std::string, int> counted;
+  for (const Attempt& attempt : queue.attempts())
+    if (attempt.counts()) ++counted[attempt.begun.trial];
+  return counted;
+}
+
+std::size_t lines_with(const std::string& text, const std::string& word) {
+  std::size_t lines = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++lines;
+  return lines;
+}
+
+TEST(ExperimentRun, WhatIsNotDeliveredComesAgainAtTheEnd) {
+  TextRun run;
+  ASSERT_TRUE(run.go_on(""));
+  EXPECT_TRUE(run.queue().has_ended());
+  const auto& attempts = run.queue().attempts();
+  ASSERT_EQ(attempts.size(), 23u);  // 7, 14 and 21 fail
+  EXPECT_EQ(attempts[20].begun.trial, attempts[6].begun.trial);
+  EXPECT_EQ(attempts[21].begun.trial, attempts[13].begun.trial);
+  EXPECT_EQ(attempts[22].begun.trial, attempts[6].begun.trial);
+  EXPECT_EQ(counted_trials(run.queue()).size(), 20u);
+  EXPECT_EQ(run.queue().answers(), 23u);
+}
+
+// Wherever the journal ends: it is resumed, all whole lines stay, and each trial counts once.
+TEST(ExperimentRun, AJournalCutAtEachByteIsResumedWithEachAnswerOnce) {
+  TextRun whole;
+  ASSERT_TRUE(whole.go_on(""));
+  const std::string& text = whole.text();
+  const std::size_t first_line = text.find('\n') + 1;
+  for (std::size_t bytes = 1; bytes <= text.size(); ++bytes) {
+    const std::string cut = text.substr(0, bytes);
+    TextRun resumed;
+    const auto went_on = resumed.go_on(cut);
+    if (bytes < first_line) {
+      ASSERT_FALSE(went_on) << bytes;
+      ASSERT_EQ(went_on.error().kind, ErrorKind::unsuitable) << bytes;
+      continue;
+    }
+    ASSERT_TRUE(went_on) << bytes << ": " << schema::message(went_on.error());
+    const std::size_t whole_lines = cut.rfind('\n') + 1;
+    ASSERT_EQ(resumed.text().substr(0, whole_lines), text.substr(0, whole_lines)) << bytes;
+    ASSERT_TRUE(resumed.queue().has_ended()) << bytes;
+    const auto counted = counted_trials(resumed.queue());
+    ASSERT_EQ(counted.size(), 20u) << bytes;
+    for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
+    ASSERT_EQ(resumed.queue().answers(), lines_with(resumed.text(), R"("event":"answered")")) << bytes;
+  }
+}
+
+TEST(ExperimentRun, AChangedLineInTheMiddleIsRefusedWithItsNumber) {
+  TextRun whole;
+  ASSERT_TRUE(whole.go_on(""));
+  const std::string& text = whole.text();
+  const auto second = text.find('\n') + 1, third = text.find('\n', second) + 1;
+  std::string changed = text;
+  changed[text.find("K", second)] = 'L';
+  const auto refused = schema::parse_journal(changed, "j");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::malformed);
+  EXPECT_EQ(refused.error().where, "j: line 2");
+  const auto missing = schema::parse_journal(text.substr(0, second) + text.substr(third), "j");
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().where, "j: line 2");
+  changed = text.substr(0, text.size() - 3) + "x\"}\n";  // the last line: not written completely
+  const auto last = schema::parse_journal(changed, "j");
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->entries.size(), lines_with(text, "\n") - 1);
+}
+
+TEST(ExperimentRun, AnEntryThatDoesNotFollowIsRefused) {
+  TextRun whole;
+  ASSERT_TRUE(whole.go_on(""));
+  auto journal = schema::parse_journal(whole.text(), "j").value();
+  schema::Protocol other = twenty_trials();
+  other.seed = "8";
+  const auto queue = queue_of(journal, other, key_of(other));
+  ASSERT_FALSE(queue);
+  EXPECT_EQ(queue.error().kind, ErrorKind::unsuitable);
+}
+
+TEST(ExperimentRun, HalfOfTheTrialsBeginWithTheStandard) {
+  const schema::Protocol protocol = stretch_protocol("1");
+  const auto trials = ordered_trials(protocol, key_of(protocol), "P01");
+  EXPECT_EQ(trials.size(), 80u);
+  std::map<std::string, int> first;
+  std::set<std::string> names;
+  for (const StudyTrial& trial : trials) {
+    first[trial.code] += trial.standard_comes_first();
+    names.insert(trial.name());
+  }
+  EXPECT_EQ(names.size(), 80u);
+  for (const auto& [code, times] : first) EXPECT_EQ(times, 5) << code;
+}
+
+schema::IntervalFacts good_facts() {
+  schema::IntervalFacts facts;
+  facts.ticks = 3000, facts.closed = true, facts.strokes = 2;
+  facts.stimulus_sha256 = "sum";
+  facts.slowest_mps = 0.05, facts.fastest_mps = 0.06;
+  facts.removed_by_limits_db = -300, facts.predicted_error_db = -30;
+  return facts;
+}
+
+TEST(ExperimentRun, EachLimitDecides) {
+  const schema::Protocol protocol = stretch_protocol("1");
+  EXPECT_TRUE(reasons_against(good_facts(), protocol, "sum").empty());
+  EXPECT_EQ(reasons_against(good_facts(), protocol, "other").size(), 1u);
+  const std::vector<void (*)(schema::IntervalFacts&)> faults = {
+      [](auto& facts) { facts.closed = false; },
+      [](auto& facts) { facts.lost_ticks = 1; },
+      [](auto& facts) { facts.fault_ticks = 1; },
+      [](auto& facts) { facts.late_ticks = 11; },
+      [](auto& facts) { facts.blind_ticks = 1; },
+      [](auto& facts) { facts.removed_by_limits_db = -39; },
+      [](auto& facts) { facts.strokes = 1; },
+      [](auto& facts) { facts.removed_by_limits_db.reset(); },
+      [](auto& facts) { facts.predicted_error_db = 0; },
+      [](auto& facts) { facts.predicted_error_db.reset(); },
+      [](auto& facts) { facts.slowest_mps = 0.04; },
+      [](auto& facts) { facts.fastest_mps = 0.09; }};
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    schema::IntervalFacts facts = good_facts();
+    faults[i](facts);
+    EXPECT_EQ(reasons_against(facts, protocol, "sum").size(), 1u) << i;
+    EXPECT_FALSE(judged_delivery(1, {good_facts(), facts}, {"sum", "sum"}, protocol, {}).delivered) << i;
+  }
+  EXPECT_TRUE(judged_delivery(1, {good_facts(), good_facts()}, {"sum", "sum"}, protocol, {}).delivered);
+  EXPECT_FALSE(
+      judged_delivery(1, {good_facts(), good_facts()}, {"sum", "sum"}, protocol, {"late"}).delivered);
+}
+
+// 75 % at a difference of one Weber fraction, 50 % without a difference, half of the lapses wrong far away.
+// The standard deviation of a share of 4000 is 0.8 % at most; the tolerance is four of it.
+TEST(ExperimentRun, TheObserverHasItsWeberFractionAndLapses) {
+  const auto observer = parse_observer("weber=25%,lapse=10%,seed=3");
+  ASSERT_TRUE(observer);
+  const auto share_of_first = [&](double longer) {
+    double first = 0;
+    for (int i = 0; i < 4000; ++i)
+      first += smaller_period(*observer, "P/" + std::to_string(i), {0.002, 0.002 * longer}, 0.002) == 1;
+    return first / 4000;
+  };
+  EXPECT_NEAR(share_of_first(1), 0.5, 0.032);
+  EXPECT_NEAR(share_of_first(1.25), 0.9 * 0.75 + 0.05, 0.032);
+  EXPECT_NEAR(share_of_first(0.75), 0.9 * 0.25 + 0.05, 0.032);
+  EXPECT_NEAR(share_of_first(5), 0.95, 0.032);
+  EXPECT_EQ(smaller_period(*observer, "P/1", {0.002, 0.0021}, 0.002),
+            smaller_period(*observer, "P/1", {0.002, 0.0021}, 0.002));
+}
+
+TEST(ExperimentRun, AnObserverThatIsNoneIsRefused) {
+  for (const char* text :
+       {"", "weber", "weber=25", "weber=0%", "lapse=2%", "weber=25%,lapse=200%", "webber=25%"}) {
+    const auto refused = parse_observer(text);
+    ASSERT_FALSE(refused) << text;
+    EXPECT_EQ(refused.error().kind, ErrorKind::usage) << text;
+  }
+}
+
+// A sinusoid along an uneven path, rounded to steps of 1 um: the tolerance is the one of the header.
+TEST(ExperimentRun, ThePeriodOfASinusoidIsFoundAtUnevenSpeed) {
+  for (const double period_m : {0.528e-3, 1.76e-3, 2.992e-3}) {
+    std::vector<double> position_m, displacement_m;
+    for (int i = 0; i <= 1400; ++i) {
+      const double part = i / 1400.0;
+      const double x = 0.01 + 0.04 * (part - std::sin(2 * std::numbers::pi * part) / 8);
+      position_m.push_back(std::round(x * 1e6) / 1e6);
+      displacement_m.push_back(1e-5 * std::sin(2 * std::numbers::pi * x / period_m + 0.3));
+    }
+    const auto found = spatial_period_m(position_m, displacement_m);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(*found / period_m, 1, 1e-3);
+  }
+  EXPECT_FALSE(spatial_period_m(std::vector<double>(20, 0.01), std::vector<double>(20, 1e-5)));
+  std::vector<double> position_m(100);
+  for (std::size_t i = 0; i < 100; ++i) position_m[i] = 4e-4 * static_cast<double>(i);
+  EXPECT_FALSE(spatial_period_m(position_m, std::vector<double>(100, 0.0)));
+}
+
+TEST(ExperimentRun, AParticipantHasACode) {
+  for (const char* code : {"P01", "7", "lab2x"}) EXPECT_TRUE(schema::check_participant(code)) << code;
+  for (const char* code : {"", "Anna", "P 1", "../P1", "P-1"})
+    EXPECT_FALSE(schema::check_participant(code)) << code;
+}
+
+}  // namespace
+}  // namespace tacto::analysis

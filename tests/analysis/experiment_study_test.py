@@ -1,0 +1,198 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`tactograph experiment` from protocol to proof on the emulated device: the order by hashlib, blind files, attempts that
+come again, SIGKILL and resume, a swapped stimulus, answers from a file, and the fit."""
+import csv
+import hashlib
+import json
+import pathlib
+import random
+import shutil
+import subprocess
+
+import tacto
+
+OBSERVER = "weber=25.3%,lapse=2%,hurry=20%,seed=1"
+LEVELS = [-0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7]
+
+
+def new_study(name, repetitions):
+    tacto.run("experiment", "new", "stretch", "-o", name, "--seed", "lab-7")
+    path = pathlib.Path(f"{name}.protocol.json")
+    protocol = json.loads(path.read_text())
+    assert protocol["levels"] == LEVELS and protocol["repetitions"] == 10 and protocol["keep"] == "slope"
+    assert (protocol["standard"]["period_m"], protocol["standard"]["amplitude_m"]) == (1.76e-3, 12.8e-6)
+    protocol["repetitions"], protocol["most_attempts"] = repetitions, 20
+    path.write_text(json.dumps(protocol))
+
+
+def journal(run):
+    """The entries, each with its number and its check."""
+    entries = []
+    for number, line in enumerate(pathlib.Path(f"{run}.trials.jsonl").read_bytes().splitlines(), 1):
+        body, check = line[:line.rindex(b',"check":"')] + b"}", line[-18:-2].decode()
+        assert hashlib.sha256(body).hexdigest()[:16] == check and json.loads(line)["line"] == number
+        entries.append(json.loads(line))
+    return entries
+
+
+def table(run):
+    with open(f"{run}.trials.tsv") as file:
+        return list(csv.DictReader(file, delimiter="\t"))
+
+
+def key_of(study):
+    return {row["code"]: row for row in json.loads(pathlib.Path(f"{study}.key.json").read_text())["stimuli"]}
+
+
+def the_files_are_coded():
+    new_study("stretch", 1)
+    valid = tacto.run_json("experiment", "check", "stretch", "-d", "sim:")
+    assert valid["valid"] is True and valid["trials"] == 8
+    key = key_of("stretch")
+    assert sorted(row["stretch"] for row in key.values()) == sorted(LEVELS + [0])
+    for code, row in key.items():
+        assert hashlib.sha256(pathlib.Path(f"stretch/{code}.texture.wav").read_bytes()).hexdigest() == row["sha256"]
+    by_sum = sorted(LEVELS + [0], key=lambda level: hashlib.sha256(f"lab-7/code/{level:g}".encode()).hexdigest())
+    assert [key[f"K{i + 1}"]["stretch"] for i in range(9)] == by_sum
+    tacto.run("experiment", "new", "stretch", "-o", "stretch", code=2)  # exists
+
+
+def a_run_is_proven():
+    out, err = tacto.run("experiment", "run", "stretch", "-d", "sim:", "--participant", "P01", "--observer", OBSERVER)
+    for level in LEVELS:
+        assert f"{level:g}" not in out + err, (level, out)
+    entries, key = journal("stretch-P01"), key_of("stretch")
+    begun = [entry for entry in entries if entry["event"] == "begun"]
+    trials = [f"{code}.1" for code in key if key[code]["stretch"] != 0]
+    order = sorted(trials, key=lambda trial: hashlib.sha256(f"lab-7/P01/1/{trial}".encode()).hexdigest())
+    assert [entry["trial"] for entry in begun[:8]] == order
+    events = [entry["event"] for entry in entries]
+    assert events == ["plan"] + ["begun", "delivered", "answered"] * len(begun) + ["end"]
+    failed = [entry["attempt"] for entry in entries if entry["event"] == "delivered" and not entry["delivered"]]
+    assert failed and len(begun) == 8 + len(failed)  # of seed 1: some trials are too fast, and come again
+    for entry in entries:
+        assert entry["event"] != "delivered" or entry["delivered"] == (not any("too fast" in why for why in entry["why"]))
+    rows = table("stretch-P01")
+    assert [row["delivered"] for row in rows].count("yes") == 8 and len(rows) == len(begun)
+    for row in rows:
+        assert abs(float(row["predicted_stretch"]) - float(row["nominal_stretch"])) < 0.01
+        assert float(row["nominal_stretch"]) == key[row["trial"].split(".")[0]]["stretch"]
+    proof = tacto.run_json("experiment", "prove", "stretch-P01")
+    assert proof["proven"] is True and proof["delivered"] == proof["trials"] == 8 and proof["not_delivered"] == len(failed)
+    assert proof["sessions"] == proof["same_to_the_bit"] == 2 * len(begun) and proof["stretch_error"] < 0.01
+    assert tacto.run_json("replay", "stretch-P01/001-1")["same_to_the_bit"] is True
+    tacto.run("experiment", "run", "stretch", "-d", "sim:", "--participant", "P01", "--observer", OBSERVER, code=2)
+    tacto.run("experiment", "resume", "stretch-P01", code=2)  # complete
+
+
+def a_session_that_was_changed_is_found():
+    shutil.copy("stretch-P01/001-1.session", "kept.session")
+    shutil.copy("stretch-P01/001-2.session", "stretch-P01/001-1.session")
+    assert tacto.run_json("experiment", "prove", "stretch-P01", code=5)["proven"] is False
+    shutil.move("kept.session", "stretch-P01/001-1.session")
+
+
+def killed_at(lines, command):
+    """Runs until the journal has so many lines, then kills."""
+    process = subprocess.Popen([tacto.COMMAND, *command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    path = pathlib.Path("stretch-P02.trials.jsonl")
+    while process.poll() is None and (not path.exists() or path.read_bytes().count(b"\n") < lines):
+        pass
+    process.kill()
+    process.wait()
+
+
+def a_killed_run_is_resumed():
+    random.seed(5)
+    command = ["experiment", "run", "stretch", "-d", "sim:", "--participant", "P02", "--observer", "weber=25.3%,lapse=2%,seed=1"]
+    lines = 0
+    for _ in range(4):
+        killed_at(lines + random.randrange(1, 4), command)
+        whole = pathlib.Path("stretch-P02.trials.jsonl").read_bytes()
+        kept = whole[:whole.rindex(b"\n") + 1]
+        lines = kept.count(b"\n")
+        command = ["experiment", "resume", "stretch-P02"]
+        if b'"event":"end"' in kept:  # where this process waited long
+            break
+    else:
+        tacto.run(*command)
+    assert pathlib.Path("stretch-P02.trials.jsonl").read_bytes().startswith(kept)
+    counted = [row["trial"] for row in table("stretch-P02") if row["delivered"] == "yes" and row["answer"]]
+    assert sorted(counted) == sorted({row["trial"] for row in table("stretch-P02")}) and len(counted) == 8
+    assert tacto.run_json("experiment", "prove", "stretch-P02")["proven"] is True
+
+
+def answers_from_a_file():
+    pathlib.Path("answers.txt").write_text("first\nj\nsecond\n")
+    command = ["-d", "sim:", "--answers", "answers.txt"]
+    partly = tacto.run_json("experiment", "run", "stretch", *command, "--participant", "P03")
+    assert partly["complete"] is False and partly["delivered_and_answered"] == 3
+    pathlib.Path("answers.txt").write_text("first\nj\nsecond\n" + "f\n" * 5)
+    assert tacto.run_json("experiment", "resume", "stretch-P03", *command)["complete"] is True
+    answers = [entry["interval"] for entry in journal("stretch-P03") if entry["event"] == "answered"]
+    assert answers == [1, 2, 2, 1, 1, 1, 1, 1]
+    pathlib.Path("answers.txt").write_text("first\nmaybe\n")
+    assert "line 2" in tacto.run("experiment", "run", "stretch", *command, "--participant", "P04", code=4)[1]
+    assert not pathlib.Path("stretch-P04.trials.jsonl").exists()
+
+
+def bad_input():
+    command = ["experiment", "run", "stretch", "-d", "sim:"]
+    tacto.run(*command, "--participant", "Anna", "--observer", OBSERVER, code=2)
+    tacto.run(*command, "--participant", "P05", "--observer", "weber=25", code=2)
+    no_terminal = subprocess.run([tacto.COMMAND, *command, "--participant", "P05"], stdin=subprocess.DEVNULL, capture_output=True)
+    assert no_terminal.returncode == 2 and not pathlib.Path("stretch-P05.trials.jsonl").exists()
+    tacto.run("experiment", "prove", "stretch-P09", code=3)
+    tacto.run("experiment", "new", "texture", "-o", "other", code=2)
+    for suffix in ("wav", "json"):
+        one, other = (pathlib.Path(f"stretch/{code}.texture.{suffix}") for code in ("K1", "K2"))
+        one.rename("kept"), other.rename(one), pathlib.Path("kept").rename(other)
+    for verb in (["check", "stretch"], ["run", "stretch", "-d", "sim:", "--participant", "P05", "--observer", OBSERVER]):
+        assert "stretch/K1" in tacto.run("experiment", *verb, code=5)[1]
+    for suffix in ("wav", "json"):
+        one, other = (pathlib.Path(f"stretch/{code}.texture.{suffix}") for code in ("K1", "K2"))
+        one.rename("kept"), other.rename(one), pathlib.Path("kept").rename(other)
+    tacto.run("experiment", "check", "stretch")
+    changed = pathlib.Path("stretch.protocol.json")
+    text = changed.read_text()
+    changed.write_text(text.replace('"repetitions": 1', '"repetitions": 2'))
+    assert "stretch.protocol.json" in tacto.run("experiment", "prove", "stretch-P01", code=5)[1]
+    changed.write_text(text)
+
+
+def the_answers_are_fitted():
+    new_study("more", 4)
+    for participant, weber in (("P01", "25%"), ("P02", "30%")):
+        tacto.run("experiment", "run", "more", "-d", "sim:", "--participant", participant, "--observer", f"weber={weber},seed=4")
+    tacto.run("experiment", "analyse", "more", code=5)
+    assert not pathlib.Path("more.unblinded.txt").exists()
+    report = tacto.run_json("experiment", "analyse", "more", "--unblind", "-o", "more.html")
+    assert pathlib.Path("more.unblinded.txt").read_text().count("\n") == 1 and pathlib.Path("more.html").exists()
+    assert [fit["participant"] for fit in report["fits"]] == ["P01", "P02"]
+    # The same counts from the table of trials, by the fit of tables.
+    with open("counts.csv", "w") as file:
+        print("participant,stretch,longer,n", file=file)
+        for participant in ("P01", "P02"):
+            for level in LEVELS:
+                rows = [row for row in table(f"more-{participant}") if float(row["nominal_stretch"]) == level and row["delivered"] == "yes"]
+                longer = sum(row["answer_interval"] == row["standard_interval"] for row in rows)
+                print(f"{participant},{level},{longer},{len(rows)}", file=file)
+    fits = tacto.run_json("experiment", "fit", "counts.csv", "--by", "participant")["fits"]
+    assert fits == report["fits"]
+    for fit, weber in zip(fits, (0.25, 0.30)):  # the truth is in the interval
+        assert fit["jnd_low"] < weber < fit["jnd_high"] and fit["pse_low"] < 0 < fit["pse_high"], fit
+
+
+def study():
+    the_files_are_coded()
+    a_run_is_proven()
+    a_session_that_was_changed_is_found()
+    a_killed_run_is_resumed()
+    answers_from_a_file()
+    bad_input()
+    the_answers_are_fitted()
+
+
+if __name__ == "__main__":
+    tacto.in_folder(study)

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/experiment/protocol.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "data-schema/files/files.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::schema {
+namespace {
+
+class ProtocolFile : public testing::Test {
+ protected:
+  Result<Protocol> read_with(const std::string& pointer, const nlohmann::json& value) {
+    nlohmann::json body = body_;
+    body[nlohmann::json::json_pointer(pointer)] = value;
+    PendingFiles pending;
+    EXPECT_TRUE(pending.write(folder_ / "odd.protocol.json", body.dump()));
+    EXPECT_TRUE(pending.commit());
+    return read_protocol(folder_ / "odd");
+  }
+  void expect_fault(const std::string& pointer, const nlohmann::json& value, const std::string& place) {
+    const auto refused = read_with(pointer, value);
+    ASSERT_FALSE(refused) << pointer;
+    EXPECT_EQ(refused.error().kind, ErrorKind::malformed) << pointer;
+    EXPECT_TRUE(refused.error().where.ends_with("odd.protocol.json#" + place)) << refused.error().where;
+  }
+
+  tests::TemporaryFolder folder_;
+  const nlohmann::json body_ = nlohmann::json::parse(R"({
+    "kind": "protocol", "version": "1.0", "task": "two_interval", "keep": "slope", "levels": [-0.5, 0.5],
+    "standard": {"period_m": 0.00176, "amplitude_m": 1.28e-5, "length_m": 0.06},
+    "repetitions": 2, "seed": "1", "gain_m_per_n": 0.001, "lead_s": 0.5, "most_attempts": 3, "participants": 8,
+    "pace": {"from_m": 0.01, "to_m": 0.05, "speed_mps": 0.06, "strokes": 2},
+    "answers": {"first": {"key": "f", "word": "first"}, "second": {"key": "j", "word": "second"},
+                "begin_key": " "},
+    "delivered": {"lost_ticks": 0, "fault_ticks": 0, "late_ticks": 0, "blind_ticks": 0,
+                  "removed_by_limits_db": -40, "error_db": -20, "slowest_mps": 0.045, "fastest_mps": 0.085},
+    "texts": {"welcome": "w", "begin": "b", "interval": "i", "question": "q", "end": "e"}})");
+};
+
+TEST_F(ProtocolFile, ReadsBack) {
+  const auto protocol = read_with("/notes", "a note");
+  ASSERT_TRUE(protocol) << message(protocol.error());
+  const auto text = protocol_text(*protocol);
+  ASSERT_TRUE(text) << message(text.error());
+  nlohmann::json expected = body_;
+  expected["notes"] = "a note";
+  EXPECT_EQ(nlohmann::json::parse(*text), expected);
+  EXPECT_EQ(protocol->sha256, sha256_of_file(folder_ / "odd.protocol.json").value());
+}
+
+TEST_F(ProtocolFile, EachFaultHasItsPlace) {
+  expect_fault("/task", "adjustment", "/task");
+  expect_fault("/levels", {0.5, 0.5}, "/levels/1");
+  expect_fault("/levels", {-0.5, 0.0, 0.5}, "/levels/1");
+  expect_fault("/levels", {0.5}, "/levels");
+  expect_fault("/answers/second/key", "f", "/answers");
+  expect_fault("/answers/begin_key", "j", "/answers");
+  expect_fault("/answers/second/word", "first", "/answers/second/word");
+  expect_fault("/answers/first/key", "ff", "/answers/first/key");
+  expect_fault("/pace/to_m", 0.014, "/pace/to_m");
+  expect_fault("/pace/to_m", 0.07, "/pace/to_m");
+  expect_fault("/pace/speed_mps", 0.1, "/pace/speed_mps");
+  expect_fault("/seed", "a/b", "/seed");
+  expect_fault("/repetitions", 0, "/repetitions");
+  const auto unknown = read_with("/repetition", 3);
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().kind, ErrorKind::malformed);
+  EXPECT_NE(unknown.error().remedy.find("repetitions"), std::string::npos) << unknown.error().remedy;
+  EXPECT_TRUE(read_with("/x_lab", 3));
+  const auto newer = read_with("/version", "2.0");
+  ASSERT_FALSE(newer);
+  EXPECT_EQ(newer.error().kind, ErrorKind::unsupported_version);
+}
+
+TEST_F(ProtocolFile, AKeyWithACodeTwiceIsRefused) {
+  const std::string sum(64, 'a');
+  PendingFiles pending;
+  for (const auto& [name, code, stretch] :
+       {std::tuple{"good", "K2", 0.5}, std::tuple{"code", "K1", 0.5}, std::tuple{"stretch", "K2", 0.0}}) {
+    const auto text = protocol_key_text({{{"K1", 0.0, sum}, {code, stretch, sum}}, ""});
+    ASSERT_TRUE(text) << message(text.error());
+    ASSERT_TRUE(pending.write(folder_ / (std::string(name) + ".key.json"), *text));
+  }
+  ASSERT_TRUE(pending.commit());
+  const auto good = read_protocol_key(folder_ / "good.key.json");
+  ASSERT_TRUE(good) << message(good.error());
+  EXPECT_EQ(good->stimuli.at(1).stretch, 0.5);
+  for (const char* name : {"code", "stretch"}) {
+    const auto refused = read_protocol_key(folder_ / (std::string(name) + ".key.json"));
+    ASSERT_FALSE(refused) << name;
+    EXPECT_TRUE(refused.error().where.ends_with("#/stimuli/1")) << refused.error().where;
+  }
+}
+
+}  // namespace
+}  // namespace tacto::schema
