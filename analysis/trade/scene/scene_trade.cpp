@@ -314,8 +314,9 @@ Result<void> SceneTrader::add_rate(double rate_hz, const std::vector<AxisPaths>&
   trade_.rows.push_back(row_with("rate", for_people(rate_hz, Dimension::frequency),
                                  best.error(*prepared, *setup, counts), best.forces(), *prepared, limit));
   trade_.rows.back().row.per = "ms";
-  trade_.rows.back().row.note =
-      design ? "measured only: forces are held, at the edge of a patch its whole one" : design.error().what;
+  trade_.rows.back().row.note = design ? "measured only: a force is held for a tick, so at the edge of a "
+                                         "patch the error is the whole force"
+                                       : design.error().what;
   counts_.push_back(std::make_unique<CountRows>(std::move(counts[counts.size() / 2])));
   timed_.push_back({std::move(*prepared), *setup, counts_.back().get()});
   return {};
