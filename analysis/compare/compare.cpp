@@ -213,14 +213,14 @@ bool share_places(const schema::Formant& a, const schema::Formant& b) {
 constexpr double kShortestCompareWindow = 16;  // samples
 constexpr double kHannBandwidth = 1.5;         // bins
 constexpr double kLeastCoherence = 0.5;        // of two copies; two gratings with common lines have less
-constexpr double kExplained = 0.5;             // smallest correlation that counts as agreement
+constexpr double kAgreeing = 0.5;              // smallest correlation that counts as agreement
 constexpr double kThousandDb = 60, kNearThousandDb = 1;
-constexpr double kParts = 8, kWavelengths = 8;
+constexpr double kWindowsInShorter = 8, kWavelengths = 8;
 
 double usual_window(const TexturePair& pair) {
   const auto shorter = static_cast<double>(std::min(pair.a.size(), pair.b.size()));
   const double longest = pair.low_per_m > 0 ? kWavelengths / (pair.low_per_m * pair.pitch_m) : INFINITY;
-  return std::max(kShortestCompareWindow, std::min(shorter / kParts, longest));
+  return std::max(kShortestCompareWindow, std::min(shorter / kWindowsInShorter, longest));
 }
 
 Result<std::size_t> compare_window(const TexturePair& pair, const CompareOptions& options) {
@@ -363,9 +363,9 @@ void compare_formants(Comparison& comparison, const CompareOptions& options,
 void note_likeness(Comparison& comparison) {
   if (!comparison.point_by_point || *comparison.coherence < kLeastCoherence) return;
   const double correlation = *comparison.gain * comparison.a_rms / comparison.b_rms;
-  if (correlation < -kExplained)
+  if (correlation < -kAgreeing)
     comparison.notes.emplace_back("B is A with inverted sign: the gain is negative");
-  else if (correlation < kExplained * std::sqrt(*comparison.coherence))
+  else if (correlation < kAgreeing * std::sqrt(*comparison.coherence))
     comparison.notes.emplace_back("B is like A, but shifted: --align correlation finds the shift");
 }
 

@@ -272,12 +272,12 @@ double detectable_db(double standard_error_db, const NarrowBand& best, double to
   return kDecibels * std::log1p(std::expm1(seen_db / kDecibels) / (1 - kLostCells / w));
 }
 
-struct Axis {
+struct BandAxis {
   double step, low;  // distance of the cells; lower edge of the first cell
 };
 
 void scan_width(NarrowBand& best, const CellPowers& a, const CellPowers& b, bool paired, std::size_t width,
-                const Axis& axis, double tolerance_db) {
+                const BandAxis& axis, double tolerance_db) {
   const double error_db = standard_error(a, b, paired, width);
   // A wide band with a high score but a level within the tolerance must not hide a band beyond the tolerance.
   const auto rank = [&](double level_db, double score) {
@@ -340,7 +340,7 @@ std::optional<NarrowBand> strongest_band(const SegmentSpectra& spectra, double l
   const CellPowers a(rows_a, smooth), b(rows_b, smooth);
   NarrowBand best;
   best.chance_score = chance_score(cells);
-  const Axis axis{spectra.step, spectra.frequency(first) - 0.5 * spectra.step};
+  const BandAxis axis{spectra.step, spectra.frequency(first) - 0.5 * spectra.step};
   for (const std::size_t width : kWidths)
     if (width <= cells / 2) scan_width(best, a, b, !spectra.ab.empty(), width, axis, tolerance_db);
   // The outer cells extend half a cell beyond the band.
