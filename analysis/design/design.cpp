@@ -70,10 +70,10 @@ JudgedLayer judged_place(const DesignRequest& request, const playback::ActingPat
 }
 
 // Of one scene: the layers that act together are tapped once.
-class Taps {
+class TapsAtEnd {
  public:
-  Taps(const schema::Scene& scene, const playback::PreparedScene& prepared, const DesignRequest& request,
-       const core::ForceSetup& setup)
+  TapsAtEnd(const schema::Scene& scene, const playback::PreparedScene& prepared, const DesignRequest& request,
+            const core::ForceSetup& setup)
       : request_(request),
         hand_(request.hand.value_or(schema::Hand())),
         bench_(scene, prepared, request.device, setup, hand_) {}
@@ -119,7 +119,7 @@ schema::Result<void> simulate_places(PlaceOfPatch& of_patch, const schema::Scene
   TACTO_TRY(least);
   const auto most = playback::prepare_scene(ends[1], where, request.device, request.rate_hz, request.hand);
   TACTO_TRY(most);
-  const Taps taps[] = {{ends[0], *least, request, *setup}, {ends[1], *most, request, *setup}};
+  const TapsAtEnd taps[] = {{ends[0], *least, request, *setup}, {ends[1], *most, request, *setup}};
   for_each_place(of_patch, [&](JudgedLayer& layer) {
     const double most_damping = playback::load_of(scene.patches, layer.acting).most_damping_n_s_per_m;
     taps[layer.total.damping_n_s_per_m >= most_damping ? 1 : 0].simulate(layer);
