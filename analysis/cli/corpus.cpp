@@ -70,8 +70,10 @@ Result<std::size_t> count_in(std::string_view text, const std::string& shard) {
 }
 
 Result<void> read_shard(const std::string& text, CorpusRunOptions& options) {
-  if (text.empty()) return {};
-  const std::size_t slash = std::min(text.find('/'), text.size() - 1);
+  if (text.find('/') == std::string::npos)
+    return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a shard", text), "--shard",
+                        "write it as 3/20");
+  const std::size_t slash = text.find('/');
   const auto shard = count_in(std::string_view(text).substr(0, slash), text);
   const auto shards = count_in(std::string_view(text).substr(slash + 1), text);
   TACTO_TRY(shard);
@@ -84,8 +86,8 @@ Result<void> read_shard(const std::string& text, CorpusRunOptions& options) {
   return {};
 }
 
-Result<Report> run_run(CorpusRunOptions options, const std::string& shard) {
-  TACTO_TRY(read_shard(shard, options));
+Result<Report> run_run(CorpusRunOptions options, const std::optional<std::string>& shard) {
+  if (shard) TACTO_TRY(read_shard(*shard, options));
   const cli::StopSignals signals;
   cli::Progress progress("recordings");
   const auto counts = run_corpus(
@@ -108,13 +110,15 @@ void declare_study(CLI::App& app, std::string& study) {
 }
 
 void declare_verify(CLI::App& app, bool& verify) {
-  app.add_flag("--verify", verify,
-               "Compare all results with their checksums, also files that are not newer than the checksum");
+  app.add_flag(
+      "--verify", verify,
+      "Compare all results with their checksums, also files that are not newer than the checksum; 'status': "
+      "also the recordings with those of 'init'");
 }
 
 cli::Action declare_run(CLI::App& app) {
   const auto options = std::make_shared<CorpusRunOptions>();
-  const auto shard = std::make_shared<std::string>();
+  const auto shard = std::make_shared<std::optional<std::string>>();
   declare_study(app, options->study);
   app.add_option("--jobs", options->jobs, "Number of recordings processed at the same time")
       ->check(CLI::Range(1, 256))
@@ -151,8 +155,11 @@ Result<Report> run_status(const std::string& study, bool verify, bool json) {
   if (json) report.add("results", std::move(results));
   if (!failures.empty()) report.add("failures", std::move(failures));
   if (!missing.empty()) report.add("not_made", std::move(missing));
+  std::vector<std::string> changed;
+  for (const std::size_t i : status->changed) changed.push_back(status->plan.recordings[i].path);
+  if (!changed.empty()) report.add("changed_since_init", std::move(changed));
   if (status->missing > 0) report.add("next", "tactograph corpus run " + cli::shell_word(study));
-  if (status->failed + status->missing > 0) report.ends_with(ErrorKind::unsuitable);
+  if (status->failed + status->missing + status->changed.size() > 0) report.ends_with(ErrorKind::unsuitable);
   return report;
 }
 

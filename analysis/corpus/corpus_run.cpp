@@ -118,7 +118,11 @@ void set_aside(const std::string& folder, const std::string& aside) {
 // Removes the folders from a message: it has to be the same on every machine.
 std::string without(std::string text, const std::vector<std::string>& folders) {
   for (const std::string& folder : folders)
-    for (std::size_t at = 0; (at = text.find(folder)) != std::string::npos;) text.erase(at, folder.size());
+    for (std::size_t at = 0; (at = text.find(folder, at)) != std::string::npos;)
+      if (at == 0 || std::string_view(" '\"(").find(text[at - 1]) != std::string_view::npos)
+        text.erase(at, folder.size());
+      else
+        ++at;  // the end of another word
   for (char& letter : text)
     if (letter == '\n') letter = ' ';
   return text;

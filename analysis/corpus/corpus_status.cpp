@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/corpus/corpus_status.hpp"
 
+#include "data-schema/files/files.hpp"
+
 namespace tacto::analysis {
 namespace {
 
@@ -26,6 +28,11 @@ schema::Result<CorpusStatus> corpus_status(const std::string& study, bool verify
   CorpusStatus status;
   status.plan = std::move(*plan);
   for (std::size_t i = 0; i < status.plan.recordings.size(); ++i) {
+    const schema::CorpusRecording& recording = status.plan.recordings[i];
+    if (verify)
+      if (const auto sum = schema::sha256_of_file(path_of(study, recording));
+          !sum || *sum != recording.sha256)
+        status.changed.push_back(i);
     const UnitState state = add_units(status, study, i, verify);
     ++(state == UnitState::done ? status.done : state == UnitState::failed ? status.failed : status.missing);
   }

@@ -25,9 +25,10 @@ struct CorpusStatus {
   std::vector<CorpusUnitStatus> units;            ///< in the order of the plan
   std::size_t done = 0, failed = 0, missing = 0;  ///< recordings; missing: a unit is missing or damaged
   std::size_t warned = 0;                         ///< units with warnings
+  std::vector<std::size_t> changed;               ///< recordings that are not those of `init`, with `verify`
 };
 
-/// `verify` compares all files with their checksums. Errors: of the plan.
+/// `verify` compares all files, and the recordings, with their checksums. Errors: of the plan.
 schema::Result<CorpusStatus> corpus_status(const std::string& study, bool verify);
 
 }  // namespace tacto::analysis

@@ -69,7 +69,8 @@ std::string corpus_plan_path(const std::string& study) {
 }
 
 std::string path_of(const std::string& study, const schema::CorpusRecording& recording) {
-  return (fs::path(study) / recording.path).lexically_normal().string();
+  // The plan's paths are relative to the folder itself, not to a link to it.
+  return (fs::path(schema::canonical_path(study)) / recording.path).lexically_normal().string();
 }
 
 std::vector<std::string> unit_keys(const schema::CorpusPlan& plan, const schema::CorpusRecording& recording) {

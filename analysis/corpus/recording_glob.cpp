@@ -44,6 +44,7 @@ struct Pattern {
 Pattern pattern_of(const std::string& text) {
   std::error_code ignored;
   if (fs::is_directory(text, ignored)) return {text, {std::string(kAnyFolders), "*.json"}};
+  if (schema::is_file(text) || schema::is_file(text + ".json")) return {text, {}};  // also a name with [ or *
   Pattern pattern;
   for (const fs::path& part : fs::path(text))
     if (pattern.names.empty() && !has_wildcard(part.string()))

@@ -122,7 +122,7 @@ void add_transform(Report& report, const TextureTransform& transform) {
   std::vector<Report> sources, steps;
   for (std::size_t i = 0; i < transform.sources.size(); ++i) {
     const auto& [texture, sha256] = transform.sources[i];
-    sources.push_back(Report().add("texture", texture).add("sha256", sha256));
+    sources.push_back(Report().add("texture", texture).add("wav_sha256", sha256));
     if (mixed && i < transform.steps.front().weights.size())
       sources.back().add("weight", transform.steps.front().weights[i]);
   }

@@ -65,6 +65,8 @@ Result<std::vector<double>> weights_of(const TransformOptions& options) {
     auto weight = parse_factor(std::string_view(options.weights).substr(at, end - at));
     if (!weight) weight.error().where = "--weights";
     TACTO_TRY(weight);
+    if (*weight == 0)
+      return schema::fail(ErrorKind::usage, "a weight must not be 0", "--weights", "leave that texture out");
     weights.push_back(*weight);
     at = end + 1;
   }
@@ -83,6 +85,12 @@ Result<void> check_task(const TransformOptions& options) {
   if (options.names.size() == 1 && !options.stretch && !options.gain && options.band.empty())
     return schema::fail(ErrorKind::usage, "there is nothing to do with one texture", {},
                         "name an operation: --stretch, --gain or --band; or several textures, to mix them");
+  if (options.names.size() == 1 && !options.weights.empty())
+    return schema::fail(ErrorKind::usage, "is for a mix, and there is one texture", "--weights",
+                        "use --gain");
+  if (options.stretched.period_m && options.stretched.lengthening == Lengthening::best_fit)
+    return schema::fail(ErrorKind::usage, "has no use with --lengthen best", "--period",
+                        "leave one of them out");
   for (const std::string& name : options.names)
     if (schema::same_file(sidecar_of(name), sidecar_of(options.output)))
       return schema::fail(ErrorKind::usage, "would replace the texture that it is made from", options.output,
@@ -104,6 +112,17 @@ Result<Texture> one_texture(const TransformOptions& options, const std::vector<d
   const auto has_gain = [](const Texture& texture) { return texture.playback_gain.has_value(); };
   if (!mixed->playback_gain && std::ranges::any_of(textures, has_gain))
     cli::warn("the textures have different default gains of playback: the mix has none");
+  const auto differ = [&](auto member) {
+    return std::ranges::any_of(textures,
+                               [&](const Texture& each) { return each.*member != textures.front().*member; });
+  };
+  if (differ(&Texture::direction))
+    cli::warn(
+        "the textures are of strokes in different directions: the mix is stored as one of growing position");
+  if (differ(&Texture::source_origin_m))
+    cli::warn(
+        "the textures begin at different positions on the bench: they are added from the first sample of "
+        "each");
   return mixed;
 }
 
@@ -127,6 +146,9 @@ Result<Texture> made(const TransformOptions& options) {
 }
 
 void warn_of_losses(const Texture& texture) {
+  const auto is_empty = [](const schema::BandPoint& point) { return point.high_per_m <= point.low_per_m; };
+  if (!texture.valid_band.empty() && std::ranges::all_of(texture.valid_band, is_empty))
+    cli::warn("no frequency is valid in the result; 'tactograph info' shows the valid band of each texture");
   for (const schema::TransformStep& step : texture.transform->steps) {
     if (step.removed_share.value_or(0) > kMuchRemoved)
       cli::warn(
@@ -136,8 +158,10 @@ void warn_of_losses(const Texture& texture) {
                       schema::for_people(*step.removed_above_per_m, schema::Dimension::spatial_frequency),
                       100 * *step.removed_share));
     if (step.joint_error.value_or(0) > kPoorJoint)
-      cli::warn(fmt::format("the joint fits poorly: its jumps in value and slope are {:.2g} of their RMS",
-                            *step.joint_error));
+      cli::warn(fmt::format(
+          "{} fits poorly: the jumps in value and slope are {:.2g} of their RMS",
+          step.joints.value_or(0) > 0 ? "the joint" : "the end of the last period to the beginning",
+          *step.joint_error));
   }
 }
 
@@ -168,10 +192,10 @@ cli::Action declare_transform(CLI::App& app) {
       ->required();
   app.add_option("-o,--output", options->output, "Name of the new texture")->required();
   cli::declare_force(app, options->existing);
-  app.add_option(
-         "--weights", options->weights,
-         "Of a mix: a factor for each texture, as 1x,50% [all 1x]. The mix is as long as the shortest "
-         "texture, on the finest of their grids")
+  app.add_option("--weights", options->weights,
+                 "Of a mix: a factor for each texture, as 1x,50% [all 1x]. Textures are added from their "
+                 "first samples; "
+                 "the mix is as long as the shortest one, on the finest of their grids")
       ->type_name("FACTOR,FACTOR...");
   app.add_option("--band", options->band, "Keep this band, in cycles per length, as 0.5/mm..10/mm")
       ->type_name("LOW..HIGH");

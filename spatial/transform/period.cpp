@@ -15,6 +15,8 @@ namespace {
 
 using Lag = std::ptrdiff_t;
 
+// The error of a found period of 1e-6, over 20,000 samples.
+constexpr double kWholePeriods = 0.02;
 constexpr double kPastTheMainLobe = 0.5;
 // A shorter lag is the period if its correlation misses the best one by no more than this, or by this share
 // of what the best one misses (noise).
@@ -86,6 +88,11 @@ std::optional<double> find_period(std::span<const double> values) {
   if (const double multiple = std::floor(longest / period); multiple > 1)
     period = refined(y, multiple * period, lobe) / multiple;
   return period;
+}
+
+bool is_whole_periods(std::size_t size, double period) {
+  const double samples = static_cast<double>(size), whole = std::round(samples / period);
+  return whole >= 2 && std::abs(samples - whole * period) <= kWholePeriods;
 }
 
 }  // namespace tacto::spatial

@@ -2,6 +2,7 @@
 // The period of a texture that repeats itself.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,5 +21,8 @@ inline constexpr double kLeastPeriodCorrelation = 0.9;
 /// per metre over ten periods: below 3e-6 of the period; with noise of 10 % of their RMS, 1e-4. A period of
 /// less than some ten samples may be found as a multiple of itself. Nothing if there is none.
 std::optional<double> find_period(std::span<const double> values);
+
+/// Whether so many samples are whole periods, at least two, so that their end continues with their beginning.
+bool is_whole_periods(std::size_t size, double period);
 
 }  // namespace tacto::spatial

@@ -31,8 +31,6 @@ using Values = std::span<const double>;
 // Quarters that contain the ends of a joint, and room for the interpolation.
 constexpr std::size_t kFewestStretched = 8 * WindowedSinc::kReach;
 constexpr double kSincReach = static_cast<double>(WindowedSinc::kReach);
-// The error of a found period of 1e-6, over 20,000 samples.
-constexpr double kWholePeriods = 0.02;
 constexpr double kAllRemoved = 0.99;
 constexpr std::size_t kCoarsePlaces = 2000;  // on each side of a joint: 4e6 pairs
 
@@ -160,7 +158,7 @@ Result<std::optional<Repetition>> repetition_of(const Texture& texture, const St
   }
   const auto size = static_cast<double>(texture.signal.values.size());
   const double whole = std::round(size / found.samples);
-  found.repeats = whole >= 2 && std::abs(size - whole * found.samples) <= kWholePeriods;
+  found.repeats = is_whole_periods(texture.signal.values.size(), found.samples);
   if (found.repeats) found.samples = size / whole;
   if (!found.repeats && size - 1 - kSincReach < found.samples)
     return schema::fail(ErrorKind::unsuitable,
@@ -269,7 +267,7 @@ Result<Texture> stretch(const Texture& texture, const Stretch& stretch) {
   if (*repetition) step.period_m = (*repetition)->samples * pitch_m;
   const double way = static_cast<double>(count - 1) / factor;
   step.joints = course.joints(way);
-  if (*step.joints > 0)
+  if (*step.joints > 0 || (*repetition && !repeats))
     step.joint_error = joint_error(source, JointScale(limited->values), course, *repetition);
   const double unused = static_cast<double>(limited->values.size() - 1) - std::min(way, course.end);
   if (unused >= 1) step.left_out_m = unused * pitch_m;

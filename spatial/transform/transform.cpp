@@ -19,6 +19,7 @@
 #include "spatial/texture/space_filter.hpp"
 #include "spatial/texture/valid_band.hpp"
 #include "spatial/transform/band_limit.hpp"
+#include "spatial/transform/period.hpp"
 #include "spatial/transform/transformed.hpp"
 
 namespace tacto::spatial {
@@ -171,8 +172,11 @@ Result<Texture> with_gain(const Texture& texture, double gain) {
 }
 
 Result<Texture> filtered(const Texture& texture, double low_per_m, double high_per_m) {
-  auto values = filter_in_space(texture.signal.values, texture.signal.pitch_m,
-                                {FilterMethod::fourier, low_per_m, high_per_m, Edges::treated, 0});
+  const auto period = find_period(texture.signal.values);
+  const bool repeats = period && is_whole_periods(texture.signal.values.size(), *period);
+  auto values = filter_in_space(
+      texture.signal.values, texture.signal.pitch_m,
+      {FilterMethod::fourier, low_per_m, high_per_m, repeats ? Edges::none : Edges::treated, 0});
   TACTO_TRY(values);
   TransformStep step;
   step.operation = TransformOperation::filter;

@@ -182,6 +182,7 @@ def shards_are_parts():
     assert [part["recordings"] for part in parts] == [16, 17, 17] and all(part["made"] == 2 * part["recordings"] for part in parts), parts
     assert contents("parts") == contents("whole")
     assert job("parts", "--shard", "77/77")["recordings"] == 0
+    assert "shard" in run("corpus", "run", "parts", "--shard", "", code=USAGE)[1]  # a variable that is not set
     for wrong in ("0/3", "4/3", "3", "1/2/3", "a/b", "-1/3", "/"):
         assert wrong in run("corpus", "run", "parts", f"--shard={wrong}", code=USAGE)[1], wrong
 
@@ -239,6 +240,25 @@ def a_failure_is_noted_and_stops_nothing():
     assert (status["done"], status["failed"]) == (3, 2), status
     kept = [unit for unit in fine if identity("odd-study").get(unit) == fine[unit]]
     assert len(kept) == 3, kept  # fine's two, and the finger at rest
+
+
+def a_study_behind_a_link_and_a_folder_of_one_letter():
+    pathlib.Path("far/away").mkdir(parents=True)
+    pathlib.Path("link").symlink_to("far/away")
+    pathlib.Path("m").mkdir()
+    for name in ("A", "[1]"):
+        copy("A", f"m/{name}")
+    init("link", "--spatial", "--grid 100um --band 15Hz..2000Hz", recordings="m/[1].json")
+    assert job("link")["recordings"] == 1
+    init("link", "--force", "--spatial", "--grid 100um --band 15Hz..2000Hz", recordings="m")
+    counts = job("link")
+    assert counts["recordings"] == 2 and "of_these_failures" not in counts, counts
+    warned = [path.read_text() for path in pathlib.Path("link").rglob("warnings.txt")]
+    assert warned and all("mm/s" in text and "m/A" not in text for text in warned), warned
+    assert "changed_since_init" not in run_json("corpus", "status", "link", "--verify")
+    copy("B", "m/A")
+    assert run_json("corpus", "status", "link")["done"] == 2
+    assert len(run_json("corpus", "status", "link", "--verify", code=UNSUITABLE)["changed_since_init"]) == 1
 
 
 def damaged_results_are_made_again():
@@ -341,7 +361,8 @@ def all_of_it():
     write_recordings()
     for test in (an_unbroken_run_equals_the_verbs, options_are_those_of_the_verbs, killed_at_any_moment_it_ends_like_an_unbroken_run,
                  a_stopped_run_loses_nothing, two_runs_at_once_share_the_work, shards_are_parts,
-                 only_what_depends_on_a_change_is_made_again, a_failure_is_noted_and_stops_nothing, damaged_results_are_made_again,
+                 only_what_depends_on_a_change_is_made_again, a_failure_is_noted_and_stops_nothing,
+                 a_study_behind_a_link_and_a_folder_of_one_letter, damaged_results_are_made_again,
                  foreign_plans_are_refused, patterns_name_recordings, thousands_of_recordings_need_little_memory):
         test()
         print(f"{test.__name__}: passed")

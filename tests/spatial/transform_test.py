@@ -163,6 +163,29 @@ def sidecar_says_of_what_and_how():
     tacto.run("info", "third", code=4)
 
 
+def whole_periods_keep_repeating():
+    """A texture of whole periods is filtered as one that repeats itself: exactly, up to its ends."""
+    grating = 12.8e-6 * np.sin(TURN * np.arange(17600) / 1760)
+    write("grating", grating)
+    for band in ("0.5/mm..10/mm", "0/mm..1/mm"):
+        tacto.run("transform", "grating", "-o", "kept", "--band", band, "--force")
+        assert np.max(np.abs(tacto.texture("kept")[1] - grating)) < 1e-6 * 12.8e-6, band
+    tacto.run("transform", "grating", "-o", "shorter", "--band", "0/mm..5/mm", "--stretch", "70%")
+    assert step_of("shorter")["joint_error"] < 1e-4, step_of("shorter")
+    # With a wrong period the end does not continue with the beginning.
+    _, warnings = tacto.run("transform", "grating", "-o", "loop", "--stretch", "130%", "--period", "3mm")
+    assert "warning" in warnings and step_of("loop")["joint_error"] > 0.5, (warnings, step_of("loop"))
+
+
+def textures_of_other_places_are_mixed_with_a_warning():
+    values = Harmonics(range(20, 201), seed=4).samples()
+    write("one", values)
+    write("other", values, source_origin_m=0.008, direction=-1)
+    _, warnings = tacto.run("transform", "one", "other", "-o", "both")
+    assert warnings.count("warning") == 2 and "direction" in warnings and "bench" in warnings, warnings
+    assert tacto.run("transform", "one", "one", "-o", "twice")[1] == ""
+
+
 def bad_requests():
     grating = 12.8e-6 * np.sin(TURN * np.arange(17600) / 1760)
     write("grating", grating)
@@ -177,6 +200,9 @@ def bad_requests():
             (2, "grating", "-o", "new", "--gain", "0x"),
             (2, "grating", "-o", "new", "--gain", "2x", "--keep-slope"),
             (2, "grating", "-o", "new", "--gain", "2x", "--weights", "1x,2x"),
+            (2, "grating", "-o", "new", "--gain", "2x", "--weights", "2x"),
+            (2, "grating", "surface", "-o", "new", "--weights", "0x,1x"),
+            (2, "grating", "-o", "new", "--stretch", "70%", "--lengthen", "best", "--period", "1.76mm"),
             (2, "grating", "-o", "new", "--band", "4/mm..1/mm"),
             (2, "grating", "-o", "surface", "--gain", "2x"),
             (2, "grating", "-o", "./grating", "--gain", "2x", "--force"),
@@ -195,5 +221,6 @@ def bad_requests():
 
 if __name__ == "__main__":
     for test in (longer_is_scipys, shorter_is_scipys_up_to_the_joint_and_the_surface_behind_it,
-                 what_the_grid_cannot_hold_is_removed, sidecar_says_of_what_and_how, bad_requests):
+                 what_the_grid_cannot_hold_is_removed, sidecar_says_of_what_and_how, whole_periods_keep_repeating,
+                 textures_of_other_places_are_mixed_with_a_warning, bad_requests):
         tacto.in_folder(test)
