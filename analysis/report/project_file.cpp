@@ -68,6 +68,10 @@ Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file
       return add_trade_table(path, file);
     case FileKind::corpus:
       return add_corpus_plan(path, file);
+    case FileKind::protocol:
+      return add_protocol(path, file);
+    case FileKind::protocol_key:
+      return {};
     case FileKind::device:
       return add_device(path, file);
     case FileKind::hand:

@@ -27,6 +27,7 @@ schema::Result<void> add_height_map(const std::string& path, ProjectFile& file);
 schema::Result<void> add_results(const std::string& path, ProjectFile& file);
 schema::Result<void> add_trade_table(const std::string& path, ProjectFile& file);
 schema::Result<void> add_corpus_plan(const std::string& path, ProjectFile& file);
+schema::Result<void> add_protocol(const std::string& path, ProjectFile& file);
 schema::Result<void> add_device(const std::string& path, ProjectFile& file);
 schema::Result<void> add_hand(const std::string& path, ProjectFile& file);
 

@@ -11,6 +11,7 @@
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/calibration/calibration.hpp"
 #include "data-schema/corpus/corpus_plan.hpp"
+#include "data-schema/experiment/protocol.hpp"
 #include "data-schema/height/height_map.hpp"
 #include "data-schema/results/trade_table.hpp"
 #include "data-schema/session/session_netcdf.hpp"
@@ -166,6 +167,15 @@ Result<void> add_corpus_plan(const std::string& path, ProjectFile& file) {
   file.figures = {{"recordings", fmt::format("{}", plan->recordings.size())}};
   for (const schema::CorpusStep& step : plan->steps)
     file.figures.push_back({step.step, step.options.empty() ? "no options" : step.options});
+  return {};
+}
+
+Result<void> add_protocol(const std::string& path, ProjectFile& file) {
+  const auto protocol = schema::read_protocol(path);
+  TACTO_TRY(protocol);
+  file.figures = {
+      {"question", protocol->texts.question},
+      {"levels", fmt::format("{}, {} times each", protocol->levels.size(), protocol->repetitions)}};
   return {};
 }
 

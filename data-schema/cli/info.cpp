@@ -43,6 +43,10 @@ Result<cli::Report> describe(const StoredFile& file) {
       return describe_height_map(file.path);
     case FileKind::corpus:
       return describe_corpus(file.path);
+    case FileKind::protocol:
+      return describe_protocol(file.path);
+    case FileKind::protocol_key:
+      return describe_protocol_key(file.path);
   }
   return fail(ErrorKind::internal, "this kind of file cannot be described", file.path);
 }

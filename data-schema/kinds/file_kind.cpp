@@ -16,10 +16,10 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 16> kNames = {
+constexpr std::array<std::string_view, 18> kNames = {
     "recording",   "texture",       "transducer", "spectrogram", "formants", "descriptions",
     "calibration", "scene",         "session",    "results",     "trade",    "device",
-    "hand",        "session_table", "height_map", "corpus"};
+    "hand",        "session_table", "height_map", "corpus",      "protocol", "protocol_key"};
 
 struct Ending {
   FileKind kind;
@@ -42,6 +42,8 @@ constexpr Ending kEndings[] = {
     {FileKind::device, ".device.json"},
     {FileKind::hand, ".hand.json"},
     {FileKind::corpus, ".corpus.json"},
+    {FileKind::protocol, ".protocol.json"},
+    {FileKind::protocol_key, ".key.json"},
 };
 
 // What comes with tactograph under a name.

@@ -7,10 +7,10 @@ MAY_INCLUDE = {
     "data-schema/base": "",
     "data-schema/calibration": "data-schema/{base files json}",
     "data-schema/check":
-        "data-schema/{base corpus device files height json kinds recording results scene session spectrogram texture transducer "
+        "data-schema/{base corpus device experiment files height json kinds recording results scene session spectrogram texture transducer "
         "wav}",
     "data-schema/cli":
-        "data-schema/{base calibration check command corpus device exchange files height kinds recording report results scene session spectrogram "
+        "data-schema/{base calibration check command corpus device exchange experiment files height kinds recording report results scene session spectrogram "
         "texture transducer}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
@@ -163,7 +163,7 @@ MAY_INCLUDE = {
     "analysis/page": "data-schema/{base results} spatial/picture",
     "analysis/psychometrics": "data-schema/base",
     "analysis/report":
-        "analysis/{identify/measure page} data-schema/{base calibration check corpus device files height kinds recording results "
+        "analysis/{identify/measure page} data-schema/{base calibration check corpus device experiment files height kinds recording results "
         "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
         "texture}",
     "analysis/scene":
