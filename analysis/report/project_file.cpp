@@ -71,7 +71,7 @@ Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file
     case FileKind::protocol:
       return add_protocol(path, file);
     case FileKind::protocol_key:
-      return {};  // the experiment stays blind
+      return {};
     case FileKind::device:
       return add_device(path, file);
     case FileKind::hand:

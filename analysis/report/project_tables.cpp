@@ -173,9 +173,9 @@ Result<void> add_corpus_plan(const std::string& path, ProjectFile& file) {
 Result<void> add_protocol(const std::string& path, ProjectFile& file) {
   const auto protocol = schema::read_protocol(path);
   TACTO_TRY(protocol);
-  file.figures = {{"levels", fmt::format("{}", protocol->levels.size())},
-                  {"repetitions", fmt::format("{}", protocol->repetitions)},
-                  {"participants", fmt::format("{}", protocol->participants)}};
+  file.figures = {
+      {"question", protocol->texts.question},
+      {"levels", fmt::format("{}, {} times each", protocol->levels.size(), protocol->repetitions)}};
   return {};
 }
 

@@ -61,6 +61,8 @@ Result<Checked> check_document(const StoredFile& file, const Progress& progress)
   if (file.kind == FileKind::transducer) checked.findings = check_by_reading(read_transducer(file.path));
   if (file.kind == FileKind::device) checked.findings = check_device_file(file.path);
   if (file.kind == FileKind::hand) checked.findings = check_by_reading(read_hand(file.path));
+  if (file.kind == FileKind::protocol) checked.findings = check_by_reading(read_protocol(file.path));
+  if (file.kind == FileKind::protocol_key) checked.findings = check_by_reading(read_protocol_key(file.path));
   if (file.kind == FileKind::corpus) checked.findings = check_by_reading(read_corpus_plan(file.path));
   if (file.kind == FileKind::protocol) checked.findings = check_by_reading(read_protocol(file.path));
   if (file.kind == FileKind::protocol_key) checked.findings = check_by_reading(read_protocol_key(file.path));

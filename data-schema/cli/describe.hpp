@@ -32,7 +32,6 @@ Result<cli::Report> describe_device(const std::string& path);
 Result<cli::Report> describe_hand(const std::string& path);
 Result<cli::Report> describe_corpus(const std::string& path);
 Result<cli::Report> describe_protocol(const std::string& path);
-/// Without what the codes stand for: an experiment stays blind.
 Result<cli::Report> describe_protocol_key(const std::string& path);
 
 /// The report's first lines: file, kind, and what simulated it.

@@ -9,17 +9,16 @@ Result<cli::Report> describe_protocol(const std::string& path) {
   TACTO_TRY(protocol);
   warn_of_unknown(path, *protocol);
   cli::Report report = report_of(FileKind::protocol, path, "");
+  report.add("task", "two_interval").add("question", protocol->texts.question);
   report.add("standard_period_m", protocol->standard.period_m)
       .add("standard_amplitude_m", protocol->standard.amplitude_m);
-  report.add("levels", protocol->levels.size())
-      .add("repetitions", protocol->repetitions)
-      .add("participants", protocol->participants);
-  report.add("pace_mps", protocol->pace.speed_mps).add("strokes", protocol->pace.strokes);
-  report.add("question", protocol->texts.question);
+  report.add("levels", protocol->levels.size()).add("repetitions", protocol->repetitions);
+  report.add("participants", protocol->participants).add("seed", protocol->seed);
   add_text(report, "notes", protocol->notes);
   return report;
 }
 
+// Without the codes: who looks at a folder is not to learn them.
 Result<cli::Report> describe_protocol_key(const std::string& path) {
   const auto key = read_protocol_key(path);
   TACTO_TRY(key);

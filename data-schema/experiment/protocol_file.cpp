@@ -180,7 +180,7 @@ std::string key_path(const std::string& study) {
 }
 
 Result<Protocol> read_protocol(const std::string& name) {
-  const std::string path = protocol_path(name);
+  const std::string path = name.ends_with(".json") && is_file(name) ? name : protocol_path(name);
   const auto document = open_known(path, kProtocolKind);
   TACTO_TRY(document);
   Protocol protocol = protocol_from(*document);

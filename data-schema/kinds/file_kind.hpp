@@ -26,9 +26,9 @@ enum class FileKind {
   hand,
   session_table,  ///< a session as netCDF
   height_map,
-  corpus,       ///< the plan of a corpus
-  protocol,     ///< of an experiment
-  protocol_key  ///< which stimulus of an experiment has which code
+  corpus,  ///< the plan of a corpus
+  protocol,
+  protocol_key  ///< which stimulus has which code
 };
 
 /// "recording", "texture", ... as in the files' own member `kind`.

@@ -55,6 +55,10 @@ def the_files_are_coded():
         assert hashlib.sha256(pathlib.Path(f"stretch/{code}.texture.wav").read_bytes()).hexdigest() == row["sha256"]
     by_sum = sorted(LEVELS + [0], key=lambda level: hashlib.sha256(f"lab-7/code/{level:g}".encode()).hexdigest())
     assert [key[f"K{i + 1}"]["stretch"] for i in range(9)] == by_sum
+    valid = tacto.run_json("validate", "stretch.protocol.json", "stretch.key.json")
+    assert [file["kind"] for file in valid["files"]] == ["protocol", "protocol_key"] and valid["valid"] is True
+    for name in ("stretch.protocol.json", "stretch.key.json"):
+        assert not any(f'"{code}"' in tacto.run("info", name, "--json")[0] for code in key)
     tacto.run("experiment", "new", "stretch", "-o", "stretch", code=2)  # exists
 
 

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "data-schema/check/check.hpp"
 #include "data-schema/files/files.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
@@ -49,6 +50,8 @@ TEST_F(ProtocolFile, ReadsBack) {
   nlohmann::json expected = body_;
   expected["notes"] = "a note";
   EXPECT_EQ(nlohmann::json::parse(*text), expected);
+  EXPECT_EQ(stored_files(folder_ / "odd")->front().kind, FileKind::protocol);
+  EXPECT_TRUE(check_file({FileKind::protocol, folder_ / "odd.protocol.json"})->findings.empty());
   EXPECT_EQ(protocol->sha256, sha256_of_file(folder_ / "odd.protocol.json").value());
 }
 
