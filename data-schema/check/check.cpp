@@ -64,8 +64,6 @@ Result<Checked> check_document(const StoredFile& file, const Progress& progress)
   if (file.kind == FileKind::protocol) checked.findings = check_by_reading(read_protocol(file.path));
   if (file.kind == FileKind::protocol_key) checked.findings = check_by_reading(read_protocol_key(file.path));
   if (file.kind == FileKind::corpus) checked.findings = check_by_reading(read_corpus_plan(file.path));
-  if (file.kind == FileKind::protocol) checked.findings = check_by_reading(read_protocol(file.path));
-  if (file.kind == FileKind::protocol_key) checked.findings = check_by_reading(read_protocol_key(file.path));
   if (file.kind == FileKind::results) checked.findings = check_by_reading(read_results(file.path));
   if (file.kind == FileKind::texture) checked.findings = check_texture(file.path, *document, progress);
   return checked;
