@@ -65,9 +65,9 @@ struct Protocol {
   std::string sha256;  ///< of the file that was read
 };
 
-/// By stem, NAME.protocol.json or a JSON file with another name. Errors: not_found; malformed, with the place: also an
-/// unknown member (with the nearest known one), levels that do not rise or include 0, doubled keys or words,
-/// a path that leaves the texture, limits of speed that exclude the pace; unsupported_version.
+/// By stem, NAME.protocol.json or a JSON file with another name. Errors: not_found; malformed, with the
+/// place: also an unknown member (with the nearest known one), levels that do not rise or include 0, doubled
+/// keys or words, a path that leaves the texture, limits of speed that exclude the pace; unsupported_version.
 Result<Protocol> read_protocol(const std::string& name);
 
 /// The text of the file. Errors: unsuitable, by the schema.
