@@ -34,12 +34,12 @@ def write_scene(*patches, name="s"):
     pathlib.Path(f"{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "patches": list(patches)}))
 
 
-def write_device(*rates, name="d"):
+def write_device(*rates, name="d", delay_s=0, **members):
     axis = {"mass_kg": MASS, "viscous_n_s_per_m": VISCOUS, "coulomb_n": 0, "encoder_step_m": STEP, "travel_m": [-0.1, 0.1],
-            "peak_force_n": 100, "continuous_force_n": 100}
+            "peak_force_n": 100, "continuous_force_n": 100, **members}
     pathlib.Path(f"{name}.device.json").write_text(json.dumps(
         {"kind": "device", "version": "1.0", "name": name, "axes": [{"name": each, **axis} for each in "xy"], "peak_force_n": 100,
-         "continuous_force_n": 100, "slew_n_per_s": 1e6, "delay_s": 0, "rates_hz": list(rates)}))
+         "continuous_force_n": 100, "slew_n_per_s": 1e6, "delay_s": delay_s, "rates_hz": list(rates)}))
 
 
 def write_path(*rows):
@@ -156,6 +156,45 @@ def the_chosen_scene_keeps_the_error():
     refused(UNSUITABLE, "--max-tick", "0.001us", "--max-error", "10mN")
 
 
+def a_softer_layer_keeps_its_added_damper():
+    """Without the octave, a damper of 4 N s/m would be enough in the place of 10 N s/m, but the force would differ by 3.6 N."""
+    write_device(1000, viscous_n_s_per_m=1, coulomb_n=1)
+    write_scene(patch(noise(kappa_n=20, adaptive=True)))
+    write_path((0, -45, -40), (0.3, 45, 40), (0.8, 40, -40))
+    added = run_json("explain", "s.scene.json", "--device", "d")["layers"][1]["added_damping_n_s_per_m"]
+    report = trade("--max-error", "1.2N", "-o", "soft.scene.json")
+    run("validate", "soft.scene.json")
+    soft, damper = json.loads(pathlib.Path("soft.scene.json").read_text())["patches"][0]["layers"]
+    assert soft["octaves"] < 5 and not soft.get("adaptive", False), soft
+    assert damper == {"type": "damper", "damping_n_s_per_m": added}, (damper, added)
+    off = np.hypot(*(forces("soft") - forces("s")).T).max()
+    assert off <= report["promised_n"] + report["rounding_n"], (off, report)
+    assert len(report["changed"]) == 2 and "without_choice" not in report, report  # the octaves, the damper
+    # A scene that stays as it is keeps its adaptive layer.
+    assert trade("--max-error", "10mN", "-o", "same.scene.json")["changed"] == []
+    (layer,) = json.loads(pathlib.Path("same.scene.json").read_text())["patches"][0]["layers"]
+    assert layer["adaptive"] is True, layer
+
+
+def rates_at_which_the_scene_cannot_be_played_are_rows():
+    """At 100 Hz no damper is enough; at 10 kHz the counts of the encoder would change the force by more than the friction."""
+    write_device(100, 1000, 10000, delay_s=5e-4, viscous_n_s_per_m=1, coulomb_n=0.05)
+    write_scene(patch(noise(kappa_n=20, adaptive=True)))
+    for rate in (100, 10000):
+        refused(UNSUITABLE, "--rate", f"{rate}Hz")
+    report = trade("--rate", "1kHz", "-o", "t.csv", "-o", "t.html")
+    rows = report["choices"]
+    assert [row["choice_of"] for row in rows[5:]] == ["rate"] * 3 and len(rows) == 8, rows
+    for row in (rows[5], rows[7]):
+        assert row["stability"] == "not known" and row["worth_it"] == "not judged" and row["note"], row
+        assert not {"error_n", "cost_ns", "memory_kib", "limit_n_per_m"} & row.keys(), row
+    for row in rows[:5] + [rows[6]]:
+        assert row["cost_ns"] > 0 and row["stability"] != "not known", row
+    assert rows[6]["error_n"] <= report["rounding_n"], rows[6]  # it is its own reference
+    with open("t.csv") as file:
+        assert [row["error_n"] == "" for row in csv.DictReader(file)] == [False] * 5 + [True, False, True]
+
+
 def files_are_written_and_valid():
     write_device(500, 1000)
     write_scene(patch(noise()))
@@ -204,6 +243,7 @@ def wrong_uses_are_refused():
 
 
 if __name__ == "__main__":
-    for test in (errors_of_grooves_are_those_of_the_series, a_lower_rate_holds_its_force, the_chosen_scene_keeps_the_error, files_are_written_and_valid,
+    for test in (errors_of_grooves_are_those_of_the_series, a_lower_rate_holds_its_force, the_chosen_scene_keeps_the_error,
+                 a_softer_layer_keeps_its_added_damper, rates_at_which_the_scene_cannot_be_played_are_rows, files_are_written_and_valid,
                  wrong_uses_are_refused):
         tacto.in_folder(test)

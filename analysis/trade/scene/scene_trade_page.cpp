@@ -154,7 +154,7 @@ std::vector<schema::ResultPicture> scene_trade_pictures(const SceneTrade& trade)
     std::vector<schema::ResultCurve> knees;
     for (std::size_t i = 0; i < trade.rows.size(); ++i) {
       const SceneTradeRow& row = trade.rows[i];
-      if (row.row.per != per) continue;
+      if (row.row.per != per || !row.row.is_judged()) continue;
       if (picture.curves.empty() || picture.curves.back().name != row.row.knob)
         picture.curves.push_back({row.row.knob, {}, {}, false, false});
       picture.curves.back().x.push_back(row.row.cost_ns);
