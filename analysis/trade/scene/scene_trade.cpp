@@ -92,6 +92,16 @@ double memory_of(const PreparedScene& scene) {
                              sizeof(core::SceneKernel));
 }
 
+// Of strokes_over(), one per patch: that of middle speed.
+std::vector<AxisPaths> timed_strokes(const std::vector<schema::Patch>& patches,
+                                     const schema::Device& device) {
+  const auto all = strokes_over(patches, device);
+  std::vector<AxisPaths> strokes;
+  for (std::size_t i = kTradeSpeeds_mps.size() / 2; i < all.size(); i += kTradeSpeeds_mps.size())
+    strokes.push_back(all[i]);
+  return strokes;
+}
+
 // One scene on one device at one rate, with the forces of its reference along the paths.
 class SceneBench {
  public:
@@ -103,6 +113,8 @@ class SceneBench {
       reference_.push_back(exact_forces(prepared_, device, double{setup.rate_hz}, counts_.back()));
       for (const auto& force_n : reference_.back()) forces_.add(force_n);
     }
+    for (const AxisPaths& stroke : timed_strokes(patches_, device))
+      timed_counts_.push_back(path_counts(stroke, device, double{setup.rate_hz}));
   }
 
   const PreparedScene& prepared() const { return prepared_; }
@@ -118,27 +130,22 @@ class SceneBench {
     return sizes;
   }
   ForceSizes error(const PreparedScene& scene) const { return error(scene, setup_, counts_); }
+  // Along the stroke of middle speed across a patch, whatever path the errors are measured along.
   TimedScene timed(PreparedScene scene, std::size_t patch) const {
-    return {std::move(scene), setup_, &counts_[counts_.size() == 1 ? 0 : middle_path(patch)]};
+    return {std::move(scene), setup_, &timed_counts_[patch]};
   }
   // The largest of all patches.
   double tick_ns(const PreparedScene& scene) const {
     std::vector<TimedScene> scenes;
-    for (std::size_t i = 0; i < (counts_.size() == 1 ? 1 : patches_.size()); ++i)
-      scenes.push_back(timed(scene, i));
+    for (std::size_t i = 0; i < patches_.size(); ++i) scenes.push_back(timed(scene, i));
     return std::ranges::max(tick_costs_ns(scenes));
   }
 
  private:
-  // Of strokes_over().
-  static std::size_t middle_path(std::size_t patch) {
-    return patch * kTradeSpeeds_mps.size() + kTradeSpeeds_mps.size() / 2;
-  }
-
   PreparedScene prepared_;
   std::vector<schema::Patch> patches_;
   core::ForceSetup setup_;
-  std::vector<CountRows> counts_;
+  std::vector<CountRows> counts_, timed_counts_;  // of each path, of each patch
   std::vector<ForceRows> reference_;
   ForceSizes forces_;  // of the reference
 };
@@ -203,6 +210,10 @@ class SceneTrader {
         promise_(bench_.patches(), request.design.device, bench_.prepared().reliefs,
                  layer_knobs(bench_.patches())) {
     trade_.device = request.design.device.name;
+    trade_.hand = request.design.hand ? request.design.hand->name : "nothing holds the device";
+    if (scene.patches.size() > 1) trade_.assumed = kAssumedPlaces;
+    trade_.timed_along = fmt::format("a stroke across each patch at {:g} mm/s",
+                                     1e3 * kTradeSpeeds_mps[kTradeSpeeds_mps.size() / 2]);
     trade_.machine = schema::machine_words();
     trade_.rate_hz = request.design.rate_hz;
     trade_.largest_force_n = bench_.forces().largest_n;
@@ -369,7 +380,8 @@ Result<void> SceneTrader::add_rate(double rate_hz, const std::vector<AxisPaths>&
   row.row.note = design ? "measured only: a force is held for a tick, so at the edge of a patch the error is "
                           "the whole force"
                         : design.error().what;
-  counts_.push_back(std::make_unique<CountRows>(std::move(counts[counts.size() / 2])));
+  const auto strokes = timed_strokes(scene_.patches, device);
+  counts_.push_back(std::make_unique<CountRows>(path_counts(strokes[strokes.size() / 2], device, rate_hz)));
   add_timed(std::move(row), {std::move(*prepared), *setup, counts_.back().get()});
   return {};
 }
@@ -452,10 +464,14 @@ Result<void> SceneTrader::choose() {
     patches[knob.patch].layers[knob.index] = choice.scene.patches[knob.patch].layers[knob.index] =
         chosen.layer;
     choice.changed.push_back(fmt::format("{}: {}", knob.name, chosen.choice));
+    chosen.layer.visit([&](const schema::GroovesLayer& /*grooves*/) { choice.is_for_loop = true; },
+                       [](const auto& /*other*/) {});
   }
   if (!choice.changed.empty())
-    if (const auto fixed = fix_added_dampers(choice.scene, bench_.patches()); !fixed.empty())
+    if (const auto fixed = fix_added_dampers(choice.scene, bench_.patches()); !fixed.empty()) {
       choice.changed.push_back(fmt::format("added dampers are fixed: {}", fmt::join(fixed, ", ")));
+      choice.is_for_loop = true;
+    }
   schema::Scene scene = scene_;
   scene.patches = std::move(patches);
   const auto design = design_scene(scene, where_, request_.design);

@@ -39,12 +39,17 @@ struct SceneChoice {
   double tick_s = 0;  ///< of the most expensive path
   std::size_t bytes = 0;
   std::string verdict;  ///< of the worst layer
+  /// Filters or added dampers are numbers now, chosen for this device, rate and hand.
+  bool is_for_loop = false;
 };
 
 struct SceneTrade {
   std::string scene, device, machine;
+  std::string hand;     ///< or that nothing holds the device
+  std::string assumed;  ///< of the places of patches; empty: there is one patch
   double rate_hz = 0;
   std::string paths;           ///< along which the errors are measured
+  std::string timed_along;     ///< the paths of the costs
   double largest_force_n = 0;  ///< of the reference along them
   double rounding_n = 0;       ///< what can be promised of the scene as it is
   std::vector<SceneTradeRow> rows;
@@ -58,8 +63,8 @@ struct SceneTrade {
 /// "rate" of the device. Of a layer the reference is ExactScene of the scene as it is, at the request's rate;
 /// of the rate it is ExactScene at the device's largest rate at which the scene can be prepared, and forces
 /// are held from tick to tick. All forces are those before the limits of the device. Cost: of a tick of the
-/// whole scene, of the rate per ms of playing; memory: the block and the kernel's state. The stiffness and
-/// its limit are those of design_scene().
+/// whole scene along strokes_over(), of the rate per ms of playing; memory: the block and the kernel's state.
+/// The stiffness and its limit are those of design_scene().
 ///
 /// With max_error_n or max_tick_s it chooses members of layers: step by step the one that saves most time for
 /// the force that it changes, as long as the sum over the layers that act together, rounding included, keeps

@@ -72,26 +72,36 @@ std::string best_of(const SceneTrade& trade) {
   return words.empty() ? "no best choice" : words;
 }
 
+constexpr const char* kChosenFor =
+    "filters and added dampers are numbers now, for this device, rate and hand";
+
 std::string scene_answer(const SceneTrade& trade) {
   if (!trade.chosen) return "best for its cost: " + best_of(trade);
   const SceneChoice& chosen = *trade.chosen;
   return fmt::format(
-      "{}: an error of at most {} at any place, a tick of {} on this computer",
+      "{}: an error of at most {} at any place{}, a tick of {} on this computer{}{}",
       chosen.changed.empty() ? "the scene as it is" : fmt::format("{}", fmt::join(chosen.changed, "; ")),
-      for_people(chosen.promised_n, Dimension::force), for_people(chosen.tick_s, Dimension::time));
+      for_people(chosen.promised_n, Dimension::force),
+      trade.assumed.empty() ? "" : " with the patches at their places",
+      for_people(chosen.tick_s, Dimension::time), chosen.is_for_loop ? "; " : "",
+      chosen.is_for_loop ? kChosenFor : "");
 }
 
 cli::Report trade_head(const SceneTrade& trade) {
   cli::Report head;
   head.add("answer", scene_answer(trade)).add("scene", trade.scene).add("device", trade.device);
+  head.add("hand", trade.hand);
   head.add("rate_hz", trade.rate_hz).add("machine", trade.machine).add("paths", trade.paths);
+  head.add("timed_along", trade.timed_along);
   head.add("largest_force_n", trade.largest_force_n).add("rounding_n", trade.rounding_n);
   if (trade.chosen) {
     const SceneChoice& chosen = *trade.chosen;
     head.add("changed", chosen.changed).add("promised_n", chosen.promised_n);
     head.add("error_n", chosen.error_n).add("tick_s", chosen.tick_s).add("memory_bytes", chosen.bytes);
     head.add("stability", chosen.verdict);
+    if (chosen.is_for_loop) head.add("chosen_for", kChosenFor);
   }
+  if (!trade.assumed.empty()) head.add("assumed", trade.assumed);
   head.add("not_promised", trade.not_promised);
   if (!trade.without_choice.empty())
     head.add("without_choice", fmt::format("{}", fmt::join(trade.without_choice, ", ")));
