@@ -195,6 +195,49 @@ def rates_at_which_the_scene_cannot_be_played_are_rows():
         assert [row["error_n"] == "" for row in csv.DictReader(file)] == [False] * 5 + [True, False, True]
 
 
+def unstable_choices_are_never_the_best():
+    """The free limit at 1 kHz is 2 kN/m; five octaves have 6.7 kN/m, three 1.5 kN/m."""
+    write_device(1000, viscous_n_s_per_m=1)
+    write_scene(patch(noise(kappa_n=8)))
+    report = trade()
+    verdicts = {row["choice"]: row["stability"] for row in report["choices"]}
+    assert set(verdicts.values()) == {"stable", "unstable"}, verdicts
+    for row in report["choices"]:
+        if row["stability"] == "unstable":
+            assert row["worth_it"].startswith("never") and row["choice"] in report["answers"][0]["never_worth_it"], row
+    assert verdicts.get(report["answers"][0]["knee"], "stable") == "stable", report["answers"]
+    write_scene(patch(noise(kappa_n=1000)))
+    report = trade()
+    assert all(row["stability"] == "unstable" and row["worth_it"].startswith("never") for row in report["choices"]), report["choices"]
+    assert report["answers"][0]["knee"] == "no best choice" == report["answer"].removeprefix("best for its cost: ")
+
+
+def what_was_assumed_is_named():
+    write_device(1000)
+    write_scene(patch(grooves(), name="grid"))
+    write_path((0, -20, 0), (1, 20, 0))
+    report = trade("--finger-path", "path.csv", "--max-error", "10mN")
+    assert "assumed" not in report and "chosen_for" not in report and "hand" in report, report
+    assert report["timed_along"] == trade()["timed_along"] and report["paths"] != trade()["paths"]
+    write_scene(patch(grooves(), name="grid"), patch(noise(), name="sand", x_m=0.04))
+    report = trade("--hand", "minsky-radial", "--max-error", "5N", "-o", "t.html")
+    assert report["hand"] == "minsky-radial" and "move" in report["assumed"] and "chosen_for" in report, report
+    page = pathlib.Path("t.html").read_text()
+    assert "minsky-radial" in page and report["assumed"].split(";")[0] in page
+    for options in ((), ("--hand", "minsky-radial")):
+        explained = run_json("explain", "s.scene.json", "--device", "d", *options)
+        assert (explained["hand"] == "minsky-radial") == bool(options), explained["hand"]
+
+
+def a_path_beside_all_patches_is_warned_of():
+    write_device(1000)
+    write_scene(patch(noise(), width_m=0.02, height_m=0.02))
+    for y, warned in ((0, False), (40, True)):
+        write_path((0, -20, y), (1, 20, y))
+        out, err = run("trade", "s", "--device", "d", "--finger-path", "path.csv", "--json")
+        assert ("path.csv" in err) == warned == (json.loads(out)["largest_force_n"] == 0), (y, err)
+
+
 def files_are_written_and_valid():
     write_device(500, 1000)
     write_scene(patch(noise()))
@@ -244,6 +287,7 @@ def wrong_uses_are_refused():
 
 if __name__ == "__main__":
     for test in (errors_of_grooves_are_those_of_the_series, a_lower_rate_holds_its_force, the_chosen_scene_keeps_the_error,
-                 a_softer_layer_keeps_its_added_damper, rates_at_which_the_scene_cannot_be_played_are_rows, files_are_written_and_valid,
+                 a_softer_layer_keeps_its_added_damper, rates_at_which_the_scene_cannot_be_played_are_rows,
+                 unstable_choices_are_never_the_best, what_was_assumed_is_named, a_path_beside_all_patches_is_warned_of, files_are_written_and_valid,
                  wrong_uses_are_refused):
         tacto.in_folder(test)

@@ -22,10 +22,36 @@ namespace {
 using schema::Dimension;
 using schema::for_people;
 
+bool is_unstable(const SceneTradeRow& row) {
+  return row.verdict == to_string(Stability::unstable);
+}
+
+// An unstable row is not compared with others: it is no choice.
 std::vector<TradeRow> trade_rows(const SceneTrade& trade) {
   std::vector<TradeRow> rows;
-  for (const SceneTradeRow& each : trade.rows) rows.push_back(each.row);
+  for (const SceneTradeRow& each : trade.rows) {
+    rows.push_back(each.row);
+    if (is_unstable(each)) rows.back().error = kNotMeasured;
+  }
   return rows;
+}
+
+// As plain_answers(), with the unstable choices among those that are never worth it.
+std::vector<PlainAnswer> scene_answers(const SceneTrade& trade) {
+  const auto rows = trade_rows(trade);
+  auto answers = plain_answers(rows);
+  for (PlainAnswer& answer : answers) {
+    std::vector<std::string> unstable;
+    for (const SceneTradeRow& row : trade.rows)
+      if (row.row.knob == answer.knob && is_unstable(row)) unstable.push_back(row.row.choice + " (unstable)");
+    if (answer.knee_row) answer.knee = rows[*answer.knee_row].choice;
+    if (unstable.empty()) continue;
+    if (!answer.knee_row) answer.knee = "no best choice";
+    const std::string others = answer.never_worth_it > 0 ? answer.never + "; " : "";
+    answer.never = others + fmt::format("{}", fmt::join(unstable, "; "));
+    answer.never_worth_it += unstable.size();
+  }
+  return answers;
 }
 
 // Keys and SI values; NaN: nothing.
@@ -43,7 +69,7 @@ TradeCells trade_cells(const SceneTradeRow& row, const Worth& worth) {
           {"stiffness_n_per_m", row.stiffness_n_per_m},
           {"limit_n_per_m", row.limit_n_per_m},
           {"stability", row.verdict},
-          {"worth_it", worth_words(worth)},
+          {"worth_it", is_unstable(row) ? "never: unstable" : worth_words(worth)},
           {"note", row.row.note}};
 }
 
@@ -65,10 +91,9 @@ cli::Report report_row(const TradeCells& cells) {
 
 std::string best_of(const SceneTrade& trade) {
   std::string words;
-  for (const PlainAnswer& answer : plain_answers(trade_rows(trade)))
+  for (const PlainAnswer& answer : scene_answers(trade))
     if (answer.knee_row)
-      words += fmt::format("{}{}: {}", words.empty() ? "" : "; ", answer.knob,
-                           trade.rows[*answer.knee_row].row.choice);
+      words += fmt::format("{}{}: {}", words.empty() ? "" : "; ", answer.knob, answer.knee);
   return words.empty() ? "no best choice" : words;
 }
 
@@ -134,10 +159,10 @@ cli::Report scene_trade_report(const SceneTrade& trade) {
   const auto rows = trade_rows(trade);
   const auto worth = worth_of(rows);
   std::vector<cli::Report> answers, choices;
-  for (const PlainAnswer& answer : plain_answers(rows))
+  for (const PlainAnswer& answer : scene_answers(trade))
     answers.push_back(cli::Report()
                           .add("choice_of", answer.knob)
-                          .add("knee", answer.knee_row ? rows[*answer.knee_row].choice : answer.knee)
+                          .add("knee", answer.knee)
                           .add("never_worth_it", answer.never));
   for (std::size_t i = 0; i < rows.size(); ++i)
     choices.push_back(report_row(trade_cells(trade.rows[i], worth[i])));
