@@ -22,7 +22,7 @@ namespace {
 using schema::Dimension;
 using schema::for_people;
 
-bool is_unstable(const SceneTradeRow& row) {
+bool is_unstable_row(const SceneTradeRow& row) {
   return row.verdict == to_string(Stability::unstable);
 }
 
@@ -31,7 +31,7 @@ std::vector<TradeRow> trade_rows(const SceneTrade& trade) {
   std::vector<TradeRow> rows;
   for (const SceneTradeRow& each : trade.rows) {
     rows.push_back(each.row);
-    if (is_unstable(each)) rows.back().error = kNotMeasured;
+    if (is_unstable_row(each)) rows.back().error = kNotMeasured;
   }
   return rows;
 }
@@ -43,7 +43,8 @@ std::vector<PlainAnswer> scene_answers(const SceneTrade& trade) {
   for (PlainAnswer& answer : answers) {
     std::vector<std::string> unstable;
     for (const SceneTradeRow& row : trade.rows)
-      if (row.row.knob == answer.knob && is_unstable(row)) unstable.push_back(row.row.choice + " (unstable)");
+      if (row.row.knob == answer.knob && is_unstable_row(row))
+        unstable.push_back(row.row.choice + " (unstable)");
     if (answer.knee_row) answer.knee = rows[*answer.knee_row].choice;
     if (unstable.empty()) continue;
     if (!answer.knee_row) answer.knee = "no best choice";
@@ -69,7 +70,7 @@ TradeCells trade_cells(const SceneTradeRow& row, const Worth& worth) {
           {"stiffness_n_per_m", row.stiffness_n_per_m},
           {"limit_n_per_m", row.limit_n_per_m},
           {"stability", row.verdict},
-          {"worth_it", is_unstable(row) ? "never: unstable" : worth_words(worth)},
+          {"worth_it", is_unstable_row(row) ? "never: unstable" : worth_words(worth)},
           {"note", row.row.note}};
 }
 
