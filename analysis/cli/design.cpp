@@ -157,11 +157,7 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   TACTO_TRY(designed);
   design = std::move(*designed);
   Report report = report_of(o, design);
-  if (scene->patches.size() > 1)
-    report.add(
-        "assumed",
-        "patches at the places and in the order of the scene; after 'move' or 'raise' other layers may "
-        "act together");
+  if (scene->patches.size() > 1) report.add("assumed", kAssumedPlaces);
   if (o.hold_stable) playback::add_held(report, held);
   if (o.outputs.empty()) return report;
   schema::Results results;

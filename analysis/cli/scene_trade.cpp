@@ -130,6 +130,8 @@ Result<Report> run_scene_trade(const std::string& scene, const SceneTradeOptions
   TACTO_TRY(traded);
   trade = std::move(*traded);
   trade.scene = file;
+  if (request->path && !(trade.largest_force_n > 0))
+    cli::warn(fmt::format("{}: the path touches no patch", o.path));
   Report report = scene_trade_report(trade);
   if (outputs.empty()) return report;
   schema::Results results;

@@ -14,6 +14,11 @@
 
 namespace tacto::analysis {
 
+/// What bounds and limits of a scene with several patches assume.
+inline constexpr const char* kAssumedPlaces =
+    "patches at the places and in the order of the scene; after 'move' or 'raise' other layers may act "
+    "together";
+
 struct DesignRequest {
   schema::Device device;
   std::optional<schema::Hand> hand;  ///< for Holder::hand and lumped

@@ -335,7 +335,8 @@ Result<Report> explain_forces(const std::string& scene, const std::string& devic
     tick_s = std::max(tick_s, tick_cost_s(view, on->setup, patch));
   const double rate = double{on->setup.rate_hz};
   Report report;
-  report.add("scene", schema::scene_path(scene)).add("device", on->device.name).add("rate_hz", rate);
+  report.add("scene", schema::scene_path(scene)).add("device", on->device.name);
+  report.add("hand", *hand ? (*hand)->name : "nothing holds the device").add("rate_hz", rate);
   add_fit(report, on->scene, device_bytes, tick_s, rate);
   report.add("layers", rows_of_layers(*on));
   report.add("block_bytes", on->scene.bytes())

@@ -34,12 +34,12 @@ def write_scene(*patches, name="s"):
     pathlib.Path(f"{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "patches": list(patches)}))
 
 
-def write_device(*rates, name="d"):
+def write_device(*rates, name="d", delay_s=0, **members):
     axis = {"mass_kg": MASS, "viscous_n_s_per_m": VISCOUS, "coulomb_n": 0, "encoder_step_m": STEP, "travel_m": [-0.1, 0.1],
-            "peak_force_n": 100, "continuous_force_n": 100}
+            "peak_force_n": 100, "continuous_force_n": 100, **members}
     pathlib.Path(f"{name}.device.json").write_text(json.dumps(
         {"kind": "device", "version": "1.0", "name": name, "axes": [{"name": each, **axis} for each in "xy"], "peak_force_n": 100,
-         "continuous_force_n": 100, "slew_n_per_s": 1e6, "delay_s": 0, "rates_hz": list(rates)}))
+         "continuous_force_n": 100, "slew_n_per_s": 1e6, "delay_s": delay_s, "rates_hz": list(rates)}))
 
 
 def write_path(*rows):
@@ -156,6 +156,88 @@ def the_chosen_scene_keeps_the_error():
     refused(UNSUITABLE, "--max-tick", "0.001us", "--max-error", "10mN")
 
 
+def a_softer_layer_keeps_its_added_damper():
+    """Without the octave, a damper of 4 N s/m would be enough in the place of 10 N s/m, but the force would differ by 3.6 N."""
+    write_device(1000, viscous_n_s_per_m=1, coulomb_n=1)
+    write_scene(patch(noise(kappa_n=20, adaptive=True)))
+    write_path((0, -45, -40), (0.3, 45, 40), (0.8, 40, -40))
+    added = run_json("explain", "s.scene.json", "--device", "d")["layers"][1]["added_damping_n_s_per_m"]
+    report = trade("--max-error", "1.2N", "-o", "soft.scene.json")
+    run("validate", "soft.scene.json")
+    soft, damper = json.loads(pathlib.Path("soft.scene.json").read_text())["patches"][0]["layers"]
+    assert soft["octaves"] < 5 and not soft.get("adaptive", False), soft
+    assert damper == {"type": "damper", "damping_n_s_per_m": added}, (damper, added)
+    off = np.hypot(*(forces("soft") - forces("s")).T).max()
+    assert off <= report["promised_n"] + report["rounding_n"], (off, report)
+    assert len(report["changed"]) == 2 and "without_choice" not in report, report  # the octaves, the damper
+    # A scene that stays as it is keeps its adaptive layer.
+    assert trade("--max-error", "10mN", "-o", "same.scene.json")["changed"] == []
+    (layer,) = json.loads(pathlib.Path("same.scene.json").read_text())["patches"][0]["layers"]
+    assert layer["adaptive"] is True, layer
+
+
+def rates_at_which_the_scene_cannot_be_played_are_rows():
+    """At 100 Hz no damper is enough; at 10 kHz the counts of the encoder would change the force by more than the friction."""
+    write_device(100, 1000, 10000, delay_s=5e-4, viscous_n_s_per_m=1, coulomb_n=0.05)
+    write_scene(patch(noise(kappa_n=20, adaptive=True)))
+    for rate in (100, 10000):
+        refused(UNSUITABLE, "--rate", f"{rate}Hz")
+    report = trade("--rate", "1kHz", "-o", "t.csv", "-o", "t.html")
+    rows = report["choices"]
+    assert [row["choice_of"] for row in rows[5:]] == ["rate"] * 3 and len(rows) == 8, rows
+    for row in (rows[5], rows[7]):
+        assert row["stability"] == "not known" and row["worth_it"] == "not judged" and row["note"], row
+        assert not {"error_n", "cost_ns", "memory_kib", "limit_n_per_m"} & row.keys(), row
+    for row in rows[:5] + [rows[6]]:
+        assert row["cost_ns"] > 0 and row["stability"] != "not known", row
+    assert rows[6]["error_n"] <= report["rounding_n"], rows[6]  # it is its own reference
+    with open("t.csv") as file:
+        assert [row["error_n"] == "" for row in csv.DictReader(file)] == [False] * 5 + [True, False, True]
+
+
+def unstable_choices_are_never_the_best():
+    """The free limit at 1 kHz is 2 kN/m; five octaves have 6.7 kN/m, three 1.5 kN/m."""
+    write_device(1000, viscous_n_s_per_m=1)
+    write_scene(patch(noise(kappa_n=8)))
+    report = trade()
+    verdicts = {row["choice"]: row["stability"] for row in report["choices"]}
+    assert set(verdicts.values()) == {"stable", "unstable"}, verdicts
+    for row in report["choices"]:
+        if row["stability"] == "unstable":
+            assert row["worth_it"].startswith("never") and row["choice"] in report["answers"][0]["never_worth_it"], row
+    assert verdicts.get(report["answers"][0]["knee"], "stable") == "stable", report["answers"]
+    write_scene(patch(noise(kappa_n=1000)))
+    report = trade()
+    assert all(row["stability"] == "unstable" and row["worth_it"].startswith("never") for row in report["choices"]), report["choices"]
+    assert report["answers"][0]["knee"] == "no best choice" == report["answer"].removeprefix("best for its cost: ")
+
+
+def what_was_assumed_is_named():
+    write_device(1000)
+    write_scene(patch(grooves(), name="grid"))
+    write_path((0, -20, 0), (1, 20, 0))
+    report = trade("--finger-path", "path.csv", "--max-error", "10mN")
+    assert "assumed" not in report and "chosen_for" not in report and "hand" in report, report
+    assert report["timed_along"] == trade()["timed_along"] and report["paths"] != trade()["paths"]
+    write_scene(patch(grooves(), name="grid"), patch(noise(), name="sand", x_m=0.04))
+    report = trade("--hand", "minsky-radial", "--max-error", "5N", "-o", "t.html")
+    assert report["hand"] == "minsky-radial" and "move" in report["assumed"] and "chosen_for" in report, report
+    page = pathlib.Path("t.html").read_text()
+    assert "minsky-radial" in page and report["assumed"].split(";")[0] in page
+    for options in ((), ("--hand", "minsky-radial")):
+        explained = run_json("explain", "s.scene.json", "--device", "d", *options)
+        assert (explained["hand"] == "minsky-radial") == bool(options), explained["hand"]
+
+
+def a_path_beside_all_patches_is_warned_of():
+    write_device(1000)
+    write_scene(patch(noise(), width_m=0.02, height_m=0.02))
+    for y, warned in ((0, False), (40, True)):
+        write_path((0, -20, y), (1, 20, y))
+        out, err = run("trade", "s", "--device", "d", "--finger-path", "path.csv", "--json")
+        assert ("path.csv" in err) == warned == (json.loads(out)["largest_force_n"] == 0), (y, err)
+
+
 def files_are_written_and_valid():
     write_device(500, 1000)
     write_scene(patch(noise()))
@@ -204,6 +286,8 @@ def wrong_uses_are_refused():
 
 
 if __name__ == "__main__":
-    for test in (errors_of_grooves_are_those_of_the_series, a_lower_rate_holds_its_force, the_chosen_scene_keeps_the_error, files_are_written_and_valid,
+    for test in (errors_of_grooves_are_those_of_the_series, a_lower_rate_holds_its_force, the_chosen_scene_keeps_the_error,
+                 a_softer_layer_keeps_its_added_damper, rates_at_which_the_scene_cannot_be_played_are_rows,
+                 unstable_choices_are_never_the_best, what_was_assumed_is_named, a_path_beside_all_patches_is_warned_of, files_are_written_and_valid,
                  wrong_uses_are_refused):
         tacto.in_folder(test)

@@ -40,6 +40,33 @@ void put_layer(std::vector<schema::Patch>& patches, const std::string& patch, st
   std::ranges::find(patches, patch, &schema::Patch::name)->layers[index] = layer;
 }
 
+void leave_out_adaptive(schema::Scene& scene) {
+  for (schema::Patch& patch : scene.patches)
+    for (schema::ForceLayer& layer : patch.layers)
+      layer.visit([]<class L>(L& of) -> void {
+        if constexpr (requires { of.adaptive; }) of.adaptive = false;
+      });
+}
+
+// Appends the dampers that adaptive layers added to these patches, which are in the order of the scene, as
+// layers of their own. Otherwise a softer layer would have a smaller damper. "20.76 N s/m in 'a'".
+std::vector<std::string> fix_added_dampers(schema::Scene& scene, const std::vector<schema::Patch>& patches) {
+  std::vector<std::string> fixed;
+  for (std::size_t i = 0; i < patches.size(); ++i)
+    for (const schema::ForceLayer& layer : patches[i].layers)
+      layer.visit(
+          [&](const schema::DamperLayer& damper) {
+            if (!damper.added) return;
+            scene.patches[i].layers.emplace_back(
+                schema::DamperLayer{{damper.damping_n_s_per_m.value}, "", false});
+            fixed.push_back(
+                fmt::format("{:.4g} N s/m in '{}'", damper.damping_n_s_per_m.value, patches[i].name));
+          },
+          [](const auto& /*other*/) {});
+  leave_out_adaptive(scene);
+  return fixed;
+}
+
 // What a layer acts with, and its limit.
 struct ActingLimit {
   double stiffness_n_per_m = NAN, limit_n_per_m = NAN;
@@ -65,6 +92,16 @@ double memory_of(const PreparedScene& scene) {
                              sizeof(core::SceneKernel));
 }
 
+// Of strokes_over(), one per patch: that of middle speed.
+std::vector<AxisPaths> timed_strokes(const std::vector<schema::Patch>& patches,
+                                     const schema::Device& device) {
+  const auto all = strokes_over(patches, device);
+  std::vector<AxisPaths> strokes;
+  for (std::size_t i = kTradeSpeeds_mps.size() / 2; i < all.size(); i += kTradeSpeeds_mps.size())
+    strokes.push_back(all[i]);
+  return strokes;
+}
+
 // One scene on one device at one rate, with the forces of its reference along the paths.
 class SceneBench {
  public:
@@ -76,6 +113,8 @@ class SceneBench {
       reference_.push_back(exact_forces(prepared_, device, double{setup.rate_hz}, counts_.back()));
       for (const auto& force_n : reference_.back()) forces_.add(force_n);
     }
+    for (const AxisPaths& stroke : timed_strokes(patches_, device))
+      timed_counts_.push_back(path_counts(stroke, device, double{setup.rate_hz}));
   }
 
   const PreparedScene& prepared() const { return prepared_; }
@@ -91,27 +130,22 @@ class SceneBench {
     return sizes;
   }
   ForceSizes error(const PreparedScene& scene) const { return error(scene, setup_, counts_); }
+  // Along the stroke of middle speed across a patch, whatever path the errors are measured along.
   TimedScene timed(PreparedScene scene, std::size_t patch) const {
-    return {std::move(scene), setup_, &counts_[counts_.size() == 1 ? 0 : middle_path(patch)]};
+    return {std::move(scene), setup_, &timed_counts_[patch]};
   }
   // The largest of all patches.
   double tick_ns(const PreparedScene& scene) const {
     std::vector<TimedScene> scenes;
-    for (std::size_t i = 0; i < (counts_.size() == 1 ? 1 : patches_.size()); ++i)
-      scenes.push_back(timed(scene, i));
+    for (std::size_t i = 0; i < patches_.size(); ++i) scenes.push_back(timed(scene, i));
     return std::ranges::max(tick_costs_ns(scenes));
   }
 
  private:
-  // Of strokes_over().
-  static std::size_t middle_path(std::size_t patch) {
-    return patch * kTradeSpeeds_mps.size() + kTradeSpeeds_mps.size() / 2;
-  }
-
   PreparedScene prepared_;
   std::vector<schema::Patch> patches_;
   core::ForceSetup setup_;
-  std::vector<CountRows> counts_;
+  std::vector<CountRows> counts_, timed_counts_;  // of each path, of each patch
   std::vector<ForceRows> reference_;
   ForceSizes forces_;  // of the reference
 };
@@ -130,6 +164,20 @@ SceneTradeRow row_with(const std::string& knob, const std::string& choice, const
   row.stiffness_n_per_m = limit.stiffness_n_per_m;
   row.limit_n_per_m = limit.limit_n_per_m;
   row.verdict = limit.verdict;
+  return row;
+}
+
+// Of a rate at which the scene cannot be prepared.
+SceneTradeRow unknown_rate(const std::string& choice, const schema::Error& why) {
+  SceneTradeRow row;
+  row.row.knob = "rate";
+  row.row.choice = choice;
+  row.row.per = "ms";
+  row.row.note = why.what;
+  row.row.error = kNotMeasured;
+  row.row.cost_ns = row.row.memory_bytes = row.error_n = row.error_rms_n = NAN;
+  row.stiffness_n_per_m = row.limit_n_per_m = NAN;
+  row.verdict = std::string(to_string(Stability::not_known));
   return row;
 }
 
@@ -162,6 +210,10 @@ class SceneTrader {
         promise_(bench_.patches(), request.design.device, bench_.prepared().reliefs,
                  layer_knobs(bench_.patches())) {
     trade_.device = request.design.device.name;
+    trade_.hand = request.design.hand ? request.design.hand->name : "nothing holds the device";
+    if (scene.patches.size() > 1) trade_.assumed = kAssumedPlaces;
+    trade_.timed_along = fmt::format("a stroke across each patch at {:g} mm/s",
+                                     1e3 * kTradeSpeeds_mps[kTradeSpeeds_mps.size() / 2]);
     trade_.machine = schema::machine_words();
     trade_.rate_hz = request.design.rate_hz;
     trade_.largest_force_n = bench_.forces().largest_n;
@@ -186,7 +238,9 @@ class SceneTrader {
   PreparedScene changed_by(const ScenePromise::Places& places) const;
   Result<ActingLimit> limit_with(const std::vector<schema::Patch>& patches, std::size_t layer) const;
   Result<void> add_levels_of(std::size_t patch, std::size_t index);
-  Result<void> add_rate(double rate_hz, const std::vector<AxisPaths>& paths, const SceneBench& best);
+  Result<void> add_rate(double rate_hz, const std::vector<AxisPaths>& paths, Result<PreparedScene> prepared,
+                        const SceneBench& best);
+  void add_timed(SceneTradeRow row, TimedScene timed);
 
   const schema::Scene& scene_;
   const std::string& where_;
@@ -194,10 +248,17 @@ class SceneTrader {
   SceneBench bench_;
   ScenePromise promise_;
   SceneTrade trade_;
-  std::vector<TimedScene> timed_;                   // one per row
+  std::vector<TimedScene> timed_;
+  std::vector<std::size_t> timed_rows_;             // of each of timed_
   std::vector<std::unique_ptr<CountRows>> counts_;  // of other rates
   std::vector<std::string> files_;                  // whose levels are in the rows
 };
+
+void SceneTrader::add_timed(SceneTradeRow row, TimedScene timed) {
+  timed_rows_.push_back(trade_.rows.size());
+  trade_.rows.push_back(std::move(row));
+  timed_.push_back(std::move(timed));
+}
 
 PreparedScene SceneTrader::changed_by(const ScenePromise::Places& places) const {
   std::vector<schema::Patch> patches = bench_.prepared().patches;
@@ -228,11 +289,11 @@ Result<void> SceneTrader::add_layers() {
       patches[knob.patch].layers[knob.index] = knob.choices[place].layer;
       const auto limit = limit_with(patches, flat_index(patches, knob.patch, knob.index));
       TACTO_TRY(limit);
-      trade_.rows.push_back(row_with(knob.name, knob.choices[place].choice, bench_.error(changed),
-                                     bench_.forces(), changed, *limit));
-      trade_.rows.back().promised_n = promise_.error_n(places);
-      if (place == 0) trade_.rows.back().row.note = "as it is";
-      timed_.push_back(bench_.timed(std::move(changed), knob.patch));
+      SceneTradeRow row = row_with(knob.name, knob.choices[place].choice, bench_.error(changed),
+                                   bench_.forces(), changed, *limit);
+      row.promised_n = promise_.error_n(places);
+      if (place == 0) row.row.note = "as it is";
+      add_timed(std::move(row), bench_.timed(std::move(changed), knob.patch));
     }
   }
   return {};
@@ -267,18 +328,17 @@ Result<void> SceneTrader::add_levels_of(std::size_t patch, std::size_t index) {
             [](auto& /*other*/) {});
     const auto limit = limit_with(patches, flat_index(patches, patch, index));
     TACTO_TRY(limit);
-    trade_.rows.push_back(
+    SceneTradeRow row =
         row_with(fmt::format("finest level of {} '{}'", type_of(layer), file),
                  left_out == 0 ? "as it is"
                                : fmt::format("{:g} octave{} coarser", 0.5 * static_cast<double>(left_out),
                                              left_out > 2 ? "s" : ""),
-                 bench_.error(changed), bench_.forces(), changed, *limit));
+                 bench_.error(changed), bench_.forces(), changed, *limit);
     if (left_out == 0)
-      trade_.rows.back().promised_n = trade_.rounding_n;
+      row.promised_n = trade_.rounding_n;
     else
-      trade_.rows.back().row.note =
-          "measured only: no member of a scene has it; a map with fewer details does";
-    timed_.push_back(bench_.timed(std::move(changed), patch));
+      row.row.note = "measured only: no member of a scene has it; a map with fewer details does";
+    add_timed(std::move(row), bench_.timed(std::move(changed), patch));
   }
   return {};
 }
@@ -297,12 +357,15 @@ Result<void> SceneTrader::add_levels() {
 }
 
 Result<void> SceneTrader::add_rate(double rate_hz, const std::vector<AxisPaths>& paths,
-                                   const SceneBench& best) {
+                                   Result<PreparedScene> prepared, const SceneBench& best) {
   const schema::Device& device = request_.design.device;
+  const std::string choice = for_people(rate_hz, Dimension::frequency);
+  if (!prepared) {
+    trade_.rows.push_back(unknown_rate(choice, prepared.error()));
+    return {};
+  }
   const auto setup = playback::force_setup_of(device, rate_hz);
   TACTO_TRY(setup);
-  auto prepared = playback::prepare_scene(scene_, where_, device, rate_hz, request_.design.hand);
-  TACTO_TRY(prepared);
   std::vector<CountRows> counts;
   for (const AxisPaths& path : paths) counts.push_back(path_counts(path, device, rate_hz));
   DesignRequest request = request_.design;
@@ -311,39 +374,46 @@ Result<void> SceneTrader::add_rate(double rate_hz, const std::vector<AxisPaths>&
   scene.patches = prepared_patches(scene_, *prepared);
   const auto design = design_scene(scene, where_, request);
   const ActingLimit limit = design ? limit_of(*design, design->first) : ActingLimit{NAN, NAN, "not known"};
-  trade_.rows.push_back(row_with("rate", for_people(rate_hz, Dimension::frequency),
-                                 best.error(*prepared, *setup, counts), best.forces(), *prepared, limit));
-  trade_.rows.back().row.per = "ms";
-  trade_.rows.back().row.note = design ? "measured only: a force is held for a tick, so at the edge of a "
-                                         "patch the error is the whole force"
-                                       : design.error().what;
-  counts_.push_back(std::make_unique<CountRows>(std::move(counts[counts.size() / 2])));
-  timed_.push_back({std::move(*prepared), *setup, counts_.back().get()});
+  SceneTradeRow row =
+      row_with("rate", choice, best.error(*prepared, *setup, counts), best.forces(), *prepared, limit);
+  row.row.per = "ms";
+  row.row.note = design ? "measured only: a force is held for a tick, so at the edge of a patch the error is "
+                          "the whole force"
+                        : design.error().what;
+  const auto strokes = timed_strokes(scene_.patches, device);
+  counts_.push_back(std::make_unique<CountRows>(path_counts(strokes[strokes.size() / 2], device, rate_hz)));
+  add_timed(std::move(row), {std::move(*prepared), *setup, counts_.back().get()});
   return {};
 }
 
-// On a device with one rate there is no choice.
+// On a device with one rate there is no choice. The reference is that of the largest rate at which the scene
+// can be prepared.
 Result<void> SceneTrader::add_rates(const std::vector<AxisPaths>& paths) {
   const schema::Device& device = request_.design.device;
   if (device.rates_hz.size() < 2) return {};
-  const double most_hz = device.rates_hz.back();
+  std::vector<Result<PreparedScene>> prepared;
+  double most_hz = trade_.rate_hz;
+  for (const double rate_hz : device.rates_hz) {
+    prepared.push_back(playback::prepare_scene(scene_, where_, device, rate_hz, request_.design.hand));
+    if (prepared.back()) most_hz = std::max(most_hz, rate_hz);
+  }
   std::optional<SceneBench> finest;
   if (trade_.rate_hz < most_hz) {
     const auto setup = playback::force_setup_of(device, most_hz);
     TACTO_TRY(setup);
-    auto prepared = playback::prepare_scene(scene_, where_, device, most_hz, request_.design.hand);
-    TACTO_TRY(prepared);
-    finest.emplace(scene_, std::move(*prepared), *setup, device, paths);
+    const auto at = std::ranges::find(device.rates_hz, most_hz) - device.rates_hz.begin();
+    finest.emplace(scene_, *prepared[static_cast<std::size_t>(at)], *setup, device, paths);
   }
   const SceneBench& best = finest ? *finest : bench_;
-  for (const double rate_hz : device.rates_hz) TACTO_TRY(add_rate(rate_hz, paths, best));
+  for (std::size_t i = 0; i < prepared.size(); ++i)
+    TACTO_TRY(add_rate(device.rates_hz[i], paths, std::move(prepared[i]), best));
   return {};
 }
 
 void SceneTrader::measure_costs() {
   const auto costs_ns = tick_costs_ns(timed_);
   for (std::size_t i = 0; i < costs_ns.size(); ++i) {
-    TradeRow& row = trade_.rows[i].row;
+    TradeRow& row = trade_.rows[timed_rows_[i]].row;
     row.cost_ns = costs_ns[i] * (row.per == "ms" ? 1e-3 * double{timed_[i].setup.rate_hz} : 1);
   }
 }
@@ -394,7 +464,14 @@ Result<void> SceneTrader::choose() {
     patches[knob.patch].layers[knob.index] = choice.scene.patches[knob.patch].layers[knob.index] =
         chosen.layer;
     choice.changed.push_back(fmt::format("{}: {}", knob.name, chosen.choice));
+    chosen.layer.visit([&](const schema::GroovesLayer& /*grooves*/) { choice.is_for_loop = true; },
+                       [](const auto& /*other*/) {});
   }
+  if (!choice.changed.empty())
+    if (const auto fixed = fix_added_dampers(choice.scene, bench_.patches()); !fixed.empty()) {
+      choice.changed.push_back(fmt::format("added dampers are fixed: {}", fmt::join(fixed, ", ")));
+      choice.is_for_loop = true;
+    }
   schema::Scene scene = scene_;
   scene.patches = std::move(patches);
   const auto design = design_scene(scene, where_, request_.design);
@@ -411,7 +488,7 @@ SceneTrade SceneTrader::finished() {
       const schema::ForceLayer& layer = patches[i].layers[j];
       const bool has_knob = std::ranges::any_of(
           promise_.knobs(), [&](const LayerKnob& knob) { return knob.patch == i && knob.index == j; });
-      if (!has_knob && schema::file_of(layer).empty())
+      if (!has_knob && schema::file_of(layer).empty() && !schema::is_added(layer))
         trade_.without_choice.push_back(fmt::format("{} {} of '{}'", type_of(layer), j, patches[i].name));
     }
   trade_.not_promised = static_cast<std::size_t>(std::ranges::count_if(

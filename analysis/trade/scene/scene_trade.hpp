@@ -22,8 +22,9 @@ struct SceneTradeRequest {
 
 struct SceneTradeRow {
   TradeRow row;
-  double error_n = 0,
-         error_rms_n = 0;  ///< of the difference from the reference along the paths: largest, RMS
+  /// Of the difference from the reference along the paths: largest, RMS; NaN, with all numbers of the row, at
+  /// a rate at which the scene cannot be prepared.
+  double error_n = 0, error_rms_n = 0;
   /// The same for any path, at any speed up to kFastestHandMps; NaN: not promised, measured only.
   double promised_n = std::numeric_limits<double>::quiet_NaN();
   double stiffness_n_per_m = 0, limit_n_per_m = 0;  ///< of all layers that act there; NaN: not known
@@ -38,12 +39,17 @@ struct SceneChoice {
   double tick_s = 0;  ///< of the most expensive path
   std::size_t bytes = 0;
   std::string verdict;  ///< of the worst layer
+  /// Filters or added dampers are numbers now, chosen for this device, rate and hand.
+  bool is_for_loop = false;
 };
 
 struct SceneTrade {
   std::string scene, device, machine;
+  std::string hand;     ///< or that nothing holds the device
+  std::string assumed;  ///< of the places of patches; empty: there is one patch
   double rate_hz = 0;
   std::string paths;           ///< along which the errors are measured
+  std::string timed_along;     ///< the paths of the costs
   double largest_force_n = 0;  ///< of the reference along them
   double rounding_n = 0;       ///< what can be promised of the scene as it is
   std::vector<SceneTradeRow> rows;
@@ -55,10 +61,10 @@ struct SceneTrade {
 /// Knobs: those of layer_knobs(); "finest level" of each height map and texture (its levels from the second,
 /// third, fifth on: half an octave, one and two octaves of its highest frequencies are left out);
 /// "rate" of the device. Of a layer the reference is ExactScene of the scene as it is, at the request's rate;
-/// of the rate it is ExactScene at the device's largest rate, and forces are held from tick to tick. All
-/// forces are those before the limits of the device. Cost: of a tick of the whole scene, of the rate per ms
-/// of playing; memory: the block and the kernel's state. The stiffness and its limit are those of
-/// design_scene().
+/// of the rate it is ExactScene at the device's largest rate at which the scene can be prepared, and forces
+/// are held from tick to tick. All forces are those before the limits of the device. Cost: of a tick of the
+/// whole scene along strokes_over(), of the rate per ms of playing; memory: the block and the kernel's state.
+/// The stiffness and its limit are those of design_scene().
 ///
 /// With max_error_n or max_tick_s it chooses members of layers: step by step the one that saves most time for
 /// the force that it changes, as long as the sum over the layers that act together, rounding included, keeps

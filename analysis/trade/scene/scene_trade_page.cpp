@@ -22,10 +22,37 @@ namespace {
 using schema::Dimension;
 using schema::for_people;
 
+bool is_unstable_row(const SceneTradeRow& row) {
+  return row.verdict == to_string(Stability::unstable);
+}
+
+// An unstable row is not compared with others: it is no choice.
 std::vector<TradeRow> trade_rows(const SceneTrade& trade) {
   std::vector<TradeRow> rows;
-  for (const SceneTradeRow& each : trade.rows) rows.push_back(each.row);
+  for (const SceneTradeRow& each : trade.rows) {
+    rows.push_back(each.row);
+    if (is_unstable_row(each)) rows.back().error = kNotMeasured;
+  }
   return rows;
+}
+
+// As plain_answers(), with the unstable choices among those that are never worth it.
+std::vector<PlainAnswer> scene_answers(const SceneTrade& trade) {
+  const auto rows = trade_rows(trade);
+  auto answers = plain_answers(rows);
+  for (PlainAnswer& answer : answers) {
+    std::vector<std::string> unstable;
+    for (const SceneTradeRow& row : trade.rows)
+      if (row.row.knob == answer.knob && is_unstable_row(row))
+        unstable.push_back(row.row.choice + " (unstable)");
+    if (answer.knee_row) answer.knee = rows[*answer.knee_row].choice;
+    if (unstable.empty()) continue;
+    if (!answer.knee_row) answer.knee = "no best choice";
+    const std::string others = answer.never_worth_it > 0 ? answer.never + "; " : "";
+    answer.never = others + fmt::format("{}", fmt::join(unstable, "; "));
+    answer.never_worth_it += unstable.size();
+  }
+  return answers;
 }
 
 // Keys and SI values; NaN: nothing.
@@ -43,7 +70,7 @@ TradeCells trade_cells(const SceneTradeRow& row, const Worth& worth) {
           {"stiffness_n_per_m", row.stiffness_n_per_m},
           {"limit_n_per_m", row.limit_n_per_m},
           {"stability", row.verdict},
-          {"worth_it", worth_words(worth)},
+          {"worth_it", is_unstable_row(row) ? "never: unstable" : worth_words(worth)},
           {"note", row.row.note}};
 }
 
@@ -65,33 +92,42 @@ cli::Report report_row(const TradeCells& cells) {
 
 std::string best_of(const SceneTrade& trade) {
   std::string words;
-  for (const PlainAnswer& answer : plain_answers(trade_rows(trade)))
+  for (const PlainAnswer& answer : scene_answers(trade))
     if (answer.knee_row)
-      words += fmt::format("{}{}: {}", words.empty() ? "" : "; ", answer.knob,
-                           trade.rows[*answer.knee_row].row.choice);
+      words += fmt::format("{}{}: {}", words.empty() ? "" : "; ", answer.knob, answer.knee);
   return words.empty() ? "no best choice" : words;
 }
+
+constexpr const char* kChosenFor =
+    "filters and added dampers are numbers now, for this device, rate and hand";
 
 std::string scene_answer(const SceneTrade& trade) {
   if (!trade.chosen) return "best for its cost: " + best_of(trade);
   const SceneChoice& chosen = *trade.chosen;
   return fmt::format(
-      "{}: an error of at most {} at any place, a tick of {} on this computer",
+      "{}: an error of at most {} at any place{}, a tick of {} on this computer{}{}",
       chosen.changed.empty() ? "the scene as it is" : fmt::format("{}", fmt::join(chosen.changed, "; ")),
-      for_people(chosen.promised_n, Dimension::force), for_people(chosen.tick_s, Dimension::time));
+      for_people(chosen.promised_n, Dimension::force),
+      trade.assumed.empty() ? "" : " with the patches at their places",
+      for_people(chosen.tick_s, Dimension::time), chosen.is_for_loop ? "; " : "",
+      chosen.is_for_loop ? kChosenFor : "");
 }
 
 cli::Report trade_head(const SceneTrade& trade) {
   cli::Report head;
   head.add("answer", scene_answer(trade)).add("scene", trade.scene).add("device", trade.device);
+  head.add("hand", trade.hand);
   head.add("rate_hz", trade.rate_hz).add("machine", trade.machine).add("paths", trade.paths);
+  head.add("timed_along", trade.timed_along);
   head.add("largest_force_n", trade.largest_force_n).add("rounding_n", trade.rounding_n);
   if (trade.chosen) {
     const SceneChoice& chosen = *trade.chosen;
     head.add("changed", chosen.changed).add("promised_n", chosen.promised_n);
     head.add("error_n", chosen.error_n).add("tick_s", chosen.tick_s).add("memory_bytes", chosen.bytes);
     head.add("stability", chosen.verdict);
+    if (chosen.is_for_loop) head.add("chosen_for", kChosenFor);
   }
+  if (!trade.assumed.empty()) head.add("assumed", trade.assumed);
   head.add("not_promised", trade.not_promised);
   if (!trade.without_choice.empty())
     head.add("without_choice", fmt::format("{}", fmt::join(trade.without_choice, ", ")));
@@ -124,10 +160,10 @@ cli::Report scene_trade_report(const SceneTrade& trade) {
   const auto rows = trade_rows(trade);
   const auto worth = worth_of(rows);
   std::vector<cli::Report> answers, choices;
-  for (const PlainAnswer& answer : plain_answers(rows))
+  for (const PlainAnswer& answer : scene_answers(trade))
     answers.push_back(cli::Report()
                           .add("choice_of", answer.knob)
-                          .add("knee", answer.knee_row ? rows[*answer.knee_row].choice : answer.knee)
+                          .add("knee", answer.knee)
                           .add("never_worth_it", answer.never));
   for (std::size_t i = 0; i < rows.size(); ++i)
     choices.push_back(report_row(trade_cells(trade.rows[i], worth[i])));
@@ -154,7 +190,7 @@ std::vector<schema::ResultPicture> scene_trade_pictures(const SceneTrade& trade)
     std::vector<schema::ResultCurve> knees;
     for (std::size_t i = 0; i < trade.rows.size(); ++i) {
       const SceneTradeRow& row = trade.rows[i];
-      if (row.row.per != per) continue;
+      if (row.row.per != per || !row.row.is_judged()) continue;
       if (picture.curves.empty() || picture.curves.back().name != row.row.knob)
         picture.curves.push_back({row.row.knob, {}, {}, false, false});
       picture.curves.back().x.push_back(row.row.cost_ns);
