@@ -93,6 +93,7 @@ Report answers_report(const AnswersFit& all, const std::string& verdict) {
   Report report;
   report.add("verdict", verdict).add("level", all.table.columns.level).add("unit", all.table.unit);
   report.add("yes", all.table.columns.yes);
+  if (!all.table.simulated.empty()) report.add("simulated", all.table.simulated);
   std::vector<Report> rows;
   for (const FittedGroup& group : all.groups) rows.push_back(fit_row(all, group));
   report.add("fits", std::move(rows));
@@ -125,6 +126,7 @@ Report preferences_report(const FitOptions& o, const std::vector<ScaledGroup>& s
 Report brief_report(const Findings& findings) {
   Report report;
   for (const schema::ResultFigure& figure : findings.figures) report.add(figure.name, figure.value);
+  if (!findings.simulated.empty()) report.add("simulated", findings.simulated);
   if (findings.groups.size() < 3) return report;
   std::vector<Report> rows(findings.groups.size() - 1);
   for (std::size_t row = 0; row < rows.size(); ++row)
@@ -132,14 +134,15 @@ Report brief_report(const Findings& findings) {
   return report.add("fits", std::move(rows));
 }
 
-Result<std::string> picture_svg(const std::vector<schema::ResultPicture>& pictures) {
-  if (pictures.size() == 1) return spatial::to_svg(figure_of(pictures.front(), ""));
-  return schema::fail(ErrorKind::usage, fmt::format("there are {} pictures", pictures.size()), "--output",
-                      "name a page (.html), which shows all");
+Result<std::string> picture_svg(const Findings& findings) {
+  if (findings.pictures.size() == 1)
+    return spatial::to_svg(figure_of(findings.pictures.front(), findings.simulated));
+  return schema::fail(ErrorKind::usage, fmt::format("there are {} pictures", findings.pictures.size()),
+                      "--output", "name a page (.html), which shows all");
 }
 
 OutputKind svg_output(const Findings& findings) {
-  return {".svg", [](std::string_view) { return true; }, [&] { return picture_svg(findings.pictures); }};
+  return {".svg", [](std::string_view) { return true; }, [&] { return picture_svg(findings); }};
 }
 
 // Writes the outputs; `details` is for --json and results.
@@ -149,6 +152,7 @@ Result<Report> write_fit(const FitOptions& o, const Findings& findings, Report d
   results.inputs = {o.file};
   results.figures = findings.figures;
   results.pictures = findings.pictures;
+  results.simulated = findings.simulated;
   const OutputKind svg = svg_output(findings);
   TACTO_TRY(write_outputs(o.outputs, o.existing, std::move(results), details,
                           [&] { return findings_page(o.file, findings); }, {&svg, 1}));

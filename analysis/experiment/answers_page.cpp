@@ -306,19 +306,19 @@ std::vector<ResultPicture> preferences_pictures(const std::vector<ScaledGroup>& 
 }  // namespace
 
 Findings findings_of(const AnswersFit& all) {
-  return {answers_figures(all), answers_pictures(all), groups_table(all)};
+  return {answers_figures(all), answers_pictures(all), groups_table(all), all.table.simulated};
 }
 
 Findings findings_of(const std::vector<ScaledGroup>& scales) {
-  return {preferences_figures(scales), preferences_pictures(scales), {}};
+  return {preferences_figures(scales), preferences_pictures(scales), {}, {}};
 }
 
 schema::Result<std::string> findings_page(const std::string& file, const Findings& findings) {
-  const auto drawn = pictures_html(findings.pictures, "");
+  const auto drawn = pictures_html(findings.pictures, findings.simulated);
   TACTO_TRY(drawn);
   const std::string name = std::filesystem::path(file).filename().string();
   std::string body = fmt::format("<h1>Experiment: {}</h1>\n", escaped(name)) + answer(findings.verdict()) +
-                     figures_html(findings.figures) + *drawn;
+                     simulated_box(findings.simulated) + figures_html(findings.figures) + *drawn;
   if (!findings.groups.empty()) body += html_table(findings.groups);
   return html_document(fmt::format("{}: {}", name, findings.verdict()), body);
 }

@@ -21,6 +21,7 @@ struct Findings {
   std::vector<schema::ResultFigure> figures;     ///< the first is the verdict
   std::vector<schema::ResultPicture> pictures;   ///< one per person, or per group of preferences
   std::vector<std::vector<std::string>> groups;  ///< of fits: a head, then a row per group
+  std::string simulated;                         ///< by what, where an answer or a session is simulated
 
   const std::string& verdict() const { return figures.front().value; }
 };

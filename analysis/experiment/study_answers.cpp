@@ -2,6 +2,7 @@
 #include "analysis/experiment/study_answers.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -53,6 +54,19 @@ AnswerGroup<LevelCount> answers_of_run(const Run& run) {
   return group;
 }
 
+// By what a run is simulated: its answers, its device.
+void add_simulated(std::vector<std::string>& all, const Run& run) {
+  const auto add = [&](const std::string& what) {
+    if (std::ranges::find(all, what) == all.end()) all.push_back(what);
+  };
+  const schema::RunPlanned& plan = run.journal.plan;
+  if (!plan.observer.empty()) add(fmt::format("observer {} ({})", plan.observer, plan.participant));
+  for (const Attempt& attempt : run.queue.attempts())
+    if (attempt.judged)
+      for (const schema::IntervalFacts& facts : attempt.judged->intervals)
+        if (!facts.simulated.empty()) add(facts.simulated);
+}
+
 // Reads the file and writes it with a further line.
 Result<void> log_unblinding(const Study& study, std::size_t complete) {
   const std::string path = study.stem + ".unblinded.txt";
@@ -71,11 +85,15 @@ Result<AnswersTable> study_answers(const std::string& name, bool unblind) {
   TACTO_TRY(study);
   AnswersTable table;
   std::size_t complete = 0;
+  std::vector<std::string> simulated;
   for (const std::string& stem : runs_of(*study)) {
     const auto run = read_run(stem);
     TACTO_TRY(run);
     complete += run->queue.has_ended();
-    if (auto group = answers_of_run(*run); !group.rows.empty()) table.groups.push_back(std::move(group));
+    auto group = answers_of_run(*run);
+    if (group.rows.empty()) continue;
+    table.groups.push_back(std::move(group));
+    add_simulated(simulated, *run);
   }
   if (table.groups.empty())
     return fail(ErrorKind::unsuitable, "has no answers yet", study->stem, "run it first");
@@ -90,6 +108,7 @@ Result<AnswersTable> study_answers(const std::string& name, bool unblind) {
   table.columns.by = {"participant"};
   table.columns.level = table.level_name = "stretch";
   table.columns.yes = "seemed longer";
+  table.simulated = fmt::format("{}", fmt::join(simulated, "; "));
   return table;
 }
 

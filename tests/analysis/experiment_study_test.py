@@ -174,6 +174,8 @@ def the_answers_are_fitted():
     report = tacto.run_json("experiment", "analyse", "more", "--unblind", "-o", "more.html")
     assert pathlib.Path("more.unblinded.txt").read_text().count("\n") == 1 and pathlib.Path("more.html").exists()
     assert [fit["participant"] for fit in report["fits"]] == ["P01", "P02"]
+    for origin in ("observer weber=25%,seed=4 (P01)", "observer weber=30%,seed=4 (P02)", "emulated device"):
+        assert origin in report["simulated"] and origin in pathlib.Path("more.html").read_text(), report["simulated"]
     # The same counts from the table of trials, by the fit of tables.
     with open("counts.csv", "w") as file:
         print("participant,stretch,longer,n", file=file)
@@ -184,6 +186,7 @@ def the_answers_are_fitted():
                 print(f"{participant},{level},{longer},{len(rows)}", file=file)
     fits = tacto.run_json("experiment", "fit", "counts.csv", "--by", "participant")["fits"]
     assert fits == report["fits"]
+    assert "simulated" not in tacto.run_json("experiment", "fit", "counts.csv", "--by", "participant")
     for fit, weber in zip(fits, (0.25, 0.30)):  # the truth is in the interval
         assert fit["jnd_low"] < weber < fit["jnd_high"] and fit["pse_low"] < 0 < fit["pse_high"], fit
 
