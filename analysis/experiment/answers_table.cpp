@@ -187,7 +187,7 @@ Result<AnswersTable> read_answers(const std::string& file, const AnswerColumns& 
   const auto table = read_table(std::move(*source), *numbers, *by);
   TACTO_TRY(table);
   const auto words = level_in_words(table->source, numbers->front());
-  AnswersTable answers{*used, words.name, words.unit, {}};
+  AnswersTable answers{*used, words.name, words.unit, {}, {}};
   for (std::size_t row = 0; row < table->rows.size(); ++row) {
     const auto count = level_count(*table, row, *used);
     TACTO_TRY(count);
