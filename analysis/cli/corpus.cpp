@@ -172,30 +172,14 @@ cli::Action declare_status(CLI::App& app) {
   return [study, verify, verb] { return run_status(*study, *verify, verb->count("--json") > 0); };
 }
 
-struct Part {
-  const char *name, *summary;
-  cli::Action (*declare)(CLI::App& app);
-};
-
-constexpr Part kParts[] = {
+constexpr cli::VerbPart kParts[] = {
     {"init", "Write the plan: recordings with their checksums, steps and options", declare_init},
     {"run", "Compute what is missing; a recording that fails is noted and stops nothing", declare_run},
     {"status", "What is done, missing or failed, and why; exit code 5 unless all is done", declare_status},
 };
 
 cli::Action declare_corpus(CLI::App& app) {
-  auto actions = std::make_shared<std::vector<std::pair<CLI::App*, cli::Action>>>();
-  for (const Part& part : kParts) {
-    CLI::App* const one = app.add_subcommand(part.name, part.summary);
-    actions->emplace_back(one, part.declare(*one));
-    one->fallthrough();  // --json and --rows are options of the verb
-  }
-  app.require_subcommand(1);
-  return [actions]() -> Result<Report> {
-    for (const auto& [one, action] : *actions)
-      if (one->parsed()) return action();
-    return schema::fail(ErrorKind::usage, "its part is missing", "corpus", "give init, run or status");
-  };
+  return cli::declare_parts(app, kParts);
 }
 
 }  // namespace

@@ -125,10 +125,7 @@ void add_adaptive(schema::Scene& scene, const std::string& file, const DesignReq
   if (added) return;
   cli::warn(schema::message(added.error()));
   for (schema::Patch& patch : scene.patches)
-    for (schema::ForceLayer& layer : patch.layers)
-      layer.visit([]<class L>(L& of) {
-        if constexpr (requires { of.adaptive = false; }) of.adaptive = false;
-      });
+    for (schema::ForceLayer& layer : patch.layers) clear_adaptive(layer);
 }
 
 Result<Report> run_design(const DesignVerbOptions& o) {

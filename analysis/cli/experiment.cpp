@@ -269,12 +269,7 @@ cli::Action declare_analyse(CLI::App& app) {
   return [options, verb] { return run_analyse(*options, verb->count("--json") > 0); };
 }
 
-struct ExperimentPart {
-  const char *name, *summary;
-  cli::Action (*declare)(CLI::App& app);
-};
-
-constexpr ExperimentPart kExperimentParts[] = {
+constexpr cli::VerbPart kExperimentParts[] = {
     {"new", "Write a protocol, its stimuli under codes, and the key of the codes", declare_new_study},
     {"check", "Check a study's files: protocol, key, stimuli", declare_check_study},
     {"run", "Run a study with one participant, or with a simulated observer", declare_run_study},
@@ -285,18 +280,7 @@ constexpr ExperimentPart kExperimentParts[] = {
 };
 
 cli::Action declare_experiment(CLI::App& app) {
-  auto actions = std::make_shared<std::vector<std::pair<CLI::App*, cli::Action>>>();
-  for (const ExperimentPart& part : kExperimentParts) {
-    CLI::App* const one = app.add_subcommand(part.name, part.summary);
-    actions->emplace_back(one, part.declare(*one));
-    one->fallthrough();  // --json and --rows are options of the verb
-  }
-  app.require_subcommand(1);
-  return [actions]() -> Result<Report> {
-    for (const auto& [one, action] : *actions)
-      if (one->parsed()) return action();
-    return schema::fail(ErrorKind::usage, "the part is missing", "experiment", "give new, check, run ...");
-  };
+  return cli::declare_parts(app, kExperimentParts);
 }
 
 }  // namespace

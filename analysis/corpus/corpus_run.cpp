@@ -263,10 +263,10 @@ class CorpusRun {
       batch.swap(waiting_);
       batch_since_ = Clock::now();
     }
-    publish(std::move(batch));
+    publish(batch);
   }
 
-  void publish(std::vector<MadeUnit> batch) {
+  void publish(const std::vector<MadeUnit>& batch) {
     if (batch.empty()) return;
     if (const auto synced = sync_file_system(options_.study); !synced) return keep(synced);
     for (const MadeUnit& unit : batch) keep(publish(unit));

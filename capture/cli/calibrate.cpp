@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "capture/cli/calibrate_parts.hpp"
 #include "capture/cli/verbs.hpp"
 
 namespace tacto::capture {
 namespace {
 
-struct Way {
-  const char *name, *summary;
-  cli::Action (*declare)(CLI::App& app);
-};
-
-constexpr Way kWays[] = {
+constexpr cli::VerbPart kWays[] = {
     {"tare", "Without any contact: offset, noise floor and mains of each force channel", declare_tare},
     {"force", "Force scale: by known weights on a load cell, or of the piezo against a load cell",
      declare_force},
@@ -22,18 +13,7 @@ constexpr Way kWays[] = {
 };
 
 cli::Action declare_calibrate(CLI::App& app) {
-  auto actions = std::make_shared<std::vector<std::pair<CLI::App*, cli::Action>>>();
-  for (const Way& way : kWays) {
-    CLI::App* const one = app.add_subcommand(way.name, way.summary);
-    actions->emplace_back(one, way.declare(*one));
-  }
-  app.require_subcommand(1);
-  return [actions]() -> schema::Result<cli::Report> {
-    for (const auto& [one, action] : *actions)
-      if (one->parsed()) return action();
-    return schema::fail(schema::ErrorKind::usage, "the calibration is missing", "calibrate",
-                        "give tare, force or encoder");
-  };
+  return cli::declare_parts(app, kWays);
 }
 
 }  // namespace

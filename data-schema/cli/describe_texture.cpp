@@ -88,29 +88,13 @@ void add_certificate(Report& report, const std::optional<Certificate>& certifica
   report.add("undecided_peaks", count(PeakVerdict::undecided));
 }
 
-struct StepFigure {
-  const char* key;
-  std::optional<double> TransformStep::*member;
-};
-
-constexpr StepFigure kStepFigures[] = {
-    {"factor", &TransformStep::factor},
-    {"period_m", &TransformStep::period_m},
-    {"joint_error", &TransformStep::joint_error},
-    {"low_per_m", &TransformStep::low_per_m},
-    {"high_per_m", &TransformStep::high_per_m},
-    {"removed_above_per_m", &TransformStep::removed_above_per_m},
-    {"removed_share", &TransformStep::removed_share},
-    {"left_out_m", &TransformStep::left_out_m},
-};
-
 Report step_row(const TransformStep& step) {
   Report row;
   row.add("operation", operation_name(step.operation));
   if (step.keep_slope) row.add("keep_slope", *step.keep_slope);
   if (step.lengthening) row.add("lengthening", lengthening_name(*step.lengthening));
   if (step.joints) row.add("joints", *step.joints);
-  for (const auto& [key, member] : kStepFigures)
+  for (const auto& [key, member] : kTransformNumbers)
     if (step.*member) row.add(key, *(step.*member));
   return row;
 }

@@ -71,6 +71,24 @@ std::size_t choose(const std::string& option, const std::string& word,
   return static_cast<std::size_t>(found - words.begin());
 }
 
+Action declare_parts(CLI::App& app, std::span<const VerbPart> parts) {
+  auto actions = std::make_shared<std::vector<std::pair<CLI::App*, Action>>>();
+  std::vector<std::string> names;
+  for (const VerbPart& part : parts) {
+    CLI::App* const one = app.add_subcommand(part.name, part.summary);
+    actions->emplace_back(one, part.declare(*one));
+    one->fallthrough();
+    names.emplace_back(part.name);
+  }
+  app.require_subcommand(1);
+  return [actions, names, &app]() -> schema::Result<Report> {
+    for (const auto& [one, action] : *actions)
+      if (one->parsed()) return action();
+    return schema::fail(schema::ErrorKind::usage, "its part is missing", app.get_name(),
+                        "give one of: " + words_of(names));
+  };
+}
+
 void explain_strokes(CLI::App& app) {
   app.footer(app.get_footer() + fmt::format("\nA stroke is {}.", schema::kStrokeRule));
 }

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,6 +30,16 @@ struct Verb {
   std::string_view example;  ///< shown by --help; one or more command lines
   Action (*declare)(CLI::App& app);
 };
+
+/// A part of a verb, as `init` of `corpus`: declared and run like a verb.
+struct VerbPart {
+  const char *name, *summary;
+  Action (*declare)(CLI::App& app);
+};
+
+/// Declares the parts as subcommands, of which one must be given; runs that one. They accept --json and
+/// --rows of the verb behind their own options, too.
+Action declare_parts(CLI::App& app, std::span<const VerbPart> parts);
 
 /// An option that takes a number with a unit of `dimension`; bare numbers are refused by name of the fitting
 /// units.

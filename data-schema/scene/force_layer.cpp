@@ -2,6 +2,7 @@
 #include "data-schema/scene/force_layer.hpp"
 
 #include <array>
+#include <type_traits>
 
 #include "data-schema/scene/force_layer_members.hpp"
 #include "data-schema/scene/patch.hpp"
@@ -47,6 +48,12 @@ bool is_adaptive(const ForceLayer& layer) {
   return layer.visit([]<class L>(const L& of) {
     if constexpr (MayBeAdaptive<L>) return of.adaptive;
     return false;
+  });
+}
+
+void clear_adaptive(ForceLayer& layer) {
+  layer.visit([]<class L>(L& of) {
+    if constexpr (MayBeAdaptive<L> && !std::is_const_v<L>) of.adaptive = false;
   });
 }
 

@@ -171,6 +171,8 @@ std::vector<NamedLayerNumber> numbers_of(const ForceLayer& layer);
 
 /// Whether the layer has `adaptive`, and it is true.
 bool is_adaptive(const ForceLayer& layer);
+/// Makes `adaptive` of a layer that has it false.
+void clear_adaptive(ForceLayer& layer);
 
 /// Whether the layer is not in the file, but was added for adaptive layers.
 bool is_added(const ForceLayer& layer);

@@ -41,6 +41,22 @@ struct TransformStep {
       std::nullopt;  ///< stretch, mix: length of source that is not in the result
 };
 
+/// The numbers of a step under their names in files and reports.
+struct TransformNumber {
+  const char* name;
+  std::optional<double> TransformStep::*member;
+};
+inline constexpr TransformNumber kTransformNumbers[] = {
+    {"factor", &TransformStep::factor},
+    {"period_m", &TransformStep::period_m},
+    {"joint_error", &TransformStep::joint_error},
+    {"low_per_m", &TransformStep::low_per_m},
+    {"high_per_m", &TransformStep::high_per_m},
+    {"removed_above_per_m", &TransformStep::removed_above_per_m},
+    {"removed_share", &TransformStep::removed_share},
+    {"left_out_m", &TransformStep::left_out_m},
+};
+
 struct TextureTransform {
   std::vector<TransformSource> sources;
   std::vector<TransformStep> steps;  ///< in this order

@@ -12,22 +12,6 @@ namespace {
 constexpr std::array<const char*, 4> kOperations = {"stretch", "gain", "mix", "filter"};
 constexpr std::array<const char*, 2> kLengthenings = {"periods", "best_fit"};
 
-struct StepNumber {
-  const char* name;
-  std::optional<double> TransformStep::*member;
-};
-
-constexpr StepNumber kStepNumbers[] = {
-    {"factor", &TransformStep::factor},
-    {"period_m", &TransformStep::period_m},
-    {"joint_error", &TransformStep::joint_error},
-    {"low_per_m", &TransformStep::low_per_m},
-    {"high_per_m", &TransformStep::high_per_m},
-    {"removed_above_per_m", &TransformStep::removed_above_per_m},
-    {"removed_share", &TransformStep::removed_share},
-    {"left_out_m", &TransformStep::left_out_m},
-};
-
 // The word's place in the list; the schema allows no other words.
 template <class Word, std::size_t kCount>
 Word word_from(const std::array<const char*, kCount>& words, const std::string& text) {
@@ -37,7 +21,7 @@ Word word_from(const std::array<const char*, kCount>& words, const std::string& 
 
 Json step_body(const TransformStep& step) {
   Json body = {{"operation", operation_name(step.operation)}};
-  for (const auto& [name, member] : kStepNumbers)
+  for (const auto& [name, member] : kTransformNumbers)
     if (step.*member) body[name] = *(step.*member);
   if (step.keep_slope) body["keep_slope"] = *step.keep_slope;
   if (step.lengthening) body["lengthening"] = lengthening_name(*step.lengthening);
@@ -49,7 +33,7 @@ Json step_body(const TransformStep& step) {
 TransformStep step_from(const Json& body) {
   TransformStep step;
   step.operation = word_from<TransformOperation>(kOperations, text_or(body, "operation"));
-  for (const auto& [name, member] : kStepNumbers)
+  for (const auto& [name, member] : kTransformNumbers)
     if (body.contains(name)) step.*member = body[name].get<double>();
   if (body.contains("keep_slope")) step.keep_slope = body["keep_slope"].get<bool>();
   if (body.contains("lengthening"))

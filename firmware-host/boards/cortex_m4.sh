@@ -12,5 +12,5 @@ exec "${CLANGXX:-clang++-16}" --target=thumbv7em-none-eabihf -mcpu=cortex-m4 -mf
   -ffreestanding -nostdlibinc -nostdlib -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno -ffp-contract=off \
   -ffunction-sections -fdata-sections -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion \
   -Wframe-larger-than=768 -Werror -DTACTO_VERSION="\"$version\"" -I"$root" \
-  $(find "$root/firmware-host/core" -name '*.cpp' | sort) "$@" \
+  $(find "$root/firmware-host/core" -name '*.cpp' | sort) "$root/firmware-host/boards/implicit_calls.cpp" "$@" \
   -fuse-ld=lld -Wl,--gc-sections -Wl,-e,reset_handler -Wl,-T,"$memory" -o "$out"

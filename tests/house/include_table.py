@@ -33,6 +33,7 @@ MAY_INCLUDE = {
     "data-schema/transducer": "data-schema/{base json}",
     "data-schema/wav": "data-schema/{base files}",
     "firmware-host": "data-schema/base firmware-host/{link replay sim/device sim/physics sim/planar tty usb}",
+    "firmware-host/boards": "",
     "firmware-host/boards/stm32f405": "firmware-host/core/{firmware wire}",
     "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
     "firmware-host/core/firmware": "firmware-host/{core/kernel core/scene core/wire}",

@@ -42,10 +42,7 @@ void put_layer(std::vector<schema::Patch>& patches, const std::string& patch, st
 
 void leave_out_adaptive(schema::Scene& scene) {
   for (schema::Patch& patch : scene.patches)
-    for (schema::ForceLayer& layer : patch.layers)
-      layer.visit([]<class L>(L& of) -> void {
-        if constexpr (requires { of.adaptive; }) of.adaptive = false;
-      });
+    for (schema::ForceLayer& layer : patch.layers) clear_adaptive(layer);
 }
 
 // Appends the dampers that adaptive layers added to these patches, which are in the order of the scene, as
