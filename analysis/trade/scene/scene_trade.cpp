@@ -289,7 +289,7 @@ Result<void> SceneTrader::add_layers() {
       SceneTradeRow row = row_with(knob.name, knob.choices[place].choice, bench_.error(changed),
                                    bench_.forces(), changed, *limit);
       row.promised_n = promise_.error_n(places);
-      if (place == 0) row.row.note = "as it is";
+      if (place == 0) row.row.note = kAsItIs;
       add_timed(std::move(row), bench_.timed(std::move(changed), knob.patch));
     }
   }
@@ -327,7 +327,7 @@ Result<void> SceneTrader::add_levels_of(std::size_t patch, std::size_t index) {
     TACTO_TRY(limit);
     SceneTradeRow row =
         row_with(fmt::format("finest level of {} '{}'", type_of(layer), file),
-                 left_out == 0 ? "as it is"
+                 left_out == 0 ? kAsItIs
                                : fmt::format("{:g} octave{} coarser", 0.5 * static_cast<double>(left_out),
                                              left_out > 2 ? "s" : ""),
                  bench_.error(changed), bench_.forces(), changed, *limit);

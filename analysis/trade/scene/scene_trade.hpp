@@ -20,6 +20,9 @@ struct SceneTradeRequest {
   std::optional<double> max_error_n = std::nullopt, max_tick_s = std::nullopt;
 };
 
+/// In the row that is the scene as its file has it.
+inline constexpr const char* kAsItIs = "as it is";
+
 struct SceneTradeRow {
   TradeRow row;
   /// Of the difference from the reference along the paths: largest, RMS; NaN, with all numbers of the row, at

@@ -5,7 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 #include <variant>
 
@@ -144,7 +146,7 @@ constexpr const char* kSceneTradeNotes =
     "<p><em>Error</em>: the largest difference of the force from the reference in double precision, along "
     "the paths, and its RMS. <em>Promised</em>: the largest difference at any place and speed, with the "
     "worse ends of the "
-    "sliders and the patches in their places; empty where it is measured only. Both are of the force before "
+    "sliders and the patches at their places; - where it is measured only. Both are of the force before "
     "the limits of the device. <em>Cost</em>: CPU time on this computer, of a tick of the whole scene, of a "
     "rate per ms of playing. <em>Memory</em>: the scene's block and the kernel's state. <em>Stiffness</em> "
     "and <em>limit</em>: of all layers that act there, and the largest stable one, as design computes it; of "
@@ -226,25 +228,48 @@ std::string scene_trade_csv(const SceneTrade& trade) {
   return csv + '\n';
 }
 
+// A table for each knob; what its rows have in common stands once, above it or below it.
+std::string knob_tables(const SceneTrade& trade) {
+  constexpr std::array<std::string_view, 3> kOnce = {"choice_of", "per", "note"};
+  std::vector<std::string> keys = column_keys();
+  std::erase_if(keys, [&](const std::string& key) { return std::ranges::find(kOnce, key) != kOnce.end(); });
+  const auto worth = worth_of(trade_rows(trade));
+  std::string html;
+  for (std::size_t from = 0, to = 0; from < trade.rows.size(); from = to) {
+    const TradeRow& first = trade.rows[from].row;
+    std::vector<std::string> notes;
+    std::vector<std::map<std::string, std::string>> rows;
+    for (; to < trade.rows.size() && trade.rows[to].row.knob == first.knob; ++to) {
+      auto& row = rows.emplace_back();
+      for (const auto& [key, value] : trade_cells(trade.rows[to], worth[to])) {
+        const double* const number = std::get_if<double>(&value);
+        row[key] = number == nullptr        ? std::get<std::string>(value)
+                   : std::isfinite(*number) ? cli::cell_text(key, *number)
+                                            : "-";
+      }
+      const std::string& note = trade.rows[to].row.note;
+      if (note == kAsItIs)
+        row["choice"] += fmt::format(" ({})", note);
+      else if (!note.empty() && std::ranges::find(notes, note) == notes.end())
+        notes.push_back(note);
+    }
+    html += fmt::format("<h3>{}, cost in ns per {}</h3>\n", escaped(first.knob), first.per);
+    html += html_table(cli::labels_of(keys), rows.size(),
+                       [&](std::size_t row, std::size_t column) { return rows[row].at(keys[column]); });
+    for (const std::string& note : notes) html += fmt::format("<p>{}</p>\n", escaped(note));
+  }
+  return html;
+}
+
 schema::Result<std::string> scene_trade_page(const SceneTrade& trade) {
   const auto drawn = pictures_html(scene_trade_pictures(trade), "");
   TACTO_TRY(drawn);
   std::vector<schema::ResultFigure> figures = scene_trade_figures(trade);
   std::erase_if(figures, [](const auto& figure) { return figure.name == "answer"; });
-  const auto worth = worth_of(trade_rows(trade));
-  std::vector<TradeCells> rows;
-  for (std::size_t i = 0; i < trade.rows.size(); ++i) rows.push_back(trade_cells(trade.rows[i], worth[i]));
-  const auto cell = [&](std::size_t row, std::size_t column) {
-    const auto& [key, value] = rows[row][column];
-    if (const auto* text = std::get_if<std::string>(&value)) return *text;
-    const double number = std::get<double>(value);
-    return std::isfinite(number) ? cli::cell_text(key, number) : std::string("-");
-  };
   return html_document("Speed for accuracy: " + trade.scene,
                        fmt::format("<h1>{}</h1>\n", escaped(trade.scene + " on " + trade.device)) +
                            answer(scene_answer(trade)) + figures_html(figures) + *drawn +
-                           "<h2>Choices</h2>\n" +
-                           html_table(cli::labels_of(column_keys()), rows.size(), cell) + kSceneTradeNotes);
+                           "<h2>Choices</h2>\n" + knob_tables(trade) + kSceneTradeNotes);
 }
 
 }  // namespace tacto::analysis
