@@ -143,7 +143,7 @@ class CorpusRun {
       for (std::size_t i = 0; i < std::min(options_.jobs, chosen_.size()); ++i)
         workers.emplace_back([this] { work_through(); });
     }
-    publish(std::move(waiting_));
+    publish(waiting_);
     if (counts_.made > 0) keep(sync_file_system(options_.study));  // the new names
     counts_.recordings = chosen_.size();
     if (failure_) return tl::unexpected(*failure_);
