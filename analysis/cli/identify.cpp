@@ -40,7 +40,8 @@ void declare_source(CLI::App& app, IdentifyOptions& o) {
                  "A response (frequency_hz,amplitude_um_per_v,phase_deg, and if known noise_um_per_v), loops "
                  "(drive_v,displacement_um), taps, or a recording with both channels");
   app.add_option("-d,--device", o.device_uri, "Device: usb:, sim:tray_sensor=on ...");
-  app.add_option("-o,--output", o.stem, "Output, required: NAME.transducer.json");
+  app.add_option("-o,--output", o.stem,
+                 "Output, required except with --method contact: NAME.transducer.json");
   app.add_option("--start-from", o.base,
                  "Preset or file that the fit starts from; parameters that are not separately identifiable "
                  "keep its values");
@@ -55,10 +56,13 @@ void declare_source(CLI::App& app, IdentifyOptions& o) {
        {"multisine", IdentifyMethod::multisine},
        {"chirp", IdentifyMethod::chirp},
        {"loop", IdentifyMethod::loop},
-       {"taps", IdentifyMethod::taps}},
+       {"taps", IdentifyMethod::taps},
+       {"contact", IdentifyMethod::contact}},
       "Method. joint: a sine at each frequency and slow loops, fitted together, with the load that is on the "
       "tray (a finger that is added later reduces accuracy); sweep, multisine, chirp (nine times 1 s): only "
-      "the linear model; loop: only the hysteresis; taps: a sensor's ringing");
+      "the linear model; loop: only the hysteresis; taps: a sensor's ringing; contact: the "
+      "peak force of taps on a surface, from a table with a row for each tap (velocity_mps, peak_n, and if "
+      "known acceleration_mps2, grip_n), or the pulses of their force over time");
 }
 
 void declare_model(CLI::App& app, IdentifyOptions& o) {
@@ -431,6 +435,7 @@ schema::Result<void> check_named(const std::string& stem, const std::string& res
 }
 
 Result<Report> run_identify(const IdentifyOptions& o) {
+  if (o.method == IdentifyMethod::contact) return identify_contact(o);
   TACTO_TRY(check_named(o.stem, o.results, o.picture));
   TACTO_TRY(check_names_free(o));
   auto asked = source_of(o);
@@ -465,7 +470,8 @@ const cli::Verb kIdentifyVerb{
     "  tactograph identify response.csv --start-from wiertlewski2011 -o mine\n"
     "  tactograph record -d sim:force=chirp,force_amplitude=30mN -o pull --time 8s\n"
     "  tactograph identify pull --input applied_force --output-channel tangential_force -o sensor\n"
-    "  tactograph identify impacts.csv --method taps --rate 100kHz -o sensor",
+    "  tactograph identify impacts.csv --method taps --rate 100kHz -o sensor\n"
+    "  tactograph identify taps.csv --method contact",
     declare_identify};
 
 }  // namespace tacto::analysis

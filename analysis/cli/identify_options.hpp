@@ -49,6 +49,8 @@ schema::Result<void> draw_identified(const IdentifyOptions& options, const spati
 schema::Result<cli::Report> with_identify_results(const IdentifyOptions& options,
                                                   const std::function<schema::Results()>& make,
                                                   cli::Report report);
+/// `--method contact`: describes taps and writes no file.
+schema::Result<cli::Report> identify_contact(const IdentifyOptions& options);
 /// Checks a response before and after its fit (plausibility.hpp).
 schema::Result<void> check_fitted(const IdentifyOptions& options, const ResponseFit& fit,
                                   const schema::Transducer& base);

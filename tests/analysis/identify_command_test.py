@@ -398,7 +398,39 @@ def a_sensor_by_a_known_force():
     tacto.run("identify", "tones", "--input", "net_force", "--output-channel", "tangential_force", "-o", "slow", code=5)
 
 
+def taps_on_a_surface():
+    """--method contact: NumPy's least squares and its errors without each tap; a bounce of a force over time."""
+    v, a, grip = -RNG.uniform(0.03, 0.25, 40), RNG.uniform(-6, 2, 40), RNG.uniform(0.5, 4, 40)
+    peak = 0.1 - 42 * v - 0.33 * a + 0.05 * grip + RNG.normal(0, 0.02, 40)
+    np.savetxt("peaks.csv", np.column_stack([v, a, grip, peak]), delimiter=",", comments="", fmt="%.17g",
+               header="velocity_mps,acceleration_mps2,grip_n,peak_n")
+    said = tacto.run_json("identify", "peaks.csv", "--method", "contact")
+    columns = np.column_stack([np.ones(40), -v, -a, grip])
+    by_numpy = np.linalg.lstsq(columns, peak, rcond=None)[0]
+    rows = [row for row in said["fits"] if row["inputs"] == said["best_inputs"]]
+    assert np.allclose([row["value"] for row in rows], by_numpy, rtol=1e-9), (rows, by_numpy)
+    left_out = []
+    for i in range(40):
+        others = np.arange(40) != i
+        left_out.append(peak[i] - columns[i] @ np.linalg.lstsq(columns[others], peak[others], rcond=None)[0])
+    assert abs(rows[0]["left_out_rms_n"] / np.sqrt(np.mean(np.square(left_out))) - 1) < 1e-9, rows[0]
+    # Half sines of 1 ms at 20 kHz; tap 7 comes down twice.
+    t = np.arange(400) / 20e3 - 5e-3
+    with open("force.csv", "w") as out:
+        out.write("tap,force_n\n")
+        for tap in range(1, 13):
+            pulse = tap * np.where((t > 0) & (t < 1e-3), np.sin(np.pi * t / 1e-3), 0)
+            if tap == 7:
+                pulse += np.where((t > 0.9e-3) & (t < 2.4e-3), 0.5, 0)
+            out.writelines(f"{tap},{value:.9g}\n" for value in pulse)
+    said = tacto.run_json("identify", "force.csv", "--method", "contact", "--rate", "20kHz")
+    assert said["double_taps"] == "7" and abs(said["shape_factor"] / (np.pi / 2) - 1) < 0.02, said
+    tacto.run("identify", "force.csv", "--method", "contact", code=2)
+    tacto.run("identify", "peaks.csv", "--method", "contact", "-o", "none", code=2)
+    tacto.run("identify", "-d", "sim:", "--method", "contact", code=2)
+
+
 for test in (table_one_comes_back, quick_methods_agree, scipy_finds_the_same, a_misfit_is_refused_unless_forced,
              hysteresis_is_written, loops_are_held_to_what_a_sweep_is, what_is_identified_is_undone, a_sensor_by_a_known_force, a_model_can_be_requested,
-             another_unit_is_named_with_its_option, intervals_are_printed_with_digits_that_show_them, bad_input_is_one_clear_error):
+             another_unit_is_named_with_its_option, intervals_are_printed_with_digits_that_show_them, bad_input_is_one_clear_error, taps_on_a_surface):
     tacto.in_folder(test)

@@ -14,7 +14,7 @@
 
 namespace tacto::analysis {
 
-enum class IdentifyMethod { sweep, multisine, chirp, loop, taps, joint };
+enum class IdentifyMethod { sweep, multisine, chirp, loop, taps, joint, contact };
 
 /// A response, and the drive of its measurement.
 struct DrivenResponse {
