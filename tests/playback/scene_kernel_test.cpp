@@ -511,6 +511,8 @@ TEST(SceneKernel, DryFrictionHoldsABodyAndThenBrakesIt) {
   const float rests_at_m = hand.state(4).place_m.x;
   for (int tick = 0; tick < 1000; ++tick) hand.tick(0.05, 0);
   EXPECT_EQ(hand.state(4).place_m.x, rests_at_m);
+  // The place has 24 bits: 400 N/m times 0.05 m times 2^-24 are 1.2e-6 N.
+  EXPECT_LT(hand.worst_n, 5e-6);
 }
 
 TEST(SceneKernel, ALassoOnlyPulls) {
@@ -534,6 +536,7 @@ TEST(SceneKernel, ALassoOnlyPulls) {
   }
   EXPECT_GT(pulls, 1000);
   EXPECT_GT(slack, 1000);
+  EXPECT_LT(hand.worst_n, 3e-4 * hand.largest_n);  // a swing through slack and taut enlarges rounding
 }
 
 TEST(SceneKernel, AMoverDragsTheHand) {
