@@ -43,7 +43,7 @@ void judge(JudgedLayer& layer, const DesignRequest& request, const std::string& 
   }
   if (unknown.empty()) return;
   layer.verdict = Stability::not_known;
-  layer.because = fmt::format("the stiffness of a layer of type {} is not computed", unknown);
+  layer.because = fmt::format("no method computes the stability with a layer of type {}", unknown);
 }
 
 // The layers that act together at a place, on the axis and at the end of the sliders nearest to the limit.

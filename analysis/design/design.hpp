@@ -32,7 +32,7 @@ struct DesignRequest {
 enum class Stability {
   stable,
   unstable,
-  not_known,   ///< beyond what is proved, or with a layer whose stiffness is not computed
+  not_known,   ///< beyond what is proved, or with a layer for which no method computes it
   not_reached  ///< outside the travel, or hidden
 };
 

@@ -24,7 +24,10 @@ constexpr int kGreys = 63;         // four tints of them and four colours withou
 
 std::uint8_t acts_of(const schema::ForceLayer& layer) {
   return layer.visit([](const schema::SpringLayer& /*spring*/) { return kActsSpring; },
+                     [](const schema::BodyLayer& /*body*/) { return kActsSpring; },
+                     [](const schema::LassoLayer& /*lasso*/) { return kActsSpring; },
                      [](const schema::DamperLayer& /*damper*/) { return kActsDamper; },
+                     [](const schema::MoverLayer& /*mover*/) { return kActsDamper; },
                      [](const auto& /*relief*/) { return kActsRelief; });
 }
 

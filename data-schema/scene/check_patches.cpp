@@ -37,7 +37,7 @@ Result<void> check_slider(const NamedLayerNumber& named, const std::string& wher
 
 // A mass that moves by itself has an acceleration: force / mass.
 Result<void> check_own_mass(const LayerNumber& mass_kg, const std::string& where) {
-  const double least_kg = mass_kg.slider ? mass_kg.slider->from : mass_kg.value;
+  const double least_kg = least_value(mass_kg);
   if (least_kg > 0) return {};
   return fail(ErrorKind::unsuitable,
               fmt::format("mass_kg is {:g}: a body and a lasso need a mass above 0", least_kg),

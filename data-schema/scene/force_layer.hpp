@@ -30,6 +30,11 @@ inline double largest_value(const LayerNumber& number) {
   return number.slider ? number.slider->to : number.value;
 }
 
+/// The lower end of its slider, or its value.
+inline double least_value(const LayerNumber& number) {
+  return number.slider ? number.slider->from : number.value;
+}
+
 // Lengths and directions are in the patch's axes, from its centre; a direction is an angle from the patch's x
 // axis towards its y axis. kappa_n is the force on a slope of 1: force = -kappa grad h. `extra_json` has the
 // members of a newer version. `adaptive`: where the layer is too stiff for the device, damping is added
@@ -108,7 +113,8 @@ struct MassLayer {
   std::string extra_json;
 };
 
-/// A brick: a mass with dry friction on its base, coupled to the hand by a spring and a damper.
+/// A brick: a mass with dry friction on its base, coupled to the hand by a spring and a damper. It is taken
+/// up at rest where the hand enters the patch.
 struct BodyLayer {
   LayerNumber mass_kg, stiffness_n_per_m;
   LayerNumber damping_n_s_per_m;
@@ -117,9 +123,10 @@ struct BodyLayer {
   std::string extra_json;
 };
 
-/// A mass on a spring that only pulls: its force is 0 up to length_m.
+/// A mass on a spring that only pulls: its force is 0 up to length_m. It is taken up as a body is.
 struct LassoLayer {
   LayerNumber mass_kg, stiffness_n_per_m, length_m;
+  LayerNumber damping_n_s_per_m;  ///< of the motion of the mass in the patch
   std::string extra_json;
 };
 

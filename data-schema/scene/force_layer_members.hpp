@@ -93,7 +93,8 @@ struct LayerMembers<LassoLayer> {
   static constexpr LayerMember<LassoLayer> kNumbers[] = {
       {"mass_kg", &LassoLayer::mass_kg},
       {"stiffness_n_per_m", &LassoLayer::stiffness_n_per_m},
-      {"length_m", &LassoLayer::length_m}};
+      {"length_m", &LassoLayer::length_m},
+      {"damping_n_s_per_m", &LassoLayer::damping_n_s_per_m}};
 };
 
 template <>

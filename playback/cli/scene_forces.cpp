@@ -17,6 +17,7 @@
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/player/placed_textures.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
+#include "playback/prepare/scene/body_motion.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/plane_render.hpp"
 
@@ -224,6 +225,16 @@ Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::si
         add_height_map(row, on.scene.reliefs.of(texture), double{on.setup.rate_hz});
       },
       [&](const schema::NoiseLayer& noise) { add_noise(row, noise, double{on.setup.rate_hz}); },
+      [&](const schema::BodyLayer& body) {
+        at_limit("force_limit_at_displacement_m", body.stiffness_n_per_m.value);
+        row.add("stiffest_coupling_n_per_m", stiffest_coupling_n_per_m(layer, on.scene.steps.tick_s));
+      },
+      [&](const schema::LassoLayer& /*lasso*/) {
+        row.add("stiffest_coupling_n_per_m", stiffest_coupling_n_per_m(layer, on.scene.steps.tick_s));
+      },
+      [&](const schema::MoverLayer& mover) {
+        at_limit("force_limit_at_speed_mps", mover.damping_n_s_per_m.value);
+      },
       [](const auto& /*other*/) {});
   return row;
 }

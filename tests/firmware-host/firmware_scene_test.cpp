@@ -61,7 +61,7 @@ TEST(FirmwareScene, AxesAreDescribedAfterTheWelcome) {
   ASSERT_EQ(bench.axes.size(), 1U);
   EXPECT_EQ(bench.axes[0].count, 2);
   EXPECT_EQ(bench.axes[0].axes[1].along, wire::AxisAlong::y);
-  EXPECT_EQ(bench.axes[0].scene_bytes, 10240U);  // 4096 words less 256 x (3 numbers + 3)
+  EXPECT_EQ(bench.axes[0].scene_bytes, 9600U);  // 4096 words less 256 x (3 numbers + 3), 16 x 10 of bodies
   EXPECT_NE(bench.welcomes[0].features & wire::kFeatureForces, 0U);
   EXPECT_EQ(bench.order[1], wire::MessageType::axes);
   EXPECT_EQ(bench.channels.size(), 2U);

@@ -117,24 +117,38 @@ class TextureWorkload {
   float samples_[kTextureSamples], taps_[kTextureTaps];
 };
 
-inline constexpr uint32_t kSceneFingerprint = 1888569271;
+inline constexpr uint32_t kSceneFingerprint = 1020355629;
 
-/// A scene of three overlapping patches with springs, dampers, grooves, noise and a height map, which move
-/// and change their order, and a hand in the plane whose speed varies between rest and 60 counts per tick;
-/// all limits are reached.
+/// A scene of four overlapping patches with springs, dampers, grooves, noise, a height map, a body with
+/// friction, a lasso and a mover, which move and change their order, and a hand in the plane whose speed
+/// varies between rest and 60 counts per tick; all limits are reached.
 class SceneWorkload {
  public:
   SceneWorkload() noexcept {
-    block_.header.patches = 3, block_.header.layers = 7, block_.header.numbers = 13;
+    block_.header.patches = 4, block_.header.layers = 10, block_.header.numbers = kNumbers;
     block_.header.table_words =
-        (sizeof block_.grooves + sizeof block_.noise + sizeof block_.relief) / sizeof(uint32_t);
+        (sizeof block_.grooves + sizeof block_.noise + sizeof block_.relief + sizeof block_.bodies) /
+        sizeof(uint32_t);
     block_.patches[0] = {0.01F, 0, 0.8F, 0.6F, 0.02F, 0.01F, 0, 1, 0};
     block_.patches[1] = {0, 0, 1, 0, 0.1F, 0.1F, 1, 2, 0};
     block_.patches[2] = {0, 0.01F, 0.6F, -0.8F, 0.1F, 0.03F, 3, 4, 1};
-    const uint16_t kinds[7] = {1, 0, 1, 0, 2, 3, 4}, firsts[7] = {0, 1, 4, 5, 8, 10, 12};
-    for (int i = 0; i < 7; ++i) block_.layers[i] = {kinds[i], firsts[i], 0};
+    block_.patches[3] = {-0.01F, 0, 0.8F, -0.6F, 0.03F, 0.1F, 7, 3, 1};
+    const uint16_t kinds[10] = {1, 0, 1, 0, 2, 3, 4, 5, 6, 7},
+                   firsts[10] = {0, 1, 4, 5, 8, 10, 12, 13, 26, 37};
+    for (int i = 0; i < 10; ++i) block_.layers[i] = {kinds[i], firsts[i], 0};
     block_.layers[5].table = sizeof block_.grooves / sizeof(uint32_t);
     block_.layers[6].table = (sizeof block_.grooves + sizeof block_.noise) / sizeof(uint32_t);
+    constexpr uint32_t kBodies =
+        (sizeof block_.grooves + sizeof block_.noise + sizeof block_.relief) / sizeof(uint32_t);
+    constexpr uint32_t kTable = sizeof(core::BodyTable) / sizeof(uint32_t);
+    for (uint32_t i = 0; i < 3; ++i) block_.layers[7 + i].table = kBodies + i * kTable;
+    // At 4 kHz: a body of 0.2 kg with friction, a mass of 0.1 kg with a damping of 1 N s/m, 5 cm/s.
+    block_.bodies.brick = {0, 2.5e-4F, 1.25e-3F, 1.5625e-7F};
+    block_.bodies.lasso = {-2.4968776e-3F, 2.4968776e-4F, 2.4968776e-3F, 3.1223966e-7F};
+    block_.bodies.mover = {0.6F, 0.8F};
+    block_.numbers[13] = 900, block_.numbers[14] = 2, block_.numbers[15] = 0.5F, block_.numbers[16] = 0.4F;
+    block_.numbers[26] = 700, block_.numbers[27] = 0.004F;
+    block_.numbers[37] = 3, block_.numbers[38] = 0.05F;
     const float numbers[13] = {3.3F, 400, 0.003F, -0.002F, 7.7F, 60, 0.01F, 0, 1e-4F, 2, 2e-4F, 1, 2};
     for (int i = 0; i < 13; ++i) block_.numbers[i] = numbers[i];
     // 1 mm across the axis x of its patch: 0.006 and -0.008 periods per count.
@@ -188,8 +202,8 @@ class SceneWorkload {
       if (counts_[i] < -5000) speed_[i] = -speed_[i] > 0 ? -speed_[i] : speed_[i];
       counts_[i] += speed_[i];
     }
-    if (ticks_ % 701 == 700) kernel_.move(ticks_ % 3, {next_() / 16, next_() / 16}, 40);
-    if (ticks_ % 901 == 900) kernel_.raise(ticks_ % 3);
+    if (ticks_ % 701 == 700) kernel_.move(ticks_ % 4, {next_() / 16, next_() / 16}, 40);
+    if (ticks_ % 901 == 900) kernel_.raise(ticks_ % 4);
     const auto output = kernel_.tick(counts_, ++ticks_ < kWorkloadTicks - 400);
     flags_ |= output.flags;
     return output.force_n[0] + output.force_n[1];
@@ -197,11 +211,12 @@ class SceneWorkload {
   uint32_t flags() const noexcept { return flags_; }
 
  private:
+  static constexpr uint32_t kNumbers = 13 + 13 + 11 + 2;
   struct Block {
     core::SceneHeader header;
-    core::ScenePatch patches[3];
-    core::SceneLayer layers[7];
-    float numbers[13];
+    core::ScenePatch patches[4];
+    core::SceneLayer layers[10];
+    float numbers[kNumbers] = {};
     struct {
       core::GroovesTable table;
       float amplitudes[9];
@@ -215,11 +230,15 @@ class SceneWorkload {
       core::ReliefLevelTable levels[2];
       float coefficients[16 * 12 + 8 * 6];
     } relief;
+    struct {
+      core::BodyTable brick, lasso;
+      core::MoverTable mover;
+    } bodies;
   } block_;
   WorkloadRandom next_{1990};
   uint32_t flags_ = 0, ticks_ = 0;
   int32_t counts_[2] = {}, speed_[2] = {};
-  float live_[13 + 3 * core::kPatchWords];
+  float live_[kNumbers + 4 * core::kPatchWords];
   core::SceneKernel kernel_;
 };
 

@@ -132,7 +132,8 @@ DEVICES = {
 }
 
 
-SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP = 0, 1, 2, 3, 4
+SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP, BODY, LASSO, MOVER = 0, 1, 2, 3, 4, 5, 6, 7
+AT_REST = (0,) * 9
 SCENES = {
     "spring": scene((3, -2, 5, 0), [(0, 0, 1, 0, 0.1, 0.1, 0, [(SPRING, (100, 0, 0))])]),
     "ice_on_soup": scene((90, 1, -70, 40), [(0, 0, 0.6, 0.8, 0.01, 0.01, 0, [(DAMPER, (0.1,))]),
@@ -144,6 +145,11 @@ SCENES = {
                                                                  (NOISE, (1, 1000), noise_table(2**50, 1e6, (2,) * 16))])]),
     "height_map": scene((3, -2, 50, 7), [(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(HEIGHT_MAP, (2,), relief_table(1000, ((2**25, -2**24, 1e3, 6, 4), (2**24, -2**23, 500, 3, 2))))]),
                                          (0, 0, 1, 0, 1000, 1000, 1, [(HEIGHT_MAP, (1000,), relief_table(0, ((2**40, 7, 1e8, 2, 1),)))])]),
+    "bodies": scene((3, -2, 50, 7), [(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(BODY, (300, 2, 1, 0.5, *AT_REST), struct.pack("<4f", 0, 1e-3, 5e-3, 2.5e-6)),
+                                                                    (LASSO, (200, 0.01, *AT_REST), struct.pack("<4f", -0.01, 1e-3, 1e-2, 5e-6)),
+                                                                    (MOVER, (3, 0.1), struct.pack("<2f", 0.6, -0.8))])]),
+    "stiff_bodies": scene((90, 2**30, -70, 40), [(0, 0, 1, 0, 1000, 1000, 0, [(BODY, (1e6, 1e4, 0, 0, *AT_REST), struct.pack("<4f", 0, 10, 1e9, 1e9)),
+                                                                            (LASSO, (1e6, 0, *AT_REST), struct.pack("<4f", -1, 0, 1e-12, 0))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,))])]),
 }
 

@@ -46,6 +46,19 @@ def a_played_scene_has_the_forces_of_render():
         assert played["force_x_n"][-1] == 0 and played["playing"][-1] == 0
 
 
+def bodies_replay_to_the_bit():
+    brick = {"type": "body", "mass_kg": 0.3, "stiffness_n_per_m": with_slider(400, 0, 800), "damping_n_s_per_m": 4, "static_friction_n": 0.6, "kinetic_friction_n": 0.5}
+    twirl = {"type": "lasso", "mass_kg": 0.1, "stiffness_n_per_m": 300, "length_m": 0.01, "damping_n_s_per_m": 0.5}
+    write_scene("bodies", patch(angle_deg=10, layers=[brick, twirl]), patch(name="river", combine="add", x_m=0.02, width_m=0.03, layers=[{"type": "mover", "speed_mps": 0.1, "damping_n_s_per_m": 2}]))
+    write_path("path.csv", KNOTS)
+    pathlib.Path("bodies.csv").write_text("time_s,command\n0.5,set a.body.stiffness_n_per_m 700\n0.9,move river 0mm,5mm\n1.2,set a.body.stiffness_n_per_m 100\n")
+    report = play("bodies.scene.json", "sim:planar,device=sandpaper-1990,hand=minsky-radial", "bodies", "--finger-path", "path.csv", "--script", "bodies.csv")
+    again = run_json("replay", "bodies")
+    assert again["same_to_the_bit"] is True and again["ticks_compared"] == report["ticks"], again
+    run("session", "bodies", "-o", "bodies.session.csv")
+    assert np.abs(table("bodies.session.csv")["force_x_n"]).max() > 0.5
+
+
 def surfaces_replay_to_the_bit():
     write_scene("surfaces", patch(angle_deg=10, layers=[grooves("square", 0.002, 1e-4, 1, direction_deg=-30), spring(5), noise(0.003, 1e-4, 0.5, octaves=6, seed=9)]),
                 patch(name="more", combine="add", layers=[grooves("triangle", 0.001, 5e-5, 0.5, direction_deg=90)]))
@@ -369,5 +382,5 @@ def a_wrong_script_plays_nothing():
 
 
 if __name__ == "__main__":
-    for test in (what_the_device_refuses_or_makes_unstable, a_scene_is_held_stable_and_replayed, an_adaptive_spring_is_a_spring_and_a_damper, moved_and_raised_patches_have_their_forces_and_are_replayed, sliders_move_the_force_and_are_replayed, a_hand_under_sliders_is_replayed, a_wrong_script_plays_nothing, a_played_scene_has_the_forces_of_render, surfaces_replay_to_the_bit, a_hand_on_sim_planar_is_scipys_loop, wrong_uses_are_refused, a_jump_of_the_encoder_ends_in_a_fault):
+    for test in (what_the_device_refuses_or_makes_unstable, a_scene_is_held_stable_and_replayed, an_adaptive_spring_is_a_spring_and_a_damper, moved_and_raised_patches_have_their_forces_and_are_replayed, sliders_move_the_force_and_are_replayed, a_hand_under_sliders_is_replayed, a_wrong_script_plays_nothing, a_played_scene_has_the_forces_of_render, bodies_replay_to_the_bit, surfaces_replay_to_the_bit, a_hand_on_sim_planar_is_scipys_loop, wrong_uses_are_refused, a_jump_of_the_encoder_ends_in_a_fault):
         tacto.in_folder(test)

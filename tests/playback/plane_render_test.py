@@ -32,6 +32,14 @@ def damper(damping):
     return {"type": "damper", "damping_n_s_per_m": damping}
 
 
+def body(mass, stiffness, damping, **friction):
+    return {"type": "body", "mass_kg": mass, "stiffness_n_per_m": stiffness, "damping_n_s_per_m": damping, **friction}
+
+
+def lasso(mass, stiffness, length, damping):
+    return {"type": "lasso", "mass_kg": mass, "stiffness_n_per_m": stiffness, "length_m": length, "damping_n_s_per_m": damping}
+
+
 def grooves(profile, period, depth, kappa, **members):
     return {"type": "grooves", "profile": profile, "period_m": period, "depth_m": depth, "kappa_n": kappa, **members}
 
@@ -278,6 +286,64 @@ def a_hand_on_a_spring_and_a_damper_is_scipys_loop():
         assert swing > 0.02 and worst < 1e-6 * 0.02, (worst, swing)
 
 
+def brick_loop(place, rate, mass, viscous, stiffness, brick_kg, spring_k, damper_b):
+    """The hand's x, v and place p, and the brick's y, w, under the force of the coupling, which is held for both."""
+    a, b = np.zeros((5, 5)), np.zeros((5, 2))
+    a[0, 1], a[1, :3], a[3, 4] = 1, [-stiffness / mass, -viscous / mass, stiffness / mass], 1
+    b[1, 0], b[2, 1], b[4, 0] = 1 / mass, 1, -1 / brick_kg
+    ad, bd, *_ = cont2discrete((a, b, np.eye(5), np.zeros((5, 2))), 1 / rate, method="zoh")
+    state, before, found = np.array([place[0], 0, place[0], place[0], 0]), place[0], []
+    for now, following in zip(place, np.append(place[1:], place[-1])):
+        x = state[0]
+        found.append(x)
+        force = spring_k * (state[3] - x) + damper_b * (state[4] - (x - before) * rate)
+        before = x
+        state = ad @ state + bd @ np.array([force, (following - now) * rate])
+    return np.array(found)
+
+
+def a_brick_in_a_hand_is_scipys_loop():
+    knots = {"time_s": np.linspace(0, 3, 13)}
+    knots["x_m"] = np.array([0.02, 0.02, -0.02, 0.02, -0.02, -0.02, 0.02, 0.01, -0.01, 0.02, 0.02, -0.02, 0.0])
+    write_path("swing.csv", knots)
+    write_hand("mine", 0.8, 3, 400)
+    write_line("line")
+    write_scene("brick", patch(layers=[body(0.2, 300, 2)]))
+    run("render", "brick.scene.json", "--finger-path", "swing.csv", "--device", "line", "--hand", "mine", "-o", "brick.csv")
+    table = np.genfromtxt("brick.csv", delimiter=",", names=True)
+    found = brick_loop(table["hand_x_m"], 1000, 0.9, 4.17, 400, 0.2, 300, 2)
+    worst, swing = np.abs(found - table["x_m"]).max(), np.ptp(table["x_m"])
+    print(f"  a brick on a spring in a hand: within {worst:.2g} m of SciPy's loop, of a swing of {1e3 * swing:.3g} mm")
+    # As for the spring; without the brick the hand is elsewhere.
+    alone = sampled_loop(table["hand_x_m"], 1000, 0.9, 4.17, 400, 0, 0, 0)
+    assert swing > 0.02 and worst < 1e-6 * 0.02 and np.abs(alone - table["x_m"]).max() > 1e-3, (worst, swing)
+
+
+def bodies_that_are_too_stiff_are_refused():
+    write_path("path.csv", KNOTS)
+    rate = RATE_HZ
+
+    def limit(layer, stiffness, fits):
+        write_scene("stiff", patch(layers=[{**layer, "stiffness_n_per_m": stiffness}]))
+        _, err = render("stiff.scene.json", code=0 if fits else UNSUITABLE)
+        assert fits or "stiff.scene.json#/patches/0/layers/0/stiffness_n_per_m" in err, err
+
+    limit(body(0.2, 0, 2), 2 * 2 * rate * 1.001, False)  # 2 B / T
+    limit(body(0.2, 0, 2), 2 * 2 * rate * 0.999, True)
+    limit(body(0.2, 0, 0), 1, False)
+    limit(body(1e-4, 0, 2), 1, False)  # B < 2 m / T = 0.8
+    # A lasso by the exact discretisation: the zeros of z^2 - (1 + e - K p) z + e + K q are in the unit circle, e = e^(-b T / m).
+    mass, damping = 0.05, 3
+    a, e, period = damping / mass, np.exp(-damping / mass / rate), 1 / rate
+    p, q = (period / a - (1 - e) / a**2) / mass, (1 - e)**2 / (a**2 * mass) - (period / a - (1 - e) / a**2) / mass * e
+    largest = min((1 - e) / q, 2 * (1 + e) / (p - q) if p > q else np.inf)
+    limit(lasso(mass, 0, 0.01, damping), 1.001 * largest, False)
+    limit(lasso(mass, 0, 0.01, damping), 0.999 * largest, True)
+    told = run_json("explain", "stiff.scene.json", "--device", "sandpaper-1990")["layers"][0]
+    # 8 bytes, two numbers and nine of the state, a table of 16.
+    assert abs(told["stiffest_coupling_n_per_m"] / largest - 1) < 1e-9 and told["bytes"] == 8 + 44 + 16, told
+
+
 def a_stiff_spring_is_stable_at_1_khz_and_not_at_100_hz():
     # Minsky 1990: 2773 N/m with 1.17 + 5 N s/m. With the hand's own spring continuous, the greatest period is 4.48 ms.
     write_path("still.csv", {"time_s": [0, 2, 4], "x_m": [0.001, 0.001, 0.001]})
@@ -306,6 +372,7 @@ def coulomb_friction_holds_the_hand():
 
 if __name__ == "__main__":
     for test in (springs_are_numpys, sine_grooves_are_their_derivative, a_filtered_step_rests_and_a_steeper_one_swings, dampers_follow_the_path, what_a_device_cannot_do_is_warned_of, wrong_uses_are_refused, explain_lists_what_is_built,
-                 a_device_of_one_axis_moves_on_a_line, a_hand_on_a_spring_and_a_damper_is_scipys_loop, a_stiff_spring_is_stable_at_1_khz_and_not_at_100_hz,
+                 a_device_of_one_axis_moves_on_a_line, a_hand_on_a_spring_and_a_damper_is_scipys_loop, a_brick_in_a_hand_is_scipys_loop,
+                 bodies_that_are_too_stiff_are_refused, a_stiff_spring_is_stable_at_1_khz_and_not_at_100_hz,
                  coulomb_friction_holds_the_hand):
         tacto.in_folder(test)

@@ -14,6 +14,7 @@
 
 #include "data-schema/height/height_map.hpp"
 #include "data-schema/texture/texture.hpp"
+#include "firmware-host/core/scene/body.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
@@ -56,6 +57,20 @@ schema::ForceLayer spring(double stiffness_n_per_m, double centre_x_m = 0, doubl
 
 schema::ForceLayer damper(double damping_n_s_per_m) {
   return schema::DamperLayer{{damping_n_s_per_m}, ""};
+}
+
+schema::ForceLayer body(double mass_kg, double stiffness_n_per_m, double damping_n_s_per_m,
+                        double static_n = 0, double kinetic_n = 0) {
+  return schema::BodyLayer{{mass_kg}, {stiffness_n_per_m}, {damping_n_s_per_m}, {static_n}, {kinetic_n}, ""};
+}
+
+schema::ForceLayer lasso(double mass_kg, double stiffness_n_per_m, double length_m,
+                         double damping_n_s_per_m) {
+  return schema::LassoLayer{{mass_kg}, {stiffness_n_per_m}, {length_m}, {damping_n_s_per_m}, ""};
+}
+
+schema::ForceLayer mover(double speed_mps, double damping_n_s_per_m, double direction_deg) {
+  return schema::MoverLayer{{speed_mps}, {damping_n_s_per_m}, {direction_deg}, ""};
 }
 
 schema::GroovesLayer grooves(schema::GrooveProfile profile, double period_m, double depth_m, double kappa_n,
@@ -429,6 +444,139 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
   EXPECT_LT(worst, 3e-7);
 }
 
+// A hand that is led along x and y, and its forces beside those of double precision.
+struct LedHand {
+  OnDevice on;
+  ExactScene exact;
+  double worst_n = 0, largest_n = 0;
+
+  explicit LedHand(const Patch& patch) : on(unlimited(1e-7), {patch}), exact(on.scene, on.device, 1000) {}
+  core::ForceOutput tick(double x_m, double y_m) {
+    const std::vector<std::int32_t> counts = {static_cast<std::int32_t>(std::lround(x_m * 1e7)),
+                                              static_cast<std::int32_t>(std::lround(y_m * 1e7))};
+    const core::ForceOutput output = on.kernel.tick(counts.data(), true);
+    const ExactScene::Output reference = exact.tick(counts);
+    for (std::size_t i = 0; i < 2; ++i) {
+      worst_n = std::max(worst_n, std::abs(double{output.force_n[i]} - reference.force_n[i]));
+      largest_n = std::max(largest_n, std::abs(reference.force_n[i]));
+    }
+    return output;
+  }
+  const core::BodyState& state(std::size_t numbers) const {
+    return *reinterpret_cast<const core::BodyState*>(on.live.data() + numbers);
+  }
+};
+
+TEST(SceneKernel, AFreeBodysMomentumIsTheImpulseOfItsForce) {
+  LedHand hand(patch("a", {body(0.3, 200, 1)}));
+  double impulse[2] = {}, worst = 0, largest = 0;
+  for (int tick = 0; tick < 60000; ++tick) {
+    const double t = 1e-3 * tick;
+    const auto output =
+        hand.tick(0.02 * std::sin(4.4 * t) + 0.01 * std::sin(8.2 * t + 1), 0.02 * std::cos(3.1 * t));
+    const core::BodyState& state = hand.state(4);
+    const double momentum[2] = {0.3 * (double{state.speed_mps.x} + double{state.speed_rest_mps.x}),
+                                0.3 * (double{state.speed_mps.y} + double{state.speed_rest_mps.y})};
+    for (int i = 0; i < 2; ++i) {
+      impulse[i] -= 1e-3 * double{output.unlimited_n[i]};
+      worst = std::max(worst, std::abs(momentum[i] - impulse[i]));
+      largest = std::max(largest, std::abs(momentum[i]));
+    }
+  }
+  std::printf("  a body over 60 s: momentum within %.2g of the impulse\n", worst / largest);
+  EXPECT_GT(largest, 0.01);
+  EXPECT_LT(worst, 1e-6 * largest);
+  // The hand's place has 24 bits: 200 N/m times 0.03 m times 2^-24, and the resonance of the body.
+  EXPECT_LT(hand.worst_n, 3e-5 * hand.largest_n);
+}
+
+// At rest up to the static friction, then a constant kinetic one, which is near enough that it does not stick
+// again.
+TEST(SceneKernel, DryFrictionHoldsABodyAndThenBrakesIt) {
+  LedHand hand(patch("a", {body(0.2, 400, 4, 1.55, 1.5)}));
+  double moved_from_m = 0;
+  for (int tick = 0; tick < 1000; ++tick) {
+    const double x_m = 1e-5 * tick;
+    hand.tick(x_m, 0);
+    if (moved_from_m == 0 && hand.state(4).speed_mps.x != 0) moved_from_m = x_m;
+  }
+  // 400 N/m x + 4 N s/m 0.01 m/s = 1.55 N, to the step of the path.
+  EXPECT_NEAR(moved_from_m, (1.55 - 0.04) / 400, 2e-5);
+  float steady_n = 0;
+  for (int tick = 1000; tick < 5000; ++tick) steady_n = hand.tick(1e-5 * tick, 0).force_n[0];
+  EXPECT_NEAR(steady_n, -1.5F, 0.02F);  // drawn at the speed of the hand
+  for (int tick = 0; tick < 3000; ++tick) hand.tick(0.05, 0);
+  EXPECT_EQ(hand.state(4).speed_mps.x, 0);
+  EXPECT_EQ(hand.state(4).speed_mps.y, 0);
+  const float rests_at_m = hand.state(4).place_m.x;
+  for (int tick = 0; tick < 1000; ++tick) hand.tick(0.05, 0);
+  EXPECT_EQ(hand.state(4).place_m.x, rests_at_m);
+  // The place has 24 bits: 400 N/m times 0.05 m times 2^-24 are 1.2e-6 N.
+  EXPECT_LT(hand.worst_n, 5e-6);
+}
+
+TEST(SceneKernel, ALassoOnlyPulls) {
+  Patch turned = patch("a", {lasso(0.1, 300, 0.01, 0.5)});
+  turned.angle_deg = 30;
+  LedHand hand(turned);
+  double pulls = 0, slack = 0;
+  for (int tick = 0; tick < 20000; ++tick) {
+    const double t = 1e-3 * tick, x_m = 0.02 * std::sin(9 * t), y_m = 0.02 * std::cos(7 * t) - 0.02;
+    const core::BodyState before = hand.state(2);
+    const core::ForceOutput output = hand.tick(x_m, y_m);
+    if (tick == 0) continue;
+    // From the hand to the mass, in the plane.
+    const double c = std::cos(std::numbers::pi / 6), s = 0.5;
+    const double way[2] = {c * double{before.place_m.x} - s * double{before.place_m.y} - x_m,
+                           s * double{before.place_m.x} + c * double{before.place_m.y} - y_m};
+    const double distance = std::hypot(way[0], way[1]), tension = std::max(0.0, 300 * (distance - 0.01));
+    (tension > 0 ? pulls : slack) += 1;
+    for (int i = 0; i < 2; ++i)
+      ASSERT_NEAR(output.force_n[i], tension * way[i] / distance, 300 * 2e-7) << tick;  // rounding of counts
+  }
+  EXPECT_GT(pulls, 1000);
+  EXPECT_GT(slack, 1000);
+  EXPECT_LT(hand.worst_n, 3e-4 * hand.largest_n);  // a swing through slack and taut enlarges rounding
+}
+
+TEST(SceneKernel, AMoverDragsTheHand) {
+  Patch turned = patch("a", {mover(0.2, 5, 30)});
+  turned.angle_deg = 20;
+  LedHand hand(turned);
+  core::ForceOutput output;
+  for (int tick = 0; tick < 100; ++tick) output = hand.tick(0, 0);
+  const double along = 50 * std::numbers::pi / 180;
+  EXPECT_NEAR(output.force_n[0], 5 * 0.2 * std::cos(along), 1e-6);
+  EXPECT_NEAR(output.force_n[1], 5 * 0.2 * std::sin(along), 1e-6);
+  for (int tick = 0; tick < 200; ++tick)
+    output = hand.tick(2e-4 * std::cos(along) * tick, 2e-4 * std::sin(along) * tick);
+  EXPECT_NEAR(output.force_n[0], 0, 0.05);  // one count per tick is 5e-4 N
+  EXPECT_LT(hand.worst_n, 1e-5);
+}
+
+// The hand leaves its patch and comes back: the body is where the hand enters, at rest. The same again after
+// set(), to the bit.
+TEST(SceneKernel, ABodyIsTakenUpWhereTheHandEnters) {
+  Patch small = patch("a", {body(0.2, 400, 4)});
+  small.width_m = 0.02;
+  std::vector<float> first;
+  OnDevice on(unlimited(), {small});
+  const auto& state = *reinterpret_cast<const core::BodyState*>(on.live.data() + 4);
+  for (int run = 0; run < 2; ++run) {
+    on.kernel.set(on.scene.view(), *force_setup_of(on.device, 1000), on.live.data());
+    std::vector<float> forces;
+    for (const double x_m : {0.0, 0.005, 0.009, 0.02, 0.02}) forces.push_back(on.at(x_m, 0).force_n[0]);
+    EXPECT_LT(forces[2], -1);  // drawn after the hand
+    EXPECT_EQ(forces[4], 0);   // outside
+    EXPECT_GT(state.place_m.x, 0);
+    forces.push_back(on.at(-0.009, 0).force_n[0]);
+    // One tick of damping at 29 m/s: 116 N T^2 / 2 m = 0.29 mm.
+    EXPECT_NEAR(state.place_m.x, -0.009F, 3.5e-4F);
+    if (run == 0) first = forces;
+    EXPECT_EQ(forces, first);
+  }
+}
+
 // Of n ticks, after k of them: k / n of the way, rounded towards its beginning.
 std::int32_t part_of(std::int32_t from, std::int32_t to, int k, int n) {
   const std::int64_t way = std::int64_t{to} - from, part = std::abs(way) * std::min(k, n) / n;
@@ -731,9 +879,11 @@ TEST(EdgeSpeed, AnAccelerationShortensTheWindow) {
 }
 
 PreparedScene block_of_all() {
+  Patch bodies = patch("c", {body(0.2, 400, 4, 2, 1), lasso(0.1, 300, 0.01, 0.5), mover(1, 2, 3)});
+  bodies.combine = PatchCombine::add;
   return prepared({patch("a", {spring(5, 0.01), grooves(schema::GrooveProfile::square, 1e-3, 1e-4, 1),
                                damper(2), noise(1e-3, 3, 0.5, 1, 1e-4, 1)}),
-                   patch("b", {damper(1)})});
+                   patch("b", {damper(1)}), bodies});
 }
 
 // Coefficients and sizes of a height map.
@@ -768,8 +918,8 @@ TEST(SceneBlock, ACutOrChangedBlockIsRefused) {
   core::SceneView view;
   const auto bytes = static_cast<std::uint32_t>(scene.bytes());
   EXPECT_EQ(core::read_scene_block(scene.words.data(), bytes, view), core::SceneFault::none);
-  EXPECT_EQ(view.patch_count, 2U);
-  EXPECT_EQ(view.layer_count, 5U);
+  EXPECT_EQ(view.patch_count, 3U);
+  EXPECT_EQ(view.layer_count, 8U);
   for (std::uint32_t size = 0; size < bytes; ++size)
     EXPECT_NE(core::read_scene_block(scene.words.data(), size, view), core::SceneFault::none) << size;
   for (std::uint32_t bit = 0; bit < 8 * bytes; ++bit) {

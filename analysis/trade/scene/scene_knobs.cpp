@@ -20,9 +20,8 @@ constexpr double kPlaceOfPeriod = 0x1p-31;  // of a place on a surface (core::pl
 
 // Named one by one: a new kind of layer does not compile until its rounding has a bound.
 template <class L>
-concept HasNoForceYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::BodyLayer> ||
-                        std::same_as<L, schema::LassoLayer> || std::same_as<L, schema::MoverLayer> ||
-                        std::same_as<L, schema::ForceMapLayer> || std::same_as<L, schema::FieldLayer>;
+concept HasNoForceYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::ForceMapLayer> ||
+                        std::same_as<L, schema::FieldLayer>;
 
 double largest_size(const schema::LayerNumber& number) {
   double size = std::abs(number.value);
@@ -132,6 +131,16 @@ double rounding_of_grooves_n(const schema::GroovesLayer& grooves) {
          (3e-6 * slopes + kPlaceOfPeriod * curvatures);
 }
 
+// Of the place of the hand, as of a spring, times the largest sum of what it adds to the motion of the body:
+// 1 + 2 / zeta bounds the sum of the absolute response of a spring with the damping ratio zeta. Where a body
+// with friction sticks or slips a tick later than in double precision, its place is another one; this is not
+// in it.
+double rounding_of_coupling_n(double far_m, double stiffness, double damping, double mass_kg) {
+  const double zeta = damping / (2 * std::sqrt(stiffness * mass_kg));
+  const double at_speed_n = damping * playback::kFastestHandMps;
+  return 16 * kUnit * (stiffness * far_m + at_speed_n) * (1 + 2 / std::min(zeta, 1.0));
+}
+
 double rounding_of_noise_n(const schema::NoiseLayer& noise) {
   const auto amplitudes = playback::octave_amplitudes(noise);
   constexpr double kCurvature = 12.5;  // of one octave, per squared cell (scene_device.cpp)
@@ -188,6 +197,20 @@ double rounding_bound_n(const schema::Patch& patch, const schema::ForceLayer& la
       },
       [&](const schema::TextureForceLayer& texture) {
         return 1e-5 * largest_size(texture.gain) * slope_bound(reliefs.of(texture));
+      },
+      [&](const schema::MoverLayer& mover) {
+        const double fastest_mps = playback::kFastestHandMps + largest_size(mover.speed_mps);
+        return kOperations * kUnit * largest_size(mover.damping_n_s_per_m) * fastest_mps;
+      },
+      [&](const schema::BodyLayer& body) {
+        return rounding_of_coupling_n(2 * half_diagonal_m(patch) + std::hypot(patch.x_m, patch.y_m),
+                                      largest_size(body.stiffness_n_per_m),
+                                      largest_size(body.damping_n_s_per_m), body.mass_kg.value);
+      },
+      [&](const schema::LassoLayer& lasso) {
+        return rounding_of_coupling_n(2 * half_diagonal_m(patch) + std::hypot(patch.x_m, patch.y_m),
+                                      largest_size(lasso.stiffness_n_per_m),
+                                      largest_size(lasso.damping_n_s_per_m), lasso.mass_kg.value);
       },
       [](const HasNoForceYet auto& /*layer*/) { return 0.0; });
 }

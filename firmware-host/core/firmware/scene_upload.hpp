@@ -27,7 +27,8 @@ class SceneUpload {
  private:
   // SceneView::live_words() of the largest scene; in a small memory a block of half of it cannot need more.
   uint32_t live_words() const noexcept {
-    constexpr uint32_t kMost = kMostSceneLayers * (kMostLayerNumbers + kPatchWords);
+    constexpr uint32_t kMost =
+        kMostSceneLayers * (kMostLayerNumbers + kPatchWords) + kMostSceneBodies * (kBodyStateWords + 1);
     return words_ / 2 < kMost ? words_ / 2 : kMost;
   }
 

@@ -20,6 +20,8 @@ constexpr float kDeepest_m = 1, kMostKappa_n = 1000;
 constexpr float kMostPeriods_per_m = 1.001e6F;
 constexpr float kLargestAmplitude = 2;  // of a harmonic; 4 / pi of a square wave
 constexpr float kMostSamples_per_m = 1.001e8F;
+constexpr float kMostFriction_n = 1000, kFastestMover_mps = 10;
+constexpr float kLongestTick_s = 10, kLightest_per_kg = 1e9F, kHeaviest_per_kg = 1e-12F;
 
 bool is_direction(float cosine, float sine) noexcept {
   return within(cosine * cosine + sine * sine, 1 - kUnitRounding, 1 + kUnitRounding);
@@ -42,6 +44,17 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
       return within(number[kDamperDamping], 0, kMostDamping_n_s_per_m);
     case SceneLayerKind::height_map:
       return within(number[kHeightMapKappa], -kMostKappa_n, kMostKappa_n);
+    case SceneLayerKind::body:
+      return within(number[kBodyStiffness], 0, kStiffest_n_per_m) &&
+             within(number[kBodyDamping], 0, kMostDamping_n_s_per_m) &&
+             within(number[kBodyStaticFriction], 0, kMostFriction_n) &&
+             within(number[kBodyKineticFriction], 0, kMostFriction_n);
+    case SceneLayerKind::lasso:
+      return within(number[kLassoStiffness], 0, kStiffest_n_per_m) &&
+             within(number[kLassoLength], 0, kFarthest_m);
+    case SceneLayerKind::mover:
+      return within(number[kMoverDamping], 0, kMostDamping_n_s_per_m) &&
+             within(number[kMoverSpeed], -kFastestMover_mps, kFastestMover_mps);
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
       break;
@@ -64,6 +77,32 @@ bool sound(const GroovesTable& table) noexcept {
 bool sound(const NoiseSurfaceTable& table) noexcept {
   return within(table.periods_per_m, 0, kMostPeriods_per_m) &&
          amplitudes_sound(amplitudes_of(table), table.octaves);
+}
+
+bool sound(const BodyTable& table) noexcept {
+  return within(table.speed_loss, -1, 0) && within(table.place_by_speed_s, 0, kLongestTick_s) &&
+         within(table.speed_by_force_s_per_kg, kHeaviest_per_kg, kLightest_per_kg) &&
+         within(table.place_by_force_s2_per_kg, 0, kLightest_per_kg);
+}
+
+bool sound(const MoverTable& table) noexcept {
+  return is_direction(table.cosine, table.sine);
+}
+
+// A table of one length.
+template <class Table>
+SceneFault check_plain(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                       uint32_t& words) noexcept {
+  words = sizeof(Table) / sizeof(uint32_t);
+  if (words > room) return SceneFault::structure;
+  return sound(table_of<Table>(view, layer)) ? SceneFault::none : SceneFault::value;
+}
+
+// Its motion begins with the first tick.
+bool state_is_zero(SceneLayerKind kind, const float* number) noexcept {
+  for (uint32_t i = changeable_numbers_of(kind); i < numbers_of(kind); ++i)
+    if (!within(number[i], 0, 0)) return false;
+  return true;
 }
 
 // A table that ends with amplitudes, at the place of `layer`; `room` words are left in the block. Sets its
@@ -116,6 +155,11 @@ SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t 
       return check_surface(view, layer, &NoiseSurfaceTable::octaves, kMostOctaves, room, words);
     case SceneLayerKind::height_map:
       return check_relief(view, layer, room, words);
+    case SceneLayerKind::body:
+    case SceneLayerKind::lasso:
+      return check_plain<BodyTable>(view, layer, room, words);
+    case SceneLayerKind::mover:
+      return check_plain<MoverTable>(view, layer, room, words);
     case SceneLayerKind::spring:
     case SceneLayerKind::damper:
       break;
@@ -136,16 +180,18 @@ SceneFault check_patches(const SceneView& view) noexcept {
 }
 
 SceneFault check_layers(SceneView& view) noexcept {
-  uint32_t numbers = 0, tables = 0;
+  uint32_t numbers = 0, tables = 0, bodies = 0;
   for (uint32_t i = 0; i < view.layer_count; ++i) {
     const SceneLayer& layer = view.layers[i];
     if (layer.first_number != numbers || layer.table != tables || layer.kind >= kSceneLayerKinds)
       return SceneFault::structure;
     const auto kind = static_cast<SceneLayerKind>(layer.kind);
     numbers += numbers_of(kind);
-    if (numbers > view.number_count) return SceneFault::structure;
-    if (!sound(kind, view.numbers + layer.first_number)) return SceneFault::value;
-    view.needs_speed = view.needs_speed || kind != SceneLayerKind::spring;
+    if (has_body(kind)) ++bodies;
+    if (numbers > view.number_count || bodies > kMostSceneBodies) return SceneFault::structure;
+    const float* const number = view.numbers + layer.first_number;
+    if (!sound(kind, number) || !state_is_zero(kind, number)) return SceneFault::value;
+    view.needs_speed = view.needs_speed || (kind != SceneLayerKind::spring && kind != SceneLayerKind::lasso);
     uint32_t words = 0;
     if (const SceneFault fault = check_table(view, layer, view.table_words - tables, words);
         fault != SceneFault::none)
@@ -161,9 +207,9 @@ SceneFault check_layers(SceneView& view) noexcept {
 bool number_fits(const SceneView& view, uint32_t layer, uint32_t number, float value) noexcept {
   if (layer >= view.layer_count) return false;
   const auto kind = static_cast<SceneLayerKind>(view.layers[layer].kind);
-  const uint32_t count = numbers_of(kind);
+  const uint32_t count = changeable_numbers_of(kind);
   if (number >= count) return false;
-  float numbers[kMostLayerNumbers];
+  float numbers[kMostLayerNumbers + 1];  // a body has four
   for (uint32_t i = 0; i < count; ++i) numbers[i] = view.numbers[view.layers[layer].first_number + i];
   numbers[number] = value;
   return sound(kind, numbers);

@@ -12,32 +12,66 @@ namespace tacto::core {
 inline constexpr uint32_t kSceneMark = 0x4E435354;  ///< "TSCN"
 inline constexpr uint16_t kSceneVersion = 1;
 inline constexpr uint32_t kMostSceneLayers = 256;
-inline constexpr uint32_t kMostLayerNumbers = 3;
+inline constexpr uint32_t kMostLayerNumbers = 3;  ///< but of bodies and lassos
+inline constexpr uint32_t kMostSceneBodies = 16;  ///< bodies and lassos
 inline constexpr uint32_t kPatchWords = 3;  ///< of a patch in the kernel's memory: its place and its order
 
 /// The kinds of layers that the kernel has. A number is never reused.
-enum class SceneLayerKind : uint16_t { spring = 0, damper = 1, grooves = 2, noise = 3, height_map = 4 };
-inline constexpr uint16_t kSceneLayerKinds = 5;
+enum class SceneLayerKind : uint16_t {
+  spring = 0,
+  damper = 1,
+  grooves = 2,
+  noise = 3,
+  height_map = 4,
+  body = 5,
+  lasso = 6,
+  mover = 7
+};
+inline constexpr uint16_t kSceneLayerKinds = 8;
 
 /// The places of a layer's numbers, from its first one.
 enum SpringNumber : uint32_t { kSpringStiffness = 0, kSpringCentreX = 1, kSpringCentreY = 2 };
 enum DamperNumber : uint32_t { kDamperDamping = 0 };
 enum SurfaceNumber : uint32_t { kSurfaceDepth = 0, kSurfaceKappa = 1 };
 enum HeightMapNumber : uint32_t { kHeightMapKappa = 0 };
+enum BodyNumber : uint32_t {
+  kBodyStiffness = 0,
+  kBodyDamping = 1,
+  kBodyStaticFriction = 2,
+  kBodyKineticFriction = 3
+};
+enum LassoNumber : uint32_t { kLassoStiffness = 0, kLassoLength = 1 };
+enum MoverNumber : uint32_t { kMoverDamping = 0, kMoverSpeed = 1 };
+/// Behind these numbers of a body and a lasso: its state (BodyState), 0 in a block.
+inline constexpr uint32_t kBodyStateWords = 9;
 
-/// How many numbers a layer of a kind has.
-constexpr uint32_t numbers_of(SceneLayerKind kind) noexcept {
+/// Whether a layer of a kind has a state.
+constexpr bool has_body(SceneLayerKind kind) noexcept {
+  return kind == SceneLayerKind::body || kind == SceneLayerKind::lasso;
+}
+
+/// How many numbers of a layer of a kind can change.
+constexpr uint32_t changeable_numbers_of(SceneLayerKind kind) noexcept {
   switch (kind) {
     case SceneLayerKind::spring:
       return 3;
     case SceneLayerKind::damper:
     case SceneLayerKind::height_map:
       return 1;
+    case SceneLayerKind::body:
+      return 4;
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
+    case SceneLayerKind::lasso:
+    case SceneLayerKind::mover:
       break;
   }
   return 2;
+}
+
+/// How many numbers a layer of a kind has in a block.
+constexpr uint32_t numbers_of(SceneLayerKind kind) noexcept {
+  return changeable_numbers_of(kind) + (has_body(kind) ? kBodyStateWords : 0);
 }
 
 /// The block is, in this order and little-endian: this header, the patches, the layers, the numbers, the
@@ -135,6 +169,23 @@ template <class Table>
 const float* amplitudes_of(const Table& table) noexcept {
   return reinterpret_cast<const float*>(&table + 1);
 }
+
+/// The motion of a body of mass m with the damping b of its surroundings over a tick T, in which its force is
+/// constant (its exact discretisation, computed in double precision; z = b T / m):
+///     speed += speed_loss speed + speed_by_force force,    place += place_by_speed speed + place_by_force
+///     force
+/// speed_loss = e^-z - 1, place_by_speed = T (1 - e^-z) / z, speed_by_force = place_by_speed / m,
+/// place_by_force = (T^2 / m) (z - 1 + e^-z) / z^2; without damping 0, T, T / m and T^2 / (2 m).
+struct BodyTable {
+  float speed_loss = 0, place_by_speed_s = 0, speed_by_force_s_per_kg = 0, place_by_force_s2_per_kg = 0;
+};
+static_assert(sizeof(BodyTable) == 16);
+
+/// The direction in which an object moves by itself.
+struct MoverTable {
+  float cosine = 1, sine = 0;  ///< of its angle in the patch
+};
+static_assert(sizeof(MoverTable) == 8);
 
 /// A block that was read; it points into its memory.
 struct SceneView {

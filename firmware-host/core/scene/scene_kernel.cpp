@@ -3,6 +3,7 @@
 
 #include "firmware-host/core/kernel/finite.hpp"
 #include "firmware-host/core/kernel/level_of_detail.hpp"
+#include "firmware-host/core/scene/body.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/relief.hpp"
 
@@ -22,6 +23,7 @@ void SceneKernel::set(const SceneView& scene, const ForceSetup& setup, float* li
   for (Move& move : moves_) move.left = 0;
   next_ramp_ = next_move_ = 0;
   moving_ = false;
+  tick_ = last_tick_ = 1;
   setup_ = setup;
   step_m_[0] = step_m_[1] = 0;
   for (uint32_t i = 0; i < setup.axis_count; ++i) {
@@ -187,7 +189,21 @@ PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand,
           -kappa * (table.sine * slope.x + table.cosine * slope.y)};
 }
 
-PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) const noexcept {
+PlaneVector SceneKernel::body_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) noexcept {
+  const auto kind = static_cast<SceneLayerKind>(layer.kind);
+  float* const number = live_ + layer.first_number;
+  auto& body = *reinterpret_cast<BodyState*>(number + changeable_numbers_of(kind));
+  if (body.tick != last_tick_ || is_lost(body)) body = {hand.place_m, {}, {}, {}, 0};
+  body.tick = tick_;
+  const bool brick = kind == SceneLayerKind::body;
+  const PlaneVector force_n =
+      brick ? brick_force(body, number, hand.place_m, along) : lasso_force(body, number, hand.place_m);
+  advance(table_of<BodyTable>(scene_, layer), body, force_n, brick ? number[kBodyStaticFriction] : 0,
+          brick ? number[kBodyKineticFriction] : 0);
+  return {-force_n.x, -force_n.y};
+}
+
+PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) noexcept {
   const PlaneVector place = hand.place_m, speed = into_patch(patch, hand.speed_mps),
                     along = into_patch(patch, hand.along_mps);
   PlaneVector sum;
@@ -212,6 +228,17 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) con
       case SceneLayerKind::height_map:
         force = relief_force(layer, hand, along);
         break;
+      case SceneLayerKind::body:
+      case SceneLayerKind::lasso:
+        force = body_force(layer, hand, along);
+        break;
+      case SceneLayerKind::mover: {
+        const auto& table = table_of<MoverTable>(scene_, layer);
+        const float own_mps = number[kMoverSpeed];
+        force = {number[kMoverDamping] * (own_mps * table.cosine - speed.x),
+                 number[kMoverDamping] * (own_mps * table.sine - speed.y)};
+        break;
+      }
     }
     sum.x += force.x;
     sum.y += force.y;
@@ -219,7 +246,7 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) con
   return sum;
 }
 
-PlaneVector SceneKernel::force(const Hand& hand) const noexcept {
+PlaneVector SceneKernel::force(const Hand& hand) noexcept {
   PlaneVector sum;
   bool covered = false;
   for (uint32_t i = 0; i < scene_.patch_count; ++i) {
@@ -239,6 +266,8 @@ PlaneVector SceneKernel::force(const Hand& hand) const noexcept {
 ForceOutput SceneKernel::tick(const int32_t* counts, bool raise) noexcept {
   advance_ramps();
   advance_moves();
+  last_tick_ = tick_;
+  tick_ = tick_ < 0x1p24F ? tick_ + 1 : 2;
   Hand hand;
   float speed_mps[2] = {};
   for (uint32_t i = 0; i < setup_.axis_count; ++i) {

@@ -21,7 +21,11 @@ struct ForceOutput {
 
 /// force = limits(envelope x sum over patches (sum over layers)) (Minsky 1990), of the topmost patch at the
 /// hand's place and of every patch there that adds. In the axes of a patch, from its centre:
-///   spring: -stiffness (place - centre);  damper: -damping speed;  surface: -kappa grad h.
+///   spring: -stiffness (place - centre);  damper: -damping speed;  surface: -kappa grad h;
+///   mover: damping (its speed - speed);  body, lasso: the reaction to the force on them (body.hpp).
+/// A body is taken up where the hand enters its patch, at rest in it; while the hand is elsewhere, or another
+/// patch covers it, the body is not there. Its force is computed once a tick and held for the hand and for
+/// the body: the body loses the momentum that the hand gets, and both motions under a held force are exact.
 /// place = counts x metres_per_count, on a surface in whole counts (place_on()); speed by EdgeSpeed, only in
 /// a scene with a layer that depends on it. A patch is moved by whole counts, with all that belongs to its
 /// place: its force at count n, moved by m, is to the bit that of the patch of the block at n - m. A damper
@@ -60,12 +64,13 @@ class SceneKernel {
     PlaneVector place_m;
     PlaneVector speed_mps, along_mps;  // of the hand; relative to the patch
   };
-  PlaneVector force(const Hand& hand) const noexcept;
-  PlaneVector force_in(const ScenePatch& patch, const Hand& hand) const noexcept;
+  PlaneVector force(const Hand& hand) noexcept;
+  PlaneVector force_in(const ScenePatch& patch, const Hand& hand) noexcept;
   Hand hand_on(uint32_t patch, const Hand& hand) const noexcept;
   PlaneVector groove_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
   PlaneVector noise_force(const SceneLayer& layer, const Hand& hand) const noexcept;
   PlaneVector relief_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
+  PlaneVector body_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) noexcept;
 
   struct Ramp {
     uint32_t number = 0;  // in the scene's numbers
@@ -98,7 +103,8 @@ class SceneKernel {
   uint32_t next_ramp_ = 0, next_move_ = 0;
   bool moving_ = false;
   ForceSetup setup_;
-  float step_m_[2] = {};  // of a count along x and y
+  float step_m_[2] = {};            // of a count along x and y
+  float tick_ = 1, last_tick_ = 1;  // whole numbers above 1 from the first tick on
   EdgeSpeed speeds_[2];
   Envelope envelope_;
   ForceLimiter limiter_;

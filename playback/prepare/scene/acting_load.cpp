@@ -10,9 +10,12 @@ ActingLoad load_of(const schema::ForceLayer& layer) {
   load.stiffness_n_per_m = local_stiffness_n_per_m(layer);
   layer.visit([](const schema::SpringLayer& /*spring*/) {},
               [&](const schema::DamperLayer& damper) {
-                const schema::LayerNumber& number = damper.damping_n_s_per_m;
-                load.least_damping_n_s_per_m = number.slider ? number.slider->from : number.value;
-                load.most_damping_n_s_per_m = largest_value(number);
+                load.least_damping_n_s_per_m = least_value(damper.damping_n_s_per_m);
+                load.most_damping_n_s_per_m = largest_value(damper.damping_n_s_per_m);
+              },
+              [&](const schema::MoverLayer& mover) {
+                load.least_damping_n_s_per_m = least_value(mover.damping_n_s_per_m);
+                load.most_damping_n_s_per_m = largest_value(mover.damping_n_s_per_m);
               },
               [&](const auto& /*other*/) {
                 if (!(load.stiffness_n_per_m > 0)) load.unknown = type_of(layer);

@@ -15,6 +15,7 @@
 #include "playback/model/texture_lookup.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
+#include "playback/prepare/scene/body_motion.hpp"
 #include "playback/prepare/scene/stable_scene.hpp"
 #include "playback/prepare/texture_check.hpp"
 #include "playback/stability/free_limit.hpp"
@@ -39,9 +40,8 @@ struct KindInBlock {
 
 // Named one by one: a new kind of layer does not compile until it is here or has data.
 template <class L>
-concept NotPlayedYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::BodyLayer> ||
-                       std::same_as<L, schema::LassoLayer> || std::same_as<L, schema::MoverLayer> ||
-                       std::same_as<L, schema::ForceMapLayer> || std::same_as<L, schema::FieldLayer>;
+concept NotPlayedYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::ForceMapLayer> ||
+                       std::same_as<L, schema::FieldLayer>;
 
 template <class T>
 void append(Words& words, const T* parts, std::size_t count) {
@@ -140,6 +140,13 @@ Words table_of(const Relief& relief, double angle_deg, const schema::Patch& patc
   return words;
 }
 
+template <class Table>
+Words words_of(const Table& table) {
+  Words words;
+  append(words, &table, 1);
+  return words;
+}
+
 Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneSteps& steps,
                const Reliefs& reliefs) {
   return layer.visit(
@@ -149,6 +156,17 @@ Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneS
       },
       [&](const schema::GroovesLayer& grooves) { return table_of(grooves, patch, steps); },
       [&](const schema::NoiseLayer& noise) { return table_of(noise, patch, steps); },
+      [&](const schema::BodyLayer& body) {
+        return words_of(body_table(body.mass_kg.value, 0, steps.tick_s));
+      },
+      [&](const schema::LassoLayer& lasso) {
+        return words_of(body_table(lasso.mass_kg.value, lasso.damping_n_s_per_m.value, steps.tick_s));
+      },
+      [](const schema::MoverLayer& mover) {
+        const double angle_rad = mover.direction_deg.value * std::numbers::pi / 180;
+        return words_of(core::MoverTable{static_cast<float>(std::cos(angle_rad)),
+                                         static_cast<float>(std::sin(angle_rad))});
+      },
       [](const auto& /*without a table*/) { return Words(); });
 }
 
@@ -173,6 +191,16 @@ std::optional<KindInBlock> kind_of(const ForceLayer& layer) {
       [](const schema::TextureForceLayer& /*texture*/) -> Kind {
         return {{SceneLayerKind::height_map, {"gain"}}};
       },
+      [](const schema::BodyLayer& /*body*/) -> Kind {
+        return {{SceneLayerKind::body,
+                 {"stiffness_n_per_m", "damping_n_s_per_m", "static_friction_n", "kinetic_friction_n"}}};
+      },
+      [](const schema::LassoLayer& /*lasso*/) -> Kind {
+        return {{SceneLayerKind::lasso, {"stiffness_n_per_m", "length_m"}}};
+      },
+      [](const schema::MoverLayer& /*mover*/) -> Kind {
+        return {{SceneLayerKind::mover, {"damping_n_s_per_m", "speed_mps"}}};
+      },
       [](const NotPlayedYet auto& /*layer*/) -> Kind { return std::nullopt; });
 }
 
@@ -180,10 +208,12 @@ Result<void> check_types(const schema::Scene& scene, const std::string& where) {
   for (std::size_t i = 0; i < scene.patches.size(); ++i)
     for (std::size_t j = 0; j < scene.patches[i].layers.size(); ++j)
       if (const ForceLayer& layer = scene.patches[i].layers[j]; !kind_of(layer))
-        return fail(
-            ErrorKind::unsuitable, fmt::format("layers of the type {} cannot be played yet", type_of(layer)),
-            fmt::format("{}#/patches/{}/layers/{}/type", where, i, j),
-            "the types that can be played are spring, damper, grooves, noise, height_map and texture");
+        return fail(ErrorKind::unsuitable,
+                    fmt::format("layers of the type {} cannot be played yet", type_of(layer)),
+                    fmt::format("{}#/patches/{}/layers/{}/type", where, i, j),
+                    "the types that can be played are spring, damper, grooves, noise, height_map, texture, "
+                    "body, lasso "
+                    "and mover; a body is a mass on a spring and a damper at the hand");
   return {};
 }
 
@@ -260,6 +290,7 @@ Words block_of(const std::vector<schema::Patch>& from, const PlaneSteps& steps, 
                         static_cast<std::uint32_t>(tables.size())});
       const auto of_layer = numbers_in(layer, kind.members);
       numbers.insert(numbers.end(), of_layer.begin(), of_layer.end());
+      numbers.resize(layers.back().first_number + core::numbers_of(kind.kind));
       append(tables, table_of(layer, patch, steps, reliefs));
     }
   }
@@ -300,7 +331,8 @@ std::vector<std::string_view> numbers_in_block(const ForceLayer& layer) {
 }
 
 std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLayer& layer) const {
-  return sizeof(core::SceneLayer) + numbers_in_block(layer).size() * sizeof(float) +
+  const auto kind = kind_of(layer);
+  return sizeof(core::SceneLayer) + (kind ? core::numbers_of(kind->kind) : 0) * sizeof(float) +
          table_of(layer, patch, steps, reliefs).size() * sizeof(std::uint32_t);
 }
 
@@ -394,9 +426,10 @@ Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& wher
     return fail(ErrorKind::unsuitable, "this scene has no force patches", where,
                 "a scene of a tray is played with --transducer");
   TACTO_TRY(check_types(scene, where));
+  TACTO_TRY(check_bodies(scene, where, rate_hz));
   PreparedScene base;
   base.stiffness_limit_n_per_m = stiffness_limit_of(device, rate_hz, hand);
-  base.steps = {0, 0};
+  base.steps = {0, 0, 1 / rate_hz};
   for (const schema::DeviceAxis& axis : device.axes) {
     if (axis.name == "x") base.steps.x_m = axis.encoder_step_m;
     if (axis.name == "y") base.steps.y_m = axis.encoder_step_m;

@@ -20,9 +20,10 @@
 namespace tacto::playback {
 
 /// Displacement of one encoder count, of the axes x and y; of an axis that the device does not have that of
-/// the other one, as in core::SceneKernel.
+/// the other one, as in core::SceneKernel; and the period of a tick.
 struct PlaneSteps {
   double x_m = 1, y_m = 1;
+  double tick_s = 1;
 };
 
 /// A hand that is faster is a jump of the encoder.
@@ -82,8 +83,8 @@ double length_across(const schema::Patch& patch, double direction_deg);
 /// Builds what the scene names and nothing else. Equal orders: the later patch is above. `where` is the
 /// scene's file. Preconditions: a scene as read_scene() gives it; the device has this rate, and an axis x or
 /// y. Errors: unsuitable, if it has no patches; by JSON pointer, for a type of layer that cannot be played
-/// yet (with those that can), and for the filter of grooves on a device without viscous friction; as
-/// read_reliefs and add_adaptive_damping.
+/// yet (with those that can), for bodies (check_bodies()), and for the filter of grooves on a device without
+/// viscous friction; as read_reliefs and add_adaptive_damping.
 schema::Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& where,
                                             const schema::Device& device, double rate_hz,
                                             const std::optional<schema::Hand>& hand = std::nullopt);

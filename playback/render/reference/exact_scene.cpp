@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "firmware-host/core/kernel/level_of_detail.hpp"
 #include "firmware-host/core/scene/edge_speed.hpp"
@@ -53,7 +54,59 @@ std::pair<double, double> slope_of(const ReliefLevel& level, double x, double y)
   return {by_x, by_y};
 }
 
+// A place and a speed after a tick of `tick_s` under a held force: m v' = force - b v by the method of Runge
+// and Kutta, in steps of at most 1/16 of the tick and of m / b: an error below 1e-8 of the change.
+std::pair<double, double> moved(double x, double v, double force_n, double mass_kg, double damping,
+                                double tick_s) {
+  const double steps = 16 * std::ceil(1 + damping * tick_s / mass_kg), h = tick_s / steps;
+  const auto change = [&](double speed) { return (force_n - damping * speed) / mass_kg; };
+  for (double i = 0; i < steps; ++i) {
+    const double a = change(v), b = change(v + h / 2 * a), c = change(v + h / 2 * b), d = change(v + h * c);
+    x += h * (v + h / 6 * (a + b + c));
+    v += h / 6 * (a + 2 * b + 2 * c + d);
+  }
+  return {x, v};
+}
+
 }  // namespace
+
+// Friction is what stops the body at the end of the tick, within its limit: a free choice of the kernel.
+void ExactScene::advance(Body& body, double mass_kg, double damping, Vector force_n, double static_n,
+                         double kinetic_n) const {
+  const auto after = [&](double x, double v, double n) {
+    return moved(x, v, n, mass_kg, damping, 1 / rate_hz_);
+  };
+  const double speed_by_force = after(0, 0, 1).second;
+  const Vector stop{-after(0, body.speed.x, force_n.x).second / speed_by_force,
+                    -after(0, body.speed.y, force_n.y).second / speed_by_force};
+  const double needed_n = std::hypot(stop.x, stop.y);
+  const bool rests = body.speed.x == 0 && body.speed.y == 0;
+  const double most_n = rests ? static_n : kinetic_n;
+  const bool stops = needed_n <= most_n;
+  if (rests && stops) return;
+  const double share = stops ? 1 : most_n / needed_n;
+  std::tie(body.place.x, body.speed.x) = after(body.place.x, body.speed.x, force_n.x + share * stop.x);
+  std::tie(body.place.y, body.speed.y) = after(body.place.y, body.speed.y, force_n.y + share * stop.y);
+  if (stops) body.speed = {};
+}
+
+ExactScene::Vector ExactScene::body_force(const schema::BodyLayer& layer, Body& body, Vector hand,
+                                          Vector speed) const {
+  const double k = layer.stiffness_n_per_m.value, b = layer.damping_n_s_per_m.value;
+  const Vector on_body{k * (hand.x - body.place.x) + b * (speed.x - body.speed.x),
+                       k * (hand.y - body.place.y) + b * (speed.y - body.speed.y)};
+  advance(body, layer.mass_kg.value, 0, on_body, layer.static_friction_n.value,
+          layer.kinetic_friction_n.value);
+  return {-on_body.x, -on_body.y};
+}
+
+ExactScene::Vector ExactScene::lasso_force(const schema::LassoLayer& layer, Body& body, Vector hand) const {
+  const double x = hand.x - body.place.x, y = hand.y - body.place.y, distance = std::hypot(x, y);
+  const double pull_n = std::max(0.0, layer.stiffness_n_per_m.value * (distance - layer.length_m.value));
+  const Vector on_mass = pull_n > 0 ? Vector{pull_n * x / distance, pull_n * y / distance} : Vector{};
+  advance(body, layer.mass_kg.value, layer.damping_n_s_per_m.value, on_mass, 0, 0);
+  return {-on_mass.x, -on_mass.y};
+}
 
 // The levels are half octaves apart; the highest frequency of a level reaches half the rate when it is left.
 ExactScene::Vector ExactScene::relief_force(const Relief& relief, double kappa_n, double angle_rad,
@@ -179,7 +232,8 @@ double ExactScene::track(Speed& speed, std::int64_t count) {
   return speed.per_tick;
 }
 
-ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vector speed) const {
+ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vector speed,
+                                     Bodies* bodies) const {
   Vector sum;
   bool covered = false;
   for (std::size_t i = 0; i < scene_.patches.size(); ++i) {
@@ -189,8 +243,30 @@ ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vec
     if (!there || (covered && !adds)) continue;
     if (!adds) covered = true;
     const double angle = patch.angle_deg * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+    const auto in_patch = [&](Vector v) { return Vector{c * v.x + s * v.y, c * v.y - s * v.x}; };
+    const Vector hand = in_patch({place.x - patch.x_m, place.y - patch.y_m});
+    const auto add_turned = [&](Vector n) { sum.x += c * n.x - s * n.y, sum.y += s * n.x + c * n.y; };
+    // Where it was in the last tick, or at the hand.
+    const auto body_of = [&](const schema::ForceLayer& layer) -> Body& {
+      Body& body = (*bodies)[&layer];
+      if (body.tick != tick_ - 1) body = {hand, {}};
+      body.tick = tick_;
+      return body;
+    };
     for (const schema::ForceLayer& layer : patch.layers)
       layer.visit(
+          [&](const schema::BodyLayer& body) {
+            if (bodies != nullptr) add_turned(body_force(body, body_of(layer), hand, in_patch(speed)));
+          },
+          [&](const schema::LassoLayer& lasso) {
+            if (bodies != nullptr) add_turned(lasso_force(lasso, body_of(layer), hand));
+          },
+          [&](const schema::MoverLayer& mover) {
+            const double along = angle + mover.direction_deg.value * std::numbers::pi / 180;
+            const double b = mover.damping_n_s_per_m.value, own_mps = mover.speed_mps.value;
+            sum.x += b * (own_mps * std::cos(along) - speed.x);
+            sum.y += b * (own_mps * std::sin(along) - speed.y);
+          },
           [&](const schema::SpringLayer& spring) {
             const double u = spring.centre_x_m.value, v = spring.centre_y_m.value;
             const double k = spring.stiffness_n_per_m.value;
@@ -266,7 +342,7 @@ ExactScene::Output ExactScene::tick(const std::vector<std::int32_t>& counts) {
     (x ? single_m.x : single_m.y) = static_cast<float>(counts[i]) * static_cast<float>(axis.encoder_step_m);
     (x ? speed_mps.x : speed_mps.y) = track(speeds_[x ? 0 : 1], counts[i]) * axis.encoder_step_m * rate_hz_;
   }
-  const Vector sum = force(place_m, single_m, speed_mps);
+  const Vector sum = force(place_m, single_m, speed_mps, &bodies_);
   Output output;
   for (const schema::DeviceAxis& axis : device_.axes)
     output.unlimited_n.push_back(axis.name == "x" ? sum.x : axis.name == "y" ? sum.y : 0);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <vector>
 
 #include "data-schema/device/device.hpp"
@@ -31,9 +32,10 @@ class ExactScene {
   struct Vector {
     double x = 0, y = 0;
   };
-  /// The force before the limits on a hand at this place, m, with this speed, m/s. Independent of the ticks.
+  /// The force before the limits on a hand at this place, m, with this speed, m/s. Independent of the ticks:
+  /// without bodies and lassos.
   Vector force_at(Vector place, Vector speed) const {
-    return force(place, {static_cast<float>(place.x), static_cast<float>(place.y)}, speed);
+    return force(place, {static_cast<float>(place.x), static_cast<float>(place.y)}, speed, nullptr);
   }
 
  private:
@@ -53,7 +55,17 @@ class ExactScene {
                      Vector speed) const;
   Vector relief_force(const Relief& relief, double kappa_n, double angle_rad, Vector from_centre,
                       Vector speed) const;
-  Vector force(Vector place, core::PlaneVector single, Vector speed) const;
+  /// In the axes of its patch.
+  struct Body {
+    Vector place, speed;
+    std::int64_t tick = -1;  // in which it moved last
+  };
+  using Bodies = std::map<const schema::ForceLayer*, Body>;
+  Vector body_force(const schema::BodyLayer& layer, Body& body, Vector hand, Vector speed) const;
+  Vector lasso_force(const schema::LassoLayer& layer, Body& body, Vector hand) const;
+  void advance(Body& body, double mass_kg, double damping, Vector force_n, double static_n,
+               double kinetic_n) const;
+  Vector force(Vector place, core::PlaneVector single, Vector speed, Bodies* bodies) const;
   std::vector<double> limited(std::vector<double> force_n);
   struct Rms {
     double limit_n = 0, mean_square = 0, root = 0;
@@ -66,6 +78,7 @@ class ExactScene {
   double rate_hz_;
   std::int64_t tick_ = 0;
   std::array<Speed, 2> speeds_;
+  Bodies bodies_;
   std::vector<Rms> axis_rms_;
   Rms rms_;
   std::vector<double> last_n_;
