@@ -11,6 +11,7 @@
 #include "data-schema/base/quantity.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
+#include "playback/prepare/scene/field_section.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -22,7 +23,7 @@ constexpr double kPlaceOfPeriod = 0x1p-31;  // of a place on a surface (core::pl
 template <class L>
 concept HasNoForceYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::BodyLayer> ||
                         std::same_as<L, schema::LassoLayer> || std::same_as<L, schema::MoverLayer> ||
-                        std::same_as<L, schema::ForceMapLayer> || std::same_as<L, schema::FieldLayer>;
+                        std::same_as<L, schema::ForceMapLayer>;
 
 double largest_size(const schema::LayerNumber& number) {
   double size = std::abs(number.value);
@@ -188,6 +189,10 @@ double rounding_bound_n(const schema::Patch& patch, const schema::ForceLayer& la
       },
       [&](const schema::TextureForceLayer& texture) {
         return 1e-5 * largest_size(texture.gain) * slope_bound(reliefs.of(texture));
+      },
+      [&](const schema::FieldLayer& field) {
+        const auto section = playback::field_section(field, reliefs.of(field), patch);
+        return largest_size(field.force_scale) * playback::field_rounding_n(section, largest_size(field.z_m));
       },
       [](const HasNoForceYet auto& /*layer*/) { return 0.0; });
 }

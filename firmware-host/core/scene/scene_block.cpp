@@ -20,6 +20,9 @@ constexpr float kDeepest_m = 1, kMostKappa_n = 1000;
 constexpr float kMostPeriods_per_m = 1.001e6F;
 constexpr float kLargestAmplitude = 2;  // of a harmonic; 4 / pi of a square wave
 constexpr float kMostSamples_per_m = 1.001e8F;
+constexpr float kMostFieldScale = 1e15F, kMostUnits_per_m = 1e17F, kMostUnits = 0x1p34F;
+constexpr float kMostSquaredSigma = 0x1p66F, kLeastCore = 0.24F, kMostCore = 1.45F;
+constexpr float kMostAtomForce = 1;  // N per unit
 
 bool is_direction(float cosine, float sine) noexcept {
   return within(cosine * cosine + sine * sine, 1 - kUnitRounding, 1 + kUnitRounding);
@@ -42,6 +45,9 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
       return within(number[kDamperDamping], 0, kMostDamping_n_s_per_m);
     case SceneLayerKind::height_map:
       return within(number[kHeightMapKappa], -kMostKappa_n, kMostKappa_n);
+    case SceneLayerKind::field:
+      return within(number[kFieldScale], 0, kMostFieldScale) &&
+             within(number[kFieldZ], -kFarthest_m, kFarthest_m);
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
       break;
@@ -107,6 +113,27 @@ SceneFault check_relief(const SceneView& view, const SceneLayer& layer, uint32_t
              : SceneFault::value;
 }
 
+bool sound(const FieldAtom& atom) noexcept {
+  return within(atom.z, -kMostUnits, kMostUnits) && within(atom.squared_sigma, 1, kMostSquaredSigma) &&
+         within(atom.lennard_jones, 0, kMostAtomForce) &&
+         within(atom.coulomb, -kMostAtomForce, kMostAtomForce);
+}
+
+SceneFault check_field(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                       uint32_t& words) noexcept {
+  constexpr uint32_t kHead = sizeof(FieldTable) / sizeof(uint32_t),
+                     kAtom = sizeof(FieldAtom) / sizeof(uint32_t);
+  if (room < kHead) return SceneFault::structure;
+  const auto& table = table_of<FieldTable>(view, layer);
+  if (table.atoms > kMostAtoms || table.atoms * kAtom > room - kHead) return SceneFault::structure;
+  words = kHead + table.atoms * kAtom;
+  for (uint32_t i = 0; i < table.atoms; ++i)
+    if (!sound(atoms_of(table)[i])) return SceneFault::value;
+  return within(table.units_per_m, 0, kMostUnits_per_m) && within(table.core, kLeastCore, kMostCore)
+             ? SceneFault::none
+             : SceneFault::value;
+}
+
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,
                        uint32_t& words) noexcept {
   switch (static_cast<SceneLayerKind>(layer.kind)) {
@@ -116,6 +143,8 @@ SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t 
       return check_surface(view, layer, &NoiseSurfaceTable::octaves, kMostOctaves, room, words);
     case SceneLayerKind::height_map:
       return check_relief(view, layer, room, words);
+    case SceneLayerKind::field:
+      return check_field(view, layer, room, words);
     case SceneLayerKind::spring:
     case SceneLayerKind::damper:
       break;
@@ -145,7 +174,7 @@ SceneFault check_layers(SceneView& view) noexcept {
     numbers += numbers_of(kind);
     if (numbers > view.number_count) return SceneFault::structure;
     if (!sound(kind, view.numbers + layer.first_number)) return SceneFault::value;
-    view.needs_speed = view.needs_speed || kind != SceneLayerKind::spring;
+    view.needs_speed = view.needs_speed || (kind != SceneLayerKind::spring && kind != SceneLayerKind::field);
     uint32_t words = 0;
     if (const SceneFault fault = check_table(view, layer, view.table_words - tables, words);
         fault != SceneFault::none)

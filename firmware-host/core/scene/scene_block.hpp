@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "firmware-host/core/scene/field.hpp"
 #include "firmware-host/core/scene/lattice_place.hpp"
 #include "firmware-host/core/scene/noise.hpp"
 
@@ -16,14 +17,22 @@ inline constexpr uint32_t kMostLayerNumbers = 3;
 inline constexpr uint32_t kPatchWords = 3;  ///< of a patch in the kernel's memory: its place and its order
 
 /// The kinds of layers that the kernel has. A number is never reused.
-enum class SceneLayerKind : uint16_t { spring = 0, damper = 1, grooves = 2, noise = 3, height_map = 4 };
-inline constexpr uint16_t kSceneLayerKinds = 5;
+enum class SceneLayerKind : uint16_t {
+  spring = 0,
+  damper = 1,
+  grooves = 2,
+  noise = 3,
+  height_map = 4,
+  field = 5
+};
+inline constexpr uint16_t kSceneLayerKinds = 6;
 
 /// The places of a layer's numbers, from its first one.
 enum SpringNumber : uint32_t { kSpringStiffness = 0, kSpringCentreX = 1, kSpringCentreY = 2 };
 enum DamperNumber : uint32_t { kDamperDamping = 0 };
 enum SurfaceNumber : uint32_t { kSurfaceDepth = 0, kSurfaceKappa = 1 };
 enum HeightMapNumber : uint32_t { kHeightMapKappa = 0 };
+enum FieldNumber : uint32_t { kFieldScale = 0, kFieldZ = 1 };
 
 /// How many numbers a layer of a kind has.
 constexpr uint32_t numbers_of(SceneLayerKind kind) noexcept {
@@ -35,6 +44,7 @@ constexpr uint32_t numbers_of(SceneLayerKind kind) noexcept {
       return 1;
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
+    case SceneLayerKind::field:
       break;
   }
   return 2;
@@ -99,6 +109,20 @@ struct NoiseSurfaceTable {
   NoiseTable gradients;
 };
 static_assert(sizeof(NoiseSurfaceTable) == 328);
+
+/// Before the atoms. A unit of length is 2^-32 of a period of the rows, which is more than four times as far
+/// as an atom, or a place in the patch, is from its centre: so their differences do not wrap.
+struct FieldTable {
+  SceneRow along[2];      ///< along the axes x and y of the patch
+  float units_per_m = 0;  ///< for z
+  float core = 1;         ///< FieldForce
+  uint32_t atoms = 0;
+};
+static_assert(sizeof(FieldTable) == 76);
+
+inline const FieldAtom* atoms_of(const FieldTable& table) noexcept {
+  return reinterpret_cast<const FieldAtom*>(&table + 1);
+}
 
 inline constexpr uint32_t kMostReliefLevels = 32;
 /// Of a height map within 1 m: 3 along each axis if its signs alternate.

@@ -21,7 +21,8 @@ struct ForceOutput {
 
 /// force = limits(envelope x sum over patches (sum over layers)) (Minsky 1990), of the topmost patch at the
 /// hand's place and of every patch there that adds. In the axes of a patch, from its centre:
-///   spring: -stiffness (place - centre);  damper: -damping speed;  surface: -kappa grad h.
+///   spring: -stiffness (place - centre);  damper: -damping speed;  surface: -kappa grad h;
+///   field: sum over its atoms.
 /// place = counts x metres_per_count, on a surface in whole counts (place_on()); speed by EdgeSpeed, only in
 /// a scene with a layer that depends on it. A patch is moved by whole counts, with all that belongs to its
 /// place: its force at count n, moved by m, is to the bit that of the patch of the block at n - m. A damper
@@ -65,6 +66,7 @@ class SceneKernel {
   Hand hand_on(uint32_t patch, const Hand& hand) const noexcept;
   PlaneVector groove_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
   PlaneVector noise_force(const SceneLayer& layer, const Hand& hand) const noexcept;
+  PlaneVector field_force(const SceneLayer& layer, const Hand& hand) const noexcept;
   PlaneVector relief_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
 
   struct Ramp {
