@@ -119,24 +119,28 @@ class TextureWorkload {
 
 inline constexpr uint32_t kSceneFingerprint = 1888569271;
 
-/// A scene of three overlapping patches with springs, dampers, grooves, noise and a height map, which move
-/// and change their order, and a hand in the plane whose speed varies between rest and 60 counts per tick;
-/// all limits are reached.
+/// A scene of three overlapping patches with springs, dampers, grooves, noise, a height map and a field of
+/// atoms, which move and change their order, and a hand in the plane whose speed varies between rest and 60
+/// counts per tick; all limits are reached.
 class SceneWorkload {
  public:
   SceneWorkload() noexcept {
-    block_.header.patches = 3, block_.header.layers = 7, block_.header.numbers = 13;
+    block_.header.patches = 3, block_.header.layers = 8, block_.header.numbers = 15;
     block_.header.table_words =
-        (sizeof block_.grooves + sizeof block_.noise + sizeof block_.relief) / sizeof(uint32_t);
+        (sizeof block_.grooves + sizeof block_.noise + sizeof block_.relief + sizeof block_.field) /
+        sizeof(uint32_t);
     block_.patches[0] = {0.01F, 0, 0.8F, 0.6F, 0.02F, 0.01F, 0, 1, 0};
     block_.patches[1] = {0, 0, 1, 0, 0.1F, 0.1F, 1, 2, 0};
-    block_.patches[2] = {0, 0.01F, 0.6F, -0.8F, 0.1F, 0.03F, 3, 4, 1};
-    const uint16_t kinds[7] = {1, 0, 1, 0, 2, 3, 4}, firsts[7] = {0, 1, 4, 5, 8, 10, 12};
-    for (int i = 0; i < 7; ++i) block_.layers[i] = {kinds[i], firsts[i], 0};
+    block_.patches[2] = {0, 0.01F, 0.6F, -0.8F, 0.1F, 0.03F, 3, 5, 1};
+    const uint16_t kinds[8] = {1, 0, 1, 0, 2, 3, 4, 5}, firsts[8] = {0, 1, 4, 5, 8, 10, 12, 13};
+    for (int i = 0; i < 8; ++i) block_.layers[i] = {kinds[i], firsts[i], 0};
     block_.layers[5].table = sizeof block_.grooves / sizeof(uint32_t);
     block_.layers[6].table = (sizeof block_.grooves + sizeof block_.noise) / sizeof(uint32_t);
-    const float numbers[13] = {3.3F, 400, 0.003F, -0.002F, 7.7F, 60, 0.01F, 0, 1e-4F, 2, 2e-4F, 1, 2};
-    for (int i = 0; i < 13; ++i) block_.numbers[i] = numbers[i];
+    block_.layers[7].table =
+        (sizeof block_.grooves + sizeof block_.noise + sizeof block_.relief) / sizeof(uint32_t);
+    const float numbers[15] = {3.3F,  400, 0.003F, -0.002F, 7.7F, 60, 0.01F, 0,
+                               1e-4F, 2,   2e-4F,  1,       2,    3,  0.002F};
+    for (int i = 0; i < 15; ++i) block_.numbers[i] = numbers[i];
     // 1 mm across the axis x of its patch: 0.006 and -0.008 periods per count.
     block_.grooves.table = {
         {-3, 1U << 31, {{0, 25769804, 3435973837U}, {-1, 4260607557U, 858993459}}}, 1000, 0, 9};
@@ -165,6 +169,18 @@ class SceneWorkload {
     WorkloadRandom heights{7};
     for (float& coefficient : block_.relief.coefficients)
       coefficient = static_cast<float>(heights()) * (1e-4F / 32768);
+    // A unit is 2^-32 of 0.5 m; 48 atoms of 3 mm within 0.06 m, 9 mm around the section.
+    block_.field.table = {{{0, 0, {{0, 51539, 2611340115U}, {-1, 4294898576U, 0}}},
+                           {0, 0, {{0, 68719, 2052994367U}, {0, 51539, 2611340115U}}}},
+                          8.589934592e9F,
+                          1,
+                          48};
+    for (core::FieldAtom& atom : block_.field.atoms) {
+      atom.x = heights() * 16384, atom.y = heights() * 16384;
+      atom.z = static_cast<float>(heights()) * 2400;
+      atom.squared_sigma = 6.64e14F;
+      atom.lennard_jones = 4e-10F, atom.coulomb = static_cast<float>(heights()) * 1e-14F;
+    }
     block_.header.check = core::scene_check(&block_, sizeof block_);
     core::SceneView view;
     core::read_scene_block(&block_, sizeof block_, view);
@@ -200,8 +216,8 @@ class SceneWorkload {
   struct Block {
     core::SceneHeader header;
     core::ScenePatch patches[3];
-    core::SceneLayer layers[7];
-    float numbers[13];
+    core::SceneLayer layers[8];
+    float numbers[15];
     struct {
       core::GroovesTable table;
       float amplitudes[9];
@@ -215,11 +231,15 @@ class SceneWorkload {
       core::ReliefLevelTable levels[2];
       float coefficients[16 * 12 + 8 * 6];
     } relief;
+    struct {
+      core::FieldTable table;
+      core::FieldAtom atoms[48];
+    } field;
   } block_;
   WorkloadRandom next_{1990};
   uint32_t flags_ = 0, ticks_ = 0;
   int32_t counts_[2] = {}, speed_[2] = {};
-  float live_[13 + 3 * core::kPatchWords];
+  float live_[15 + 3 * core::kPatchWords];
   core::SceneKernel kernel_;
 };
 

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "data-schema/base/error.hpp"
 #include "data-schema/scene/atoms.hpp"
 #include "data-schema/scene/patch.hpp"
 #include "firmware-host/core/scene/field.hpp"
