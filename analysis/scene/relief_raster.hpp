@@ -38,7 +38,7 @@ struct ReliefRaster {
   }
 };
 
-/// The relief is all that is neither spring nor damper: grooves, noise, height maps. Its force is that of
+/// The relief is all that is neither spring nor damper: grooves, noise, height maps, textures, fields. Its force is that of
 /// playback::ExactScene, the reference of the kernel, on a hand that moves by one pixel in each tick: so
 /// frequencies of over half a cycle in a pixel, which pixels cannot show, are left out by the same rule as in
 /// playback. Where patches overlap, the topmost acts and those that are added. full_n is the force that 10 %
