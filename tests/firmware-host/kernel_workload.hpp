@@ -117,7 +117,7 @@ class TextureWorkload {
   float samples_[kTextureSamples], taps_[kTextureTaps];
 };
 
-inline constexpr uint32_t kSceneFingerprint = 1888569271;
+inline constexpr uint32_t kSceneFingerprint = 2692479182;
 
 /// A scene of three overlapping patches with springs, dampers, grooves, noise, a height map and a field of
 /// atoms, which move and change their order, and a hand in the plane whose speed varies between rest and 60
