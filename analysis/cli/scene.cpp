@@ -3,13 +3,20 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "analysis/cli/verbs.hpp"
 #include "analysis/scene/scene_figure.hpp"
+#include "analysis/scene/scene_sample.hpp"
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/report/progress.hpp"
+#include "playback/player/scene_command.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -19,6 +26,7 @@ using schema::Result;
 
 struct SceneVerbOptions {
   std::string scene, device, hand, session, output;
+  std::vector<std::string> sample;  // what, place
   schema::Existing existing = schema::Existing::keep;
 };
 
@@ -54,7 +62,65 @@ Report report_of(const SceneVerbOptions& o, const ScenePicture& picture, const S
   return report.add("written", o.output);
 }
 
+// Three numbers, in cells.
+std::optional<std::array<double, 3>> cells_of(const std::string& text) {
+  std::array<double, 3> cells{};
+  const char *at = text.data(), *const end = at + text.size();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
+    const auto [next, failed] = std::from_chars(at, end, cells[i]);
+    if (failed != std::errc() || !(std::abs(cells[i]) < 1e9)) return std::nullopt;
+    at = next;
+  }
+  return at == end ? std::optional(cells) : std::nullopt;
+}
+
+// With all digits.
+Result<Report> run_noise_sample(const std::string& place) {
+  const auto cells = cells_of(place);
+  if (!cells)
+    return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is not a place of noise", place),
+                        "--sample", "write three numbers, in cells: --sample noise 3.14,42,7");
+  const NoiseValue value = sample_noise((*cells)[0], (*cells)[1], (*cells)[2]);
+  return Report()
+      .add("noise", fmt::format("{:.12f}", value.exact))
+      .add("kernel", fmt::format("{:.12f}", value.kernel))
+      .add("difference", value.kernel - value.exact);
+}
+
+Result<Report> run_sample(const SceneVerbOptions& o) {
+  if (!o.output.empty() || !o.session.empty())
+    return schema::fail(schema::ErrorKind::usage, "draws no picture", "--sample",
+                        "leave --output and --session out");
+  if (o.scene.empty() && o.sample[0] == "noise") return run_noise_sample(o.sample[1]);
+  if (o.scene.empty() || o.device.empty())
+    return schema::fail(schema::ErrorKind::usage, "needs a scene and a device", "--sample",
+                        "write 'scene SCENE --device NAME --sample PATCH 10mm,20mm', or '--sample noise "
+                        "X,Y,Z' without a scene");
+  const auto place = playback::parse_place(o.sample[1]);
+  TACTO_TRY(place);
+  const auto picture = read_scene_picture(o.scene, o.device, o.hand, {});
+  TACTO_TRY(picture);
+  warn_of(o, *picture);
+  const auto sample = sample_scene(*picture, o.sample[0], place->x_m, place->y_m);
+  TACTO_TRY(sample);
+  return Report()
+      .add("sample", o.sample[0])
+      .add("x_m", sample->x_m)
+      .add("y_m", sample->y_m)
+      .add("force_x_n", sample->force_x_n)
+      .add("force_y_n", sample->force_y_n)
+      .add("kernel_x_n", sample->kernel_x_n)
+      .add("kernel_y_n", sample->kernel_y_n)
+      .add("difference_n",
+           std::hypot(sample->kernel_x_n - sample->force_x_n, sample->kernel_y_n - sample->force_y_n));
+}
+
 Result<Report> run_scene(const SceneVerbOptions& o) {
+  if (!o.sample.empty()) return run_sample(o);
+  if (o.scene.empty() || o.output.empty())
+    return schema::fail(schema::ErrorKind::usage, "needs a scene and the file to write",
+                        o.scene.empty() ? "SCENE" : "--output", "write 'scene SCENE -o NAME.png'");
   TACTO_TRY(cli::check_ending(o.output, {".png", ".svg"}, "use .png or .svg"));
   TACTO_TRY(schema::check_output_free(o.output, o.existing));
   if (!o.hand.empty() && o.device.empty())
@@ -76,9 +142,14 @@ cli::Action declare_scene(CLI::App& app) {
   auto options = std::make_shared<SceneVerbOptions>();
   SceneVerbOptions& o = *options;
   app.add_option("SCENE", o.scene,
-                 "Scene with force patches: stem or file name ('info' lists what it contains)")
-      ->required();
-  app.add_option("-o,--output", o.output, "Output file, .png or .svg")->required();
+                 "Scene with force patches: stem or file name ('info' lists what it contains)");
+  app.add_option("-o,--output", o.output, "Output file, .png or .svg");
+  app.add_option(
+         "--sample", o.sample,
+         "Instead of a picture: the force of PATCH, or of the layer PATCH.INDEX, on a hand at rest at "
+         "X,Y (10mm,20mm) on --device, before its limits: in double precision, and as the device "
+         "computes it. Without a scene 'noise X,Y,Z': the value of Perlin's improved noise, in cells")
+      ->expected(2);
   app.add_option(
       "--device", o.device,
       fmt::format("Draw the travel of this force device, and filter grooves for it: a preset ({}) or "
@@ -98,7 +169,8 @@ cli::Action declare_scene(CLI::App& app) {
 const cli::Verb kSceneVerb{
     "scene", "Draw the force patches of a scene in the plane, and the path and forces of a session over them",
     "tactograph scene plane -o plane.png --device sandpaper-1990\n"
-    "  tactograph scene plane -o pushed.svg --session pushed",
+    "  tactograph scene plane -o pushed.svg --session pushed\n"
+    "  tactograph scene plane --device sandpaper-1990 --sample sand 10mm,20mm",
     declare_scene};
 
 }  // namespace tacto::analysis

@@ -76,13 +76,13 @@ struct Design {
   bool is_unstable() const;
 };
 
-/// Springs, dampers, grooves, noise and height maps (their largest local stiffness) of all patches on the
-/// axes x and y, with the dampers that were added for adaptive layers. Patches that act at one place add up.
-/// A layer is unstable if the computed limit is passed, or if a simulated tap grows. Errors: unsuitable: the
-/// scene has no patches; the delay is beyond 50 ticks; with `simulate`, those of playback::prepare_scene().
-/// `where` is the scene's file. Preconditions: grooves have a filter (set_filters()), height maps were read
-/// (read_reliefs()), dampers of adaptive layers added (add_adaptive_damping()); a device with an axis x or y,
-/// and a rate that it has.
+/// Springs, dampers, grooves, noise, height maps, textures and fields (their largest local stiffness) of all
+/// patches on the axes x and y, with the dampers that were added for adaptive layers. Patches that act at one
+/// place add up. A layer is unstable if the computed limit is passed, or if a simulated tap grows. Errors:
+/// unsuitable: the scene has no patches; the delay is beyond 50 ticks; with `simulate`, those of
+/// playback::prepare_scene(). `where` is the scene's file. Preconditions: grooves have a filter
+/// (set_filters()), height maps were read (read_reliefs()), dampers of adaptive layers added
+/// (add_adaptive_damping()); a device with an axis x or y, and a rate that it has.
 schema::Result<Design> design_scene(const schema::Scene& scene, const std::string& where,
                                     const DesignRequest& request);
 

@@ -39,12 +39,12 @@ struct ReliefRaster {
 };
 
 /// The relief is all that is neither spring (nor the spring of a body or a lasso) nor damper (nor mover):
-/// grooves, noise, height maps. Its force is that of
-/// playback::ExactScene, the reference of the kernel, on a hand that moves by one pixel in each tick: so
-/// frequencies of over half a cycle in a pixel, which pixels cannot show, are left out by the same rule as in
-/// playback. Where patches overlap, the topmost acts and those that are added. full_n is the force that 10 %
-/// of the pixels with a relief exceed, at least a tenth of the largest. `rate_hz`: that for which the scene
-/// was prepared. `progress` receives fractions.
+/// grooves, noise, height maps, textures, fields. Its force is that of playback::ExactScene, the reference of
+/// the kernel, on a hand that moves by one pixel in each tick: so frequencies of over half a cycle in a
+/// pixel, which pixels cannot show, are left out by the same rule as in playback. Where patches overlap, the
+/// topmost acts and those that are added. full_n is the force that 10 % of the pixels with a relief exceed,
+/// at least a tenth of the largest. `rate_hz`: that for which the scene was prepared. `progress` receives
+/// fractions.
 ReliefRaster relief_raster(const playback::PreparedScene& scene, double rate_hz, const PixelGrid& grid,
                            const std::function<void(double)>& progress = {});
 

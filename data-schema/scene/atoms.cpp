@@ -15,8 +15,6 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::size_t kMostAtoms = 1 << 20;  // two thousand take 10 us a tick: no scene has more
-
 struct AtomColumn {
   std::string_view name;
   double Atom::*member;
@@ -123,6 +121,13 @@ class AtomReader {
   Result<void> keep(const Atom& atom) {
     if (!(atom.sigma_m > 0)) return fault(fmt::format("sigma_m is {:g}", atom.sigma_m), "above 0");
     if (!(atom.epsilon_j >= 0)) return fault(fmt::format("epsilon_j is {:g}", atom.epsilon_j), "0 or above");
+    if (const double force_n = atom.epsilon_j / atom.sigma_m; !(force_n <= kMostAtomForce_n))
+      return fault(fmt::format("epsilon_j / sigma_m is {:g} N", force_n),
+                   fmt::format("at most {:g} N", kMostAtomForce_n));
+    for (const double place_m : {atom.x_m, atom.y_m, atom.z_m})
+      if (!(std::abs(place_m) <= kFarthestAtom_m))
+        return fault(fmt::format("a place is {:g} m", place_m),
+                     fmt::format("within {:g} m of the origin", kFarthestAtom_m));
     atoms_.push_back(atom);
     return {};
   }

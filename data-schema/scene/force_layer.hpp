@@ -145,11 +145,17 @@ struct ForceMapLayer {
   std::string extra_json;
 };
 
-/// The field of atoms (Lennard-Jones and Coulomb) in a plane through them.
+/// The field of atoms (Lennard-Jones and Coulomb) on a probe, in a plane section through them. The origin of
+/// the atoms is the centre of the patch.
 struct FieldLayer {
-  std::string file;  ///< CSV of atoms, from the scene's folder (atoms.hpp)
-  LayerNumber z_m;   ///< of the section in which the hand moves
+  std::string file;          ///< CSV of atoms, from the scene's folder (atoms.hpp)
+  LayerNumber length_scale;  ///< length on the bench, divided by that of the atoms
+  LayerNumber force_scale;   ///< force on the hand, divided by that on the probe
+  LayerNumber z_m;           ///< of the section in which the hand moves, on the bench
+  LayerNumber core{1};       ///< radius of the core, where the force is bounded, divided by sigma
+  LayerNumber probe_charge_c;
   std::string extra_json;
+  double stiffest_n_per_m = 0;  ///< not in the file: on the bench at a force_scale of 1, once it was read
 };
 
 /// One layer of a patch, of one kind. Code that reads a layer handles every kind of it, or does not compile.

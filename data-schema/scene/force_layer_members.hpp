@@ -115,7 +115,11 @@ struct LayerMembers<ForceMapLayer> {
 template <>
 struct LayerMembers<FieldLayer> {
   static constexpr std::string_view kType = "field";
-  static constexpr LayerMember<FieldLayer> kNumbers[] = {{"z_m", &FieldLayer::z_m}};
+  static constexpr LayerMember<FieldLayer> kNumbers[] = {{"length_scale", &FieldLayer::length_scale},
+                                                         {"force_scale", &FieldLayer::force_scale},
+                                                         {"z_m", &FieldLayer::z_m},
+                                                         {"core", &FieldLayer::core},
+                                                         {"probe_charge_c", &FieldLayer::probe_charge_c}};
 };
 
 template <class L>

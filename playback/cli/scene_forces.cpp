@@ -224,6 +224,7 @@ Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::si
       [&](const schema::TextureForceLayer& texture) {
         add_height_map(row, on.scene.reliefs.of(texture), double{on.setup.rate_hz});
       },
+      [&](const schema::FieldLayer& field) { row.add("atoms", on.scene.reliefs.of(field).size()); },
       [&](const schema::NoiseLayer& noise) { add_noise(row, noise, double{on.setup.rate_hz}); },
       [&](const schema::BodyLayer& body) {
         at_limit("force_limit_at_displacement_m", body.stiffness_n_per_m.value);

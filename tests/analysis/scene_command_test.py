@@ -145,9 +145,25 @@ def wrong_uses_are_refused():
     refused(UNSUITABLE, "tray.session", "bench", "-o", "x.png", "--session", "tray")
 
 
+def samples_are_the_reference_and_the_kernel():
+    shown = run_json("scene", "--sample", "noise", "3.14,42,7")
+    # Perlin's program of 2002 prints 0.136919958784; single precision is within 2e-7.
+    assert shown["noise"] == "0.136919958784" and abs(float(shown["kernel"]) - 0.136919958784) < 2e-7, shown
+    # A spring of 40 N/m to (10 mm, -30 mm): exact but for the encoder's count of 10 um.
+    shown = run_json("scene", "bench", "--device", "sandpaper-1990", "--sample", "pool.0", "20mm,-20mm")
+    for key in ("force_x_n", "kernel_x_n", "force_y_n", "kernel_y_n"):
+        assert abs(shown[key] + 40 * 0.01) < 1e-6, shown
+    whole = run_json("scene", "bench", "--device", "sandpaper-1990", "--sample", "pool", "20mm,-20mm")
+    assert whole["force_x_n"] == shown["force_x_n"], whole  # its damper has no force at rest
+    for code, *wrong in ((USAGE, "--sample", "noise", "1,2"), (USAGE, "bench", "--sample", "pool", "20mm,-20mm"),
+                         (NOT_FOUND, "bench", "--device", "sandpaper-1990", "--sample", "pool.7", "20mm,-20mm"),
+                         (UNSUITABLE, "bench", "--device", "sandpaper-1990", "--sample", "pool", "90mm,90mm")):
+        assert "--sample" in run("scene", *wrong, code=code)[1], wrong
+
+
 def all_of_it():
     write_bench()
-    for test in (a_scene_becomes_a_picture, the_session_is_where_its_ticks_are, another_scene_than_the_session_s_is_named, wrong_uses_are_refused):
+    for test in (a_scene_becomes_a_picture, the_session_is_where_its_ticks_are, another_scene_than_the_session_s_is_named, samples_are_the_reference_and_the_kernel, wrong_uses_are_refused):
         test()
         print(f"{test.__name__}: passed")
 

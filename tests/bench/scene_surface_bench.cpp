@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One place on a surface of a force scene, value and slope: at most 1 us each. Batches of 1000 places.
+// One place on a surface of a force scene, value and slope: at most 1 us each; of 2000 atoms, at most 10 us.
+// Batches of 1000 places.
 #include <benchmark/benchmark.h>
 
 #include <vector>
 
+#include "firmware-host/core/scene/field.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/noise.hpp"
 #include "firmware-host/core/scene/relief.hpp"
@@ -79,6 +81,29 @@ void SceneReliefTwoLevelsCold(benchmark::State& state) {
   relief_of_two_levels(state, std::int64_t{1'234'567'890'123});
 }
 BENCHMARK(SceneReliefTwoLevelsCold);
+
+// At most 10 us a place.
+void SceneFieldOf2000Atoms(benchmark::State& state) {
+  std::vector<core::FieldAtom> atoms(2000);
+  std::uint32_t draw = 1;
+  for (core::FieldAtom& atom : atoms) {
+    atom.x = static_cast<std::int32_t>(draw = draw * 1664525U + 1013904223U) / 8;
+    atom.y = static_cast<std::int32_t>(draw = draw * 1664525U + 1013904223U) / 8;
+    atom.squared_sigma = 1e15F;
+    atom.lennard_jones = 1e-12F, atom.coulomb = 1e-14F;
+  }
+  std::int32_t x = 0, y = 0;
+  for (auto _ : state) {
+    float sum = 0;
+    for (int i = 0; i < kPlaces; ++i)
+      sum += core::field_force(atoms.data(), 2000, 1, x = (x + 7919) & 0xFFFFFFF,
+                               y = (y + 104729) & 0xFFFFFFF, 0)
+                 .x;
+    benchmark::DoNotOptimize(sum);
+  }
+  count_places(state);
+}
+BENCHMARK(SceneFieldOf2000Atoms);
 
 }  // namespace
 }  // namespace tacto::playback

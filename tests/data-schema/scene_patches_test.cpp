@@ -39,7 +39,7 @@ const Body kLayers = {
     {{"type", "lasso"}, {"mass_kg", 0.1}, {"stiffness_n_per_m", 200}, {"length_m", 0.03}},
     {{"type", "mover"}, {"speed_mps", -0.1}, {"damping_n_s_per_m", 3}},
     {{"type", "force_map"}, {"file", "forces"}},
-    {{"type", "field"}, {"file", "atoms.csv"}, {"z_m", 1e-3}}};
+    {{"type", "field"}, {"file", "atoms.csv"}, {"length_scale", 1e7}, {"force_scale", 1e10}, {"z_m", 1e-3}}};
 
 Body patch_body(const std::string& name, const Body& layers) {
   return {{"name", name},
@@ -119,7 +119,11 @@ TEST(ScenePatches, DefaultsAreThoseOfTheSchema) {
   const auto expect = [](const LayerNumber& number, double value) { EXPECT_EQ(number, LayerNumber{value}); };
   for (const ForceLayer& each : scene->patches[0].layers)
     each.visit([](const HeightMapLayer&) {}, [](const SpringLayer&) {}, [](const DamperLayer&) {},
-               [](const MassLayer&) {}, [](const LassoLayer&) {}, [](const FieldLayer&) {},
+               [](const MassLayer&) {}, [](const LassoLayer&) {},
+               [&](const FieldLayer& of) {
+                 expect(of.core, 1);
+                 expect(of.probe_charge_c, 0);
+               },
                [&](const GroovesLayer& of) {
                  EXPECT_EQ(of.profile, GrooveProfile::square);
                  EXPECT_FALSE(of.filter_m);
@@ -238,7 +242,7 @@ TEST(ScenePatches, EveryNumberMayHaveASlider) {
   for (const ForceLayer& each : scene->patches[0].layers)
     for (const auto& [name, number, whole] : numbers_of(each)) with_slider += number.slider.has_value();
   EXPECT_EQ(with_slider, numbers);
-  EXPECT_EQ(numbers, 24U);
+  EXPECT_EQ(numbers, 26U);
 }
 
 TEST(ScenePatches, ASceneOfATrayIsWrittenAsItWasRead) {
@@ -554,6 +558,11 @@ TEST_F(AtomFile, FaultsAreNamedByLine) {
   expect_fault(header_ + "0,1mm,0,1,1,0\n", "line 2", "'1mm' is no finite number");
   expect_fault(header_ + "0,0,0,0,1,0\n", "line 2", "sigma_m is 0");
   expect_fault(header_ + "0,0,0,1,-1,0\n", "line 2", "epsilon_j is -1");
+  expect_fault(header_ + "0,0,0,1e-3,2000,0\n", "line 2", "epsilon_j / sigma_m is 2e+06 N");
+  expect_fault(header_ + "0,0,1001,1,1,0\n", "line 2", "a place is 1001 m");
+  std::string many = header_;
+  for (std::size_t i = 0; i <= kMostAtoms; ++i) many += "0,0,0,1,1,0\n";
+  expect_fault(many, "line 4098", "more than 4096 atoms");
   EXPECT_EQ(read_atoms(folder_ / "none.csv").error().kind, ErrorKind::not_found);
 }
 

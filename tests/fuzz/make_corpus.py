@@ -68,6 +68,12 @@ def relief_table(per_m, levels):
     return table + coefficients
 
 
+def field_table(units_per_m, core, atoms):
+    """Two rows of 2^-32 periods per count; an atom is (x, y, z, sigma^2, force constants)."""
+    along = struct.pack("<iIiIIiII", 0, 0, 0, 86, 0, -1, 0xFFFFFFA0, 0)
+    return along * 2 + struct.pack("<2fI", units_per_m, core, len(atoms)) + b"".join(struct.pack("<2i4f", *atom) for atom in atoms)
+
+
 def scene_block(patches):
     """With a check of zero; a patch is (x, y, cosine, sine, half sizes, adds, [(kind, numbers, table)]), the table if there is one."""
     layers = [layer for patch in patches for layer in patch[-1]]
@@ -132,7 +138,7 @@ DEVICES = {
 }
 
 
-SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP, BODY, LASSO, MOVER = 0, 1, 2, 3, 4, 5, 6, 7
+SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP, BODY, LASSO, MOVER, FIELD = 0, 1, 2, 3, 4, 5, 6, 7, 8
 AT_REST = (0,) * 9
 SCENES = {
     "spring": scene((3, -2, 5, 0), [(0, 0, 1, 0, 0.1, 0.1, 0, [(SPRING, (100, 0, 0))])]),
@@ -150,6 +156,8 @@ SCENES = {
                                                                     (MOVER, (3, 0.1), struct.pack("<2f", 0.6, -0.8))])]),
     "stiff_bodies": scene((90, 2**30, -70, 40), [(0, 0, 1, 0, 1000, 1000, 0, [(BODY, (1e6, 1e4, 0, 0, *AT_REST), struct.pack("<4f", 0, 10, 1e9, 1e9)),
                                                                             (LASSO, (1e6, 0, *AT_REST), struct.pack("<4f", -1, 0, 1e-12, 0))])]),
+    "field": scene((3, -2, 50, 7), [(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(FIELD, (1e10, 0.001), field_table(8.6e9, 1, ((5, -9, 0, 6e14, 1e-18, 0), (10**7, 10**6, 1e6, 6e14, 1e-18, -1e-19))))]),
+                                    (0, 0, 1, 0, 1000, 1000, 1, [(FIELD, (1e15, -10), field_table(1e17, 0.25, ((2**31 - 1, -2**31, 1e10, 7e19, 1, 1), (0, 0, 0, 1, 1, -1))))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,))])]),
 }
 

@@ -109,6 +109,44 @@ def sine_grooves_are_their_derivative():
     assert worst < 3e-7 * np.abs(force).max() and report["largest_rounding_n"] < 3e-7 * np.abs(force).max(), (worst, report)
 
 
+def a_field_is_the_direct_sum_of_its_atoms():
+    random = np.random.default_rng(9)
+    atoms = np.column_stack([random.uniform(-2e-9, 2e-9, (60, 2)), random.uniform(-5e-10, 5e-10, 60),
+                             random.uniform(2.5e-10, 3.5e-10, 60), random.uniform(1e-22, 1e-21, 60), random.uniform(-1e-20, 1e-20, 60)])
+    header = "x_m,y_m,z_m,sigma_m,epsilon_j,charge_c"
+    np.savetxt("atoms.csv", atoms, delimiter=",", header=header, comments="", fmt="%.17g")
+    layer = {"type": "field", "file": "atoms.csv", "length_scale": 1.5e7, "force_scale": 5e8, "z_m": 0.002, "core": 0.9, "probe_charge_c": 1.602176634e-19}
+    write_scene("docking", patch(x_m=0.01, angle_deg=30, width_m=0.2, height_m=0.2, layers=[layer]))
+    write_path("path.csv", {"time_s": [0, 1, 2, 3], "x_m": [-0.02, 0.04, 0.0, 0.03], "y_m": [0.0, 0.01, -0.03, 0.03]})
+    report = json.loads(render("docking.scene.json", "--json")[0])
+    table, angle = forces(), np.deg2rad(30)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    place = turn.T @ np.array([counted(table["x_m"]) - 0.01, counted(table["y_m"])])
+    way = np.vstack([place, np.full(len(table), 0.002)])[:, :, None] / 1.5e7 - atoms[:, :3].T[:, None, :]
+    sigma, epsilon, charge = atoms[:, 3:].T
+    r = np.sqrt((way**2).sum(axis=0))
+    held = np.maximum(r, 0.9 * sigma)
+    lennard_jones = 24 * epsilon / held * (2 * (sigma / held)**12 - (sigma / held)**6)
+    coulomb = charge * 1.602176634e-19 / (4 * np.pi * 8.8541878188e-12 * held**2)
+    force = 5e8 * turn @ ((lennard_jones + coulomb) * way[:2] / held).sum(axis=2)
+    worst = np.abs(force - np.array([table["force_x_n"], table["force_y_n"]])).max()
+    print(f"  a field of 60 atoms: within {worst:.2g} N of the direct sum, of {np.abs(force).max():.3g} N")
+    assert report["peak_limited_ticks"] == report["slew_limited_ticks"] == report["rms_limited_ticks"] == 0, report
+    # Single precision: up to 35 roundings of s^7, and units of the place.
+    assert worst < 3e-6 * np.abs(force).max() and report["largest_rounding_n"] < 3e-6 * np.abs(force).max(), (worst, report)
+    explained = run_json("explain", "docking.scene.json", "--device", "sandpaper-1990")["layers"][0]
+    step, change = np.hypot(*np.diff(place)), np.hypot(*np.diff(force))
+    steepest = (change[step > 0] / step[step > 0]).max()
+    # No change along the path is steeper; 5 %: its search takes places around each core and a grid.
+    assert explained["atoms"] == 60 and explained["stiffness_n_per_m"] > 0.95 * steepest, (explained, steepest)
+    for text, words in (("0,0,0,nan,1,0", "line 2"), ("0,0,0,1e-10,1e-21", "line 2")):
+        pathlib.Path("atoms.csv").write_text(f"{header}\n{text}\n")
+        error = render("docking.scene.json", code=MALFORMED)[1]
+        assert "atoms.csv" in error and words in error, error
+    write_scene("unscaled", patch(layers=[{"type": "field", "file": "atoms.csv", "force_scale": 1}]))
+    assert "length_scale" in render("unscaled.scene.json", code=MALFORMED)[1]
+
+
 def a_filtered_step_rests_and_a_steeper_one_swings():
     # At x = -sigma on a rising step the curvature is the largest. A soft hand far away (0.1 N/m) pushes with the force that balances it there.
     rate, kappa, depth, period, mass, viscous = 1000, 2.0, 1e-4, 0.01, 0.1, 1.17
@@ -371,7 +409,7 @@ def coulomb_friction_holds_the_hand():
 
 
 if __name__ == "__main__":
-    for test in (springs_are_numpys, sine_grooves_are_their_derivative, a_filtered_step_rests_and_a_steeper_one_swings, dampers_follow_the_path, what_a_device_cannot_do_is_warned_of, wrong_uses_are_refused, explain_lists_what_is_built,
+    for test in (springs_are_numpys, sine_grooves_are_their_derivative, a_field_is_the_direct_sum_of_its_atoms, a_filtered_step_rests_and_a_steeper_one_swings, dampers_follow_the_path, what_a_device_cannot_do_is_warned_of, wrong_uses_are_refused, explain_lists_what_is_built,
                  a_device_of_one_axis_moves_on_a_line, a_hand_on_a_spring_and_a_damper_is_scipys_loop, a_brick_in_a_hand_is_scipys_loop,
                  bodies_that_are_too_stiff_are_refused, a_stiff_spring_is_stable_at_1_khz_and_not_at_100_hz,
                  coulomb_friction_holds_the_hand):

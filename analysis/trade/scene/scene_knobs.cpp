@@ -11,6 +11,7 @@
 #include "data-schema/base/quantity.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
+#include "playback/prepare/scene/field_section.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -20,8 +21,7 @@ constexpr double kPlaceOfPeriod = 0x1p-31;  // of a place on a surface (core::pl
 
 // Named one by one: a new kind of layer does not compile until its rounding has a bound.
 template <class L>
-concept HasNoForceYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::ForceMapLayer> ||
-                        std::same_as<L, schema::FieldLayer>;
+concept HasNoForceYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::ForceMapLayer>;
 
 double largest_size(const schema::LayerNumber& number) {
   double size = std::abs(number.value);
@@ -211,6 +211,10 @@ double rounding_bound_n(const schema::Patch& patch, const schema::ForceLayer& la
         return rounding_of_coupling_n(2 * half_diagonal_m(patch) + std::hypot(patch.x_m, patch.y_m),
                                       largest_size(lasso.stiffness_n_per_m),
                                       largest_size(lasso.damping_n_s_per_m), lasso.mass_kg.value);
+      },
+      [&](const schema::FieldLayer& field) {
+        const auto section = playback::field_section(field, reliefs.of(field), patch);
+        return largest_size(field.force_scale) * playback::field_rounding_n(section, largest_size(field.z_m));
       },
       [](const HasNoForceYet auto& /*layer*/) { return 0.0; });
 }

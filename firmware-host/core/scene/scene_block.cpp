@@ -22,6 +22,9 @@ constexpr float kLargestAmplitude = 2;  // of a harmonic; 4 / pi of a square wav
 constexpr float kMostSamples_per_m = 1.001e8F;
 constexpr float kMostFriction_n = 1000, kFastestMover_mps = 10;
 constexpr float kLongestTick_s = 10, kLightest_per_kg = 1e9F, kHeaviest_per_kg = 1e-12F;
+constexpr float kMostFieldScale = 1e15F, kMostUnits_per_m = 1e17F, kMostUnits = 0x1p34F;
+constexpr float kMostSquaredSigma = 0x1p66F, kLeastCore = 0.24F, kMostCore = 1.45F;
+constexpr float kMostAtomForce = 1;  // N per unit
 
 bool is_direction(float cosine, float sine) noexcept {
   return within(cosine * cosine + sine * sine, 1 - kUnitRounding, 1 + kUnitRounding);
@@ -55,6 +58,9 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
     case SceneLayerKind::mover:
       return within(number[kMoverDamping], 0, kMostDamping_n_s_per_m) &&
              within(number[kMoverSpeed], -kFastestMover_mps, kFastestMover_mps);
+    case SceneLayerKind::field:
+      return within(number[kFieldScale], 0, kMostFieldScale) &&
+             within(number[kFieldZ], -kFarthest_m, kFarthest_m);
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
       break;
@@ -146,6 +152,27 @@ SceneFault check_relief(const SceneView& view, const SceneLayer& layer, uint32_t
              : SceneFault::value;
 }
 
+bool sound(const FieldAtom& atom) noexcept {
+  return within(atom.z, -kMostUnits, kMostUnits) && within(atom.squared_sigma, 1, kMostSquaredSigma) &&
+         within(atom.lennard_jones, 0, kMostAtomForce) &&
+         within(atom.coulomb, -kMostAtomForce, kMostAtomForce);
+}
+
+SceneFault check_field(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                       uint32_t& words) noexcept {
+  constexpr uint32_t kHead = sizeof(FieldTable) / sizeof(uint32_t),
+                     kAtom = sizeof(FieldAtom) / sizeof(uint32_t);
+  if (room < kHead) return SceneFault::structure;
+  const auto& table = table_of<FieldTable>(view, layer);
+  if (table.atoms > kMostAtoms || table.atoms * kAtom > room - kHead) return SceneFault::structure;
+  words = kHead + table.atoms * kAtom;
+  for (uint32_t i = 0; i < table.atoms; ++i)
+    if (!sound(atoms_of(table)[i])) return SceneFault::value;
+  return within(table.units_per_m, 0, kMostUnits_per_m) && within(table.core, kLeastCore, kMostCore)
+             ? SceneFault::none
+             : SceneFault::value;
+}
+
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,
                        uint32_t& words) noexcept {
   switch (static_cast<SceneLayerKind>(layer.kind)) {
@@ -160,6 +187,8 @@ SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t 
       return check_plain<BodyTable>(view, layer, room, words);
     case SceneLayerKind::mover:
       return check_plain<MoverTable>(view, layer, room, words);
+    case SceneLayerKind::field:
+      return check_field(view, layer, room, words);
     case SceneLayerKind::spring:
     case SceneLayerKind::damper:
       break;
@@ -191,7 +220,8 @@ SceneFault check_layers(SceneView& view) noexcept {
     if (numbers > view.number_count || bodies > kMostSceneBodies) return SceneFault::structure;
     const float* const number = view.numbers + layer.first_number;
     if (!sound(kind, number) || !state_is_zero(kind, number)) return SceneFault::value;
-    view.needs_speed = view.needs_speed || (kind != SceneLayerKind::spring && kind != SceneLayerKind::lasso);
+    view.needs_speed = view.needs_speed || (kind != SceneLayerKind::spring && kind != SceneLayerKind::lasso &&
+                                            kind != SceneLayerKind::field);
     uint32_t words = 0;
     if (const SceneFault fault = check_table(view, layer, view.table_words - tables, words);
         fault != SceneFault::none)

@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "firmware-host/core/scene/field.hpp"
 #include "firmware-host/core/scene/lattice_place.hpp"
 #include "firmware-host/core/scene/noise.hpp"
 
@@ -25,9 +26,10 @@ enum class SceneLayerKind : uint16_t {
   height_map = 4,
   body = 5,
   lasso = 6,
-  mover = 7
+  mover = 7,
+  field = 8
 };
-inline constexpr uint16_t kSceneLayerKinds = 8;
+inline constexpr uint16_t kSceneLayerKinds = 9;
 
 /// The places of a layer's numbers, from its first one.
 enum SpringNumber : uint32_t { kSpringStiffness = 0, kSpringCentreX = 1, kSpringCentreY = 2 };
@@ -44,6 +46,7 @@ enum LassoNumber : uint32_t { kLassoStiffness = 0, kLassoLength = 1 };
 enum MoverNumber : uint32_t { kMoverDamping = 0, kMoverSpeed = 1 };
 /// Behind these numbers of a body and a lasso: its state (BodyState), 0 in a block.
 inline constexpr uint32_t kBodyStateWords = 9;
+enum FieldNumber : uint32_t { kFieldScale = 0, kFieldZ = 1 };
 
 /// Whether a layer of a kind has a state.
 constexpr bool has_body(SceneLayerKind kind) noexcept {
@@ -64,6 +67,7 @@ constexpr uint32_t changeable_numbers_of(SceneLayerKind kind) noexcept {
     case SceneLayerKind::noise:
     case SceneLayerKind::lasso:
     case SceneLayerKind::mover:
+    case SceneLayerKind::field:
       break;
   }
   return 2;
@@ -133,6 +137,20 @@ struct NoiseSurfaceTable {
   NoiseTable gradients;
 };
 static_assert(sizeof(NoiseSurfaceTable) == 328);
+
+/// Before the atoms. A unit of length is 2^-32 of a period of the rows, which is more than four times as far
+/// as an atom, or a place in the patch, is from its centre: so their differences do not wrap.
+struct FieldTable {
+  SceneRow along[2];      ///< along the axes x and y of the patch
+  float units_per_m = 0;  ///< for z
+  float core = 1;         ///< FieldForce
+  uint32_t atoms = 0;
+};
+static_assert(sizeof(FieldTable) == 76);
+
+inline const FieldAtom* atoms_of(const FieldTable& table) noexcept {
+  return reinterpret_cast<const FieldAtom*>(&table + 1);
+}
 
 inline constexpr uint32_t kMostReliefLevels = 32;
 /// Of a height map within 1 m: 3 along each axis if its signs alternate.

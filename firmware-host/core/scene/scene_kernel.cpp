@@ -4,6 +4,7 @@
 #include "firmware-host/core/kernel/finite.hpp"
 #include "firmware-host/core/kernel/level_of_detail.hpp"
 #include "firmware-host/core/scene/body.hpp"
+#include "firmware-host/core/scene/field.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/relief.hpp"
 
@@ -203,6 +204,17 @@ PlaneVector SceneKernel::body_force(const SceneLayer& layer, const Hand& hand, P
   return {-force_n.x, -force_n.y};
 }
 
+// Units of length are 2^-32 periods: the lower half of a place, whose upper half is 0 in the patch.
+PlaneVector SceneKernel::field_force(const SceneLayer& layer, const Hand& hand) const noexcept {
+  const auto& table = table_of<FieldTable>(scene_, layer);
+  const float* const number = live_ + layer.first_number;
+  int32_t units[2];
+  for (int i = 0; i < 2; ++i) units[i] = static_cast<int32_t>(place_on(table.along[i], hand.counts));
+  const FieldForce at = core::field_force(atoms_of(table), table.atoms, table.core, units[0], units[1],
+                                          number[kFieldZ] * table.units_per_m);
+  return {number[kFieldScale] * at.x, number[kFieldScale] * at.y};
+}
+
 PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) noexcept {
   const PlaneVector place = hand.place_m, speed = into_patch(patch, hand.speed_mps),
                     along = into_patch(patch, hand.along_mps);
@@ -239,6 +251,9 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) noe
                  number[kMoverDamping] * (own_mps * table.sine - speed.y)};
         break;
       }
+      case SceneLayerKind::field:
+        force = field_force(layer, hand);
+        break;
     }
     sum.x += force.x;
     sum.y += force.y;

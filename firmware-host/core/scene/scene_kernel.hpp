@@ -22,6 +22,7 @@ struct ForceOutput {
 /// force = limits(envelope x sum over patches (sum over layers)) (Minsky 1990), of the topmost patch at the
 /// hand's place and of every patch there that adds. In the axes of a patch, from its centre:
 ///   spring: -stiffness (place - centre);  damper: -damping speed;  surface: -kappa grad h;
+///   field: sum over its atoms;
 ///   mover: damping (its speed - speed);  body, lasso: the reaction to the force on them (body.hpp).
 /// A body is taken up where the hand enters its patch, at rest in it; while the hand is elsewhere, or another
 /// patch covers it, the body is not there. Its force is computed once a tick and held for the hand and for
@@ -69,6 +70,7 @@ class SceneKernel {
   Hand hand_on(uint32_t patch, const Hand& hand) const noexcept;
   PlaneVector groove_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
   PlaneVector noise_force(const SceneLayer& layer, const Hand& hand) const noexcept;
+  PlaneVector field_force(const SceneLayer& layer, const Hand& hand) const noexcept;
   PlaneVector relief_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
   PlaneVector body_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) noexcept;
 

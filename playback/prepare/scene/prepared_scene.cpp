@@ -16,6 +16,7 @@
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
 #include "playback/prepare/scene/body_motion.hpp"
+#include "playback/prepare/scene/field_section.hpp"
 #include "playback/prepare/scene/stable_scene.hpp"
 #include "playback/prepare/texture_check.hpp"
 #include "playback/stability/free_limit.hpp"
@@ -40,8 +41,7 @@ struct KindInBlock {
 
 // Named one by one: a new kind of layer does not compile until it is here or has data.
 template <class L>
-concept NotPlayedYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::ForceMapLayer> ||
-                       std::same_as<L, schema::FieldLayer>;
+concept NotPlayedYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::ForceMapLayer>;
 
 template <class T>
 void append(Words& words, const T* parts, std::size_t count) {
@@ -147,6 +147,19 @@ Words words_of(const Table& table) {
   return words;
 }
 
+Words table_of(const FieldSection& section, const schema::Patch& patch, const PlaneSteps& steps) {
+  const auto atoms = section.in_units();
+  const core::FieldTable table{{row_of(patch, patch.angle_deg, section.period_m, steps),
+                                row_of(patch, patch.angle_deg + 90, section.period_m, steps)},
+                               static_cast<float>(1 / section.unit_m()),
+                               static_cast<float>(section.core * section.core),
+                               static_cast<std::uint32_t>(atoms.size())};
+  Words words;
+  append(words, &table, 1);
+  append(words, atoms);
+  return words;
+}
+
 Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneSteps& steps,
                const Reliefs& reliefs) {
   return layer.visit(
@@ -166,6 +179,9 @@ Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneS
         const double angle_rad = mover.direction_deg.value * std::numbers::pi / 180;
         return words_of(core::MoverTable{static_cast<float>(std::cos(angle_rad)),
                                          static_cast<float>(std::sin(angle_rad))});
+      },
+      [&](const schema::FieldLayer& field) {
+        return table_of(field_section(field, reliefs.of(field), patch), patch, steps);
       },
       [](const auto& /*without a table*/) { return Words(); });
 }
@@ -201,6 +217,9 @@ std::optional<KindInBlock> kind_of(const ForceLayer& layer) {
       [](const schema::MoverLayer& /*mover*/) -> Kind {
         return {{SceneLayerKind::mover, {"damping_n_s_per_m", "speed_mps"}}};
       },
+      [](const schema::FieldLayer& /*field*/) -> Kind {
+        return {{SceneLayerKind::field, {"force_scale", "z_m"}}};
+      },
       [](const NotPlayedYet auto& /*layer*/) -> Kind { return std::nullopt; });
 }
 
@@ -208,12 +227,12 @@ Result<void> check_types(const schema::Scene& scene, const std::string& where) {
   for (std::size_t i = 0; i < scene.patches.size(); ++i)
     for (std::size_t j = 0; j < scene.patches[i].layers.size(); ++j)
       if (const ForceLayer& layer = scene.patches[i].layers[j]; !kind_of(layer))
-        return fail(ErrorKind::unsuitable,
-                    fmt::format("layers of the type {} cannot be played yet", type_of(layer)),
-                    fmt::format("{}#/patches/{}/layers/{}/type", where, i, j),
-                    "the types that can be played are spring, damper, grooves, noise, height_map, texture, "
-                    "body, lasso "
-                    "and mover; a body is a mass on a spring and a damper at the hand");
+        return fail(
+            ErrorKind::unsuitable, fmt::format("layers of the type {} cannot be played yet", type_of(layer)),
+            fmt::format("{}#/patches/{}/layers/{}/type", where, i, j),
+            "the types that can be played are spring, damper, grooves, noise, height_map, texture, field, "
+            "body, lasso "
+            "and mover; a body is a mass on a spring and a damper at the hand");
   return {};
 }
 
@@ -373,9 +392,23 @@ Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, dou
     layer.steepest_n_per_m = relief->curvature_per_m(length_across(patch, layer.direction_deg.value), 0);
     return {};
   };
+  const auto atoms_in = [&](const schema::Patch& patch, schema::FieldLayer& layer) -> Result<void> {
+    const std::string file = schema::texture_in_scene(where, layer.file);
+    auto& atoms = reliefs.atoms[layer.file];
+    if (!atoms) {
+      auto read = schema::read_atoms(file);
+      TACTO_TRY(read);
+      atoms = std::make_shared<const std::vector<schema::Atom>>(std::move(*read));
+    }
+    const FieldSection section = field_section(layer, *atoms, patch);
+    TACTO_TRY(check_section(section, file));
+    layer.stiffest_n_per_m = stiffest_n_per_m(section, layer.z_m, patch);
+    return {};
+  };
   for (schema::Patch& patch : scene.patches)
     for (ForceLayer& layer : patch.layers)
-      TACTO_TRY(layer.visit([&](schema::HeightMapLayer& map) { return map_in(patch, map); },
+      TACTO_TRY(layer.visit([&](schema::FieldLayer& field) { return atoms_in(patch, field); },
+                            [&](schema::HeightMapLayer& map) { return map_in(patch, map); },
                             [&](schema::TextureForceLayer& texture) { return texture_in(patch, texture); },
                             [](auto& /*other*/) { return Result<void>(); }));
   return reliefs;

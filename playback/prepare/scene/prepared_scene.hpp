@@ -13,6 +13,7 @@
 
 #include "data-schema/device/device.hpp"
 #include "data-schema/device/hand.hpp"
+#include "data-schema/scene/atoms.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
 #include "playback/prepare/relief/relief_levels.hpp"
@@ -29,12 +30,14 @@ struct PlaneSteps {
 /// A hand that is faster is a jump of the encoder.
 inline constexpr double kFastestHandMps = 10;
 
-/// The height maps and textures of a scene, by the names in their layers.
+/// The height maps, textures and atoms of a scene, by the names in their layers.
 struct Reliefs {
   std::map<std::string, std::shared_ptr<const Relief>> height_maps, textures;
+  std::map<std::string, std::shared_ptr<const std::vector<schema::Atom>>> atoms;
 
   const Relief& of(const schema::HeightMapLayer& layer) const { return *height_maps.at(layer.file); }
   const Relief& of(const schema::TextureForceLayer& layer) const { return *textures.at(layer.file); }
+  const std::vector<schema::Atom>& of(const schema::FieldLayer& layer) const { return *atoms.at(layer.file); }
 };
 
 /// The block for one device, and the patches from which it was made, both from the topmost patch on.
@@ -71,10 +74,11 @@ double stiffness_limit_of(const schema::Device& device, double rate_hz,
 /// scene's file. Errors: unsuitable: the limit is 0, by JSON pointer.
 schema::Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::string& where);
 
-/// Reads the height maps and textures of all layers, and sets their curvature and steepest_n_per_m. Textures
+/// Reads the height maps, textures and atoms of all layers, and sets their curvature, steepest_n_per_m and
+/// stiffest_n_per_m. Textures
 /// fade at their ends as on a tray (TextureLookup). `where` is the scene's file. Errors: as read_height_map,
-/// relief_levels, read_texture, check_playable; unsuitable: a texture whose mean force is too large for its
-/// length.
+/// relief_levels, read_texture, check_playable, read_atoms, check_section; unsuitable: a texture whose mean
+/// force is too large for its length.
 schema::Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, double rate_hz);
 
 /// Of a patch along a direction in it: the length of its shadow.

@@ -266,6 +266,9 @@ double local_stiffness_n_per_m(const schema::ForceLayer& layer) {
       [](const schema::TextureForceLayer& texture) {
         return std::abs(farthest_value(texture.gain)) * texture.steepest_n_per_m;
       },
+      [](const schema::FieldLayer& field) {
+        return largest_value(field.force_scale) * field.stiffest_n_per_m;
+      },
       [](const schema::NoiseLayer& noise) {
         double curvature = 0, cells_per_m = 1 / noise.period_m.value;
         for (const double amplitude : octave_amplitudes(noise)) {

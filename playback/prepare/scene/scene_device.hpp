@@ -18,8 +18,8 @@ schema::Result<core::ForceSetup> force_setup_of(const schema::Device& device, st
 
 /// The largest stiffness of a layer for a small motion, with the upper ends of its sliders: of a spring, and
 /// kappa times the largest curvature of grooves, of a height map that was read (read_reliefs()), of noise
-/// the sum of those of its octaves; of a texture that was read the gain times its steepest slope. 0 for other
-/// types.
+/// the sum of those of its octaves; of a texture that was read the gain times its steepest slope; of a field
+/// that was read its force_scale times stiffest_n_per_m. 0 for other types.
 double local_stiffness_n_per_m(const schema::ForceLayer& layer);
 
 /// A warning with the share of a patch's area that is outside the device's travel; empty if none is.

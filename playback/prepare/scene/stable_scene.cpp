@@ -108,6 +108,7 @@ void scale_stiffness(schema::ForceLayer& layer, double factor) {
               [&](schema::NoiseLayer& noise) { scale_number(noise.kappa_n, factor); },
               [&](schema::HeightMapLayer& map) { scale_number(map.kappa_n, factor); },
               [&](schema::TextureForceLayer& texture) { scale_number(texture.gain, factor); },
+              [&](schema::FieldLayer& field) { scale_number(field.force_scale, factor); },
               [](auto& /*of another stiffness or none*/) {});
 }
 

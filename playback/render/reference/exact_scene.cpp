@@ -16,6 +16,8 @@
 namespace tacto::playback {
 namespace {
 
+constexpr double kVacuumPermittivity = 8.8541878188e-12;  // F/m, CODATA 2022
+
 double norm(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value * value;
@@ -175,6 +177,30 @@ ExactScene::Vector ExactScene::noise_force(const schema::NoiseLayer& noise, doub
   return {force * (c * u - s * v), force * (s * u + c * v)};
 }
 
+// In the units of the atoms: Lennard-Jones's force 24 epsilon / r (2 (sigma/r)^12 - (sigma/r)^6) and
+// Coulomb's q Q / (4 pi epsilon_0 r^2) along the distance; in a core the force of its border, times the share
+// of the radius.
+ExactScene::Vector ExactScene::field_force(const schema::FieldLayer& field, double angle_rad,
+                                           Vector from_centre) const {
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad), scale = field.length_scale.value;
+  const double x = (c * from_centre.x + s * from_centre.y) / scale,
+               y = (c * from_centre.y - s * from_centre.x) / scale, z = field.z_m.value / scale;
+  double u = 0, v = 0;
+  for (const schema::Atom& atom : scene_.reliefs.of(field)) {
+    const double r = std::hypot(x - atom.x_m, y - atom.y_m, z - atom.z_m);
+    const double core_m = field.core.value * atom.sigma_m, acting_m = std::max(r, core_m);
+    const double ratio = std::pow(atom.sigma_m / acting_m, 6);
+    const double coulomb =
+        atom.charge_c * field.probe_charge_c.value / (4 * std::numbers::pi * kVacuumPermittivity);
+    const double force_n =
+        24 * atom.epsilon_j / acting_m * (2 * ratio * ratio - ratio) + coulomb / (acting_m * acting_m);
+    u += force_n * (x - atom.x_m) / acting_m;
+    v += force_n * (y - atom.y_m) / acting_m;
+  }
+  const double force = field.force_scale.value;
+  return {force * (c * u - s * v), force * (s * u + c * v)};
+}
+
 ExactScene::ExactScene(const PreparedScene& scene, const schema::Device& device, double rate_hz)
     : scene_(scene),
       view_(scene.view()),
@@ -296,6 +322,10 @@ ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vec
             const Vector slope = relief_force(scene_.reliefs.of(texture), texture.gain.value, along,
                                               {place.x - patch.x_m, place.y - patch.y_m}, speed);
             sum.x += slope.x, sum.y += slope.y;
+          },
+          [&](const schema::FieldLayer& field) {
+            const Vector along = field_force(field, angle, {place.x - patch.x_m, place.y - patch.y_m});
+            sum.x += along.x, sum.y += along.y;
           },
           [](const auto& /*not prepared*/) {});
   }

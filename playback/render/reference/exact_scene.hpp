@@ -53,6 +53,7 @@ class ExactScene {
                       Vector speed) const;
   Vector noise_force(const schema::NoiseLayer& noise, double angle_rad, Vector from_centre,
                      Vector speed) const;
+  Vector field_force(const schema::FieldLayer& field, double angle_rad, Vector from_centre) const;
   Vector relief_force(const Relief& relief, double kappa_n, double angle_rad, Vector from_centre,
                       Vector speed) const;
   /// In the axes of its patch.

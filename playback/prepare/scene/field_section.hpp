@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The atoms of a field layer, as the kernel sums them in the plane of a patch, and what follows from them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "data-schema/scene/atoms.hpp"
+#include "data-schema/scene/patch.hpp"
+#include "firmware-host/core/scene/field.hpp"
+
+namespace tacto::playback {
+
+/// Lengths are on the bench; force constants for a force_scale of 1.
+struct SectionAtom {
+  double x_m = 0, y_m = 0, z_m = 0, sigma_m = 0;
+  double lennard_jones_n_per_m = 0;  ///< 24 epsilon / sigma^2
+  double coulomb_n_per_m = 0;        ///< q Q / (4 pi epsilon_0 sigma^3)
+};
+
+/// The atoms around the centre of a patch, in its axes.
+struct FieldSection {
+  std::vector<SectionAtom> atoms;
+  double core = 1;
+  /// Of the rows of the kernel's table: 4.25 times the largest distance of an atom or of the border from the
+  /// centre, along x or y.
+  double period_m = 0;
+
+  double unit_m() const { return period_m * 0x1p-32; }
+  std::vector<core::FieldAtom> in_units() const;
+};
+
+FieldSection field_section(const schema::FieldLayer& layer, const std::vector<schema::Atom>& atoms,
+                           const schema::Patch& patch);
+
+/// Errors, at `where`: unsuitable: a sigma below 2^16 units, so that the place would be too coarse, or a
+/// force constant beyond 1 N per unit.
+schema::Result<void> check_section(const FieldSection& section, const std::string& where);
+
+/// The largest eigenvalue, absolute, of the derivative of the force by the place, for a force_scale of 1: of
+/// places around each core (8, just outside of it, and its centre; with a slider of z_m in the section that
+/// is nearest to the atom) and on a grid of 64 x 64, all in the patch. For one atom in the section it is
+/// exact: 24 epsilon / sigma^2 (26 core^-14 - 7 core^-8); 57.146 epsilon / sigma^2 where the force is zero.
+double stiffest_n_per_m(const FieldSection& section, const schema::LayerNumber& z_m,
+                        const schema::Patch& patch);
+
+/// How much the kernel's force differs from that in double precision at most, for a force_scale of 1: each
+/// atom at its core, 64 roundings, and the rounding of places to a unit and of z to single precision.
+double field_rounding_n(const FieldSection& section, double farthest_z_m);
+
+}  // namespace tacto::playback
