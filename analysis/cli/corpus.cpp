@@ -178,6 +178,8 @@ constexpr cli::VerbPart kParts[] = {
     {"run", "Compute what is missing; a recording that fails is noted and stops nothing", declare_run},
     {"status", "What is done, missing or failed, and why; exit code 5 unless all is done", declare_status},
     {"workflow", "Write a file with which Slurm or Snakemake runs all shards on a cluster", declare_workflow},
+    {"pack", "Write a dataset to give away: recordings, results, a table, checksums, an RO-Crate",
+     declare_pack},
 };
 
 cli::Action declare_corpus(CLI::App& app) {
@@ -192,7 +194,9 @@ const cli::Verb kCorpusVerb{
     "  tactograph corpus run study --jobs 2\n"
     "  tactograph corpus run study --shard 3/20\n"
     "  tactograph corpus status study\n"
-    "  tactograph corpus workflow study --engine slurm --time 30 -o study.sbatch",
+    "  tactograph corpus workflow study --engine slurm --time 30 -o study.sbatch\n"
+    "  tactograph corpus pack study -o published --title 'Oak and linen' --creator 'Doe, Jane'\n"
+    "      --publisher Zenodo --year 2026 --licence CC-BY-4.0",
     declare_corpus};
 
 }  // namespace tacto::analysis

@@ -8,5 +8,6 @@ namespace tacto::analysis {
 
 /// Each adds its options to a subcommand and returns the subcommand's action.
 cli::Action declare_workflow(CLI::App& app);
+cli::Action declare_pack(CLI::App& app);
 
 }  // namespace tacto::analysis

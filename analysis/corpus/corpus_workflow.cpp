@@ -66,6 +66,11 @@ Result<void> check_options(const CorpusWorkflowOptions& options) {
   if (!options.time.empty() && !slurm_minutes(options.time))
     return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a time limit of Slurm", options.time),
                         "--time", "write minutes (30), 2:00:00 or 1-12:00:00");
+  // SIGTERM comes a minute before the limit; Slurm may send it a minute earlier.
+  constexpr double kLeastMinutes = 3;
+  if (!options.time.empty() && *slurm_minutes(options.time) < kLeastMinutes)
+    return schema::fail(ErrorKind::usage, "is too short for a shard", "--time " + options.time,
+                        "give three minutes or more");
   if (!options.memory.empty() && !slurm_megabytes(options.memory))
     return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a size of Slurm", options.memory), "--mem",
                         "write 500M or 4G");
