@@ -181,9 +181,10 @@ std::string snakemake_text(const CorpusWorkflowOptions& options, const CorpusWor
   text +=
       fmt::format("workdir: {}\n\nSHARDS = [{}]\n\n", python_text(folder), fmt::join(workflow.listed, ", "));
   text += fmt::format(
-      "rule all:\n    input: expand(\"shards/{{shard}}-of-{0}.done\", shard=SHARDS)\n\n"
+      "onsuccess:\n    shell(\"rm -rf shards\")\n\nrule all:\n    input: "
+      "expand(\"shards/{{shard}}-of-{0}.done\", shard=SHARDS)\n\n"
       "rule shard:\n    input: \"plan.corpus.json\"\n"
-      "    output: temp(touch(\"shards/{{shard}}-of-{0}.done\"))\n    threads: 1\n",
+      "    output: touch(\"shards/{{shard}}-of-{0}.done\")\n    threads: 1\n",
       workflow.shards);
   std::vector<std::string> resources;
   if (!options.account.empty()) resources.push_back(fmt::format("slurm_account=\"{}\"", options.account));
