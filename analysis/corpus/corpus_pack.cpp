@@ -30,8 +30,7 @@ namespace fs = std::filesystem;
 using schema::ErrorKind;
 using schema::Result;
 
-constexpr const char *kCrate = "ro-crate-metadata.json", *kSums = "SHA256SUMS", *kTable = "recordings.csv",
-                     *kWarnings = "warnings.txt";
+constexpr const char *kCrate = "ro-crate-metadata.json", *kTable = "recordings.csv";
 
 bool is_inside(const fs::path& path, const fs::path& folder) {
   const fs::path from = path.lexically_relative(folder);
