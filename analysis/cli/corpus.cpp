@@ -195,8 +195,8 @@ const cli::Verb kCorpusVerb{
     "  tactograph corpus run study --shard 3/20\n"
     "  tactograph corpus status study\n"
     "  tactograph corpus workflow study --engine slurm --time 30 -o study.sbatch\n"
-    "  tactograph corpus pack study -o published --title 'Oak and linen' --creator 'Doe, Jane'\n"
-    "      --publisher Zenodo --year 2026 --licence CC-BY-4.0",
+    "  tactograph corpus pack study -o published --title 'Oak and linen' --creator 'Doe, Jane' --publisher "
+    "Zenodo --year 2026 --licence CC-BY-4.0",
     declare_corpus};
 
 }  // namespace tacto::analysis
