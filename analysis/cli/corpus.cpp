@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/cli/corpus_parts.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/corpus/corpus_init.hpp"
 #include "analysis/corpus/corpus_run.hpp"
@@ -176,6 +177,9 @@ constexpr cli::VerbPart kParts[] = {
     {"init", "Write the plan: recordings with their checksums, steps and options", declare_init},
     {"run", "Compute what is missing; a recording that fails is noted and stops nothing", declare_run},
     {"status", "What is done, missing or failed, and why; exit code 5 unless all is done", declare_status},
+    {"workflow", "Write a file with which Slurm or Snakemake runs all shards on a cluster", declare_workflow},
+    {"pack", "Write a dataset to give away: recordings, results, a table, checksums, an RO-Crate",
+     declare_pack},
 };
 
 cli::Action declare_corpus(CLI::App& app) {
@@ -189,7 +193,10 @@ const cli::Verb kCorpusVerb{
     "tactograph corpus init study --recordings 'raw/**/*.json' --spatial '--average'\n"
     "  tactograph corpus run study --jobs 2\n"
     "  tactograph corpus run study --shard 3/20\n"
-    "  tactograph corpus status study",
+    "  tactograph corpus status study\n"
+    "  tactograph corpus workflow study --engine slurm --time 30 -o study.sbatch\n"
+    "  tactograph corpus pack study -o published --title 'Oak and linen' --creator 'Doe, Jane' --publisher "
+    "Zenodo --year 2026 --licence CC-BY-4.0",
     declare_corpus};
 
 }  // namespace tacto::analysis

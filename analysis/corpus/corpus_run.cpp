@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/corpus/corpus_run.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -22,6 +18,7 @@
 
 #include "analysis/corpus/corpus_steps.hpp"
 #include "analysis/corpus/corpus_unit.hpp"
+#include "analysis/corpus/work_folder.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/files/process_mark.hpp"
 #include "data-schema/version.hpp"
@@ -37,65 +34,6 @@ using Clock = std::chrono::steady_clock;
 // A batch is synced at once: after so many units or so long. A run that is killed loses at most one.
 constexpr std::size_t kBatchUnits = 64;
 constexpr std::chrono::seconds kBatchTime{2};
-
-tl::unexpected<schema::Error> unwritable(const std::string& path, int error_number) {
-  return schema::fail(ErrorKind::cannot_write,
-                      "cannot be written: " + std::generic_category().message(error_number), path);
-}
-
-Result<void> make_folder(const std::string& path) {
-  std::error_code failed;
-  fs::create_directories(path, failed);
-  return failed ? unwritable(path, failed.value()) : Result<void>{};
-}
-
-void remove_folder(const std::string& path) {
-  std::error_code ignored;
-  fs::remove_all(path, ignored);
-}
-
-Result<void> sync_file_system(const std::string& folder) {
-  const int opened = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (opened < 0) return unwritable(folder, errno);
-  const int failed = syncfs(opened) == 0 ? 0 : errno;
-  close(opened);
-  return failed == 0 ? Result<void>{} : unwritable(folder, failed);
-}
-
-// The folder in which this process computes; named as temporary files are, so that a later run recognises it.
-class WorkFolder {
- public:
-  explicit WorkFolder(const std::string& study)
-      : all_((fs::path(study) / "work").string()),
-        own_((fs::path(all_) / schema::text_of(schema::own_mark())).string()) {}
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  ~WorkFolder() {
-    remove_folder(own_);
-    rmdir(all_.c_str());  // where no other run works
-  }
-
-  Result<void> make() const { return make_folder(own_); }
-  std::string of(const std::string& name) const { return (fs::path(own_) / name).string(); }
-
-  /// Those of processes that have ended. On another machine a process may run: its folder stays.
-  std::size_t remove_ended() const {
-    std::vector<std::string> ended;
-    std::error_code failed;
-    for (fs::directory_iterator at(all_, failed), end; !failed && at != end; at.increment(failed)) {
-      const auto mark = schema::parse_mark(at->path().filename().string());
-      struct stat status {};
-      if (mark && stat(at->path().c_str(), &status) == 0 &&
-          schema::liveness_of(*mark, status.st_mtime) == schema::Liveness::ended)
-        ended.push_back(at->path().string());
-    }
-    for (const std::string& folder : ended) remove_folder(folder);
-    return ended.size();
-  }
-
- private:
-  std::string all_, own_;
-};
 
 // A unit that is complete in the working folder.
 struct MadeUnit {
@@ -328,7 +266,7 @@ Result<CorpusRunCounts> run_corpus(const CorpusRunOptions& options,
   auto steps = parse_steps(plan->steps);
   if (!steps) steps.error().where = path + ": " + steps.error().where;
   TACTO_TRY(steps);
-  const WorkFolder work(options.study);
+  const WorkFolder work((fs::path(options.study) / "work").string());
   const std::size_t removed = work.remove_ended();
   TACTO_TRY(work.make());
   auto counts = CorpusRun(options, *plan, *steps, work, progress, stopped).run();

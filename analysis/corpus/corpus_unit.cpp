@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using schema::Result;
 
-constexpr const char *kSums = "SHA256SUMS", *kFailure = "failure.txt", *kWarnings = "warnings.txt";
+constexpr const char* kFailure = "failure.txt";
 constexpr std::size_t kSumDigits = 64;
 constexpr std::string_view kBetween = "  ";  // of sha256sum
 constexpr const char* kCode = "exit code ";

@@ -12,6 +12,9 @@
 
 namespace tacto::analysis {
 
+/// Files in each unit, and in a dataset of `pack`.
+inline constexpr const char *kSums = "SHA256SUMS", *kWarnings = "warnings.txt";
+
 /// STUDY/plan.corpus.json
 std::string corpus_plan_path(const std::string& study);
 

@@ -134,7 +134,7 @@ MAY_INCLUDE = {
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
         "dsp/fourier dsp/resample dsp/spectrum features numbers spectrogram strokes texture}",
     "analysis/corpus":
-        "data-schema/{base command corpus files kinds texture} spatial/{features job}",
+        "data-schema/{base command corpus exchange files kinds recording report texture wav} spatial/{features job}",
     "analysis/demo":
         "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
         "sim/bench sim/physics} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
