@@ -2,12 +2,16 @@
 #include "analysis/cli/experiment_study.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "analysis/cli/participant_screen.hpp"
 #include "analysis/experiment/interval_play.hpp"
+#include "analysis/experiment/marked_proof.hpp"
 #include "analysis/experiment/study_run.hpp"
+#include "data-schema/base/quantity.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/command/stop_signals.hpp"
 #include "data-schema/report/progress.hpp"
@@ -153,7 +157,70 @@ std::string proof_in_words(const Proof& proof) {
       proof.delivered, proof.trials, proof.stretch_error, proof.same_to_the_bit, proof.sessions);
 }
 
-Result<Report> run_prove_run(const std::string& name) {
+struct ProveOptions {
+  std::string name, protocol;
+};
+
+std::string limits_in_words(const schema::DeliveryLimits& limits) {
+  const auto speed = [](double value_mps) { return schema::for_people(value_mps, schema::Dimension::speed); };
+  return fmt::format(
+      "at most {} lost ticks, {} in fault, {} late, {} blind; removed by limits {:g} dB; error of each whole "
+      "stroke {:g} dB; strokes at {} to {}",
+      limits.lost_ticks, limits.fault_ticks, limits.late_ticks, limits.blind_ticks,
+      limits.removed_by_limits_db, limits.error_db, speed(limits.slowest_mps), speed(limits.fastest_mps));
+}
+
+Report interval_row(const MarkedInterval& interval) {
+  const schema::IntervalFacts& facts = interval.facts;
+  Report row;
+  row.add("mark", interval.mark).add("from_s", interval.from_s).add("to_s", interval.to_s);
+  row.add("delivered", interval.delivered == Delivered::yes  ? "yes"
+                       : interval.delivered == Delivered::no ? "no"
+                                                             : "unknown");
+  row.add("strokes", facts.strokes);
+  if (facts.strokes > 0) row.add("slowest_mps", facts.slowest_mps).add("fastest_mps", facts.fastest_mps);
+  if (facts.predicted_error_db) row.add("predicted_error_db", *facts.predicted_error_db);
+  if (facts.measured_error_db) row.add("measured_error_db", *facts.measured_error_db);
+  if (facts.removed_by_limits_db) row.add("removed_by_limits_db", *facts.removed_by_limits_db);
+  row.add("ticks", facts.ticks).add("lost_ticks", facts.lost_ticks).add("fault_ticks", facts.fault_ticks);
+  row.add("late_ticks", facts.late_ticks).add("blind_ticks", facts.blind_ticks);
+  return row.add("why", fmt::format("{}", fmt::join(interval.why, "; ")));
+}
+
+Result<Report> run_prove_marks(const ProveOptions& o) {
+  schema::DeliveryLimits limits = stretch_protocol("1").delivered;
+  if (!o.protocol.empty()) {
+    const auto protocol = schema::read_protocol(o.protocol);
+    TACTO_TRY(protocol);
+    limits = protocol->delivered;
+  }
+  cli::Progress progress("proving");
+  const auto proof = prove_marks(o.name, limits, [&](double part) { progress.update(part); });
+  TACTO_TRY(proof);
+  const auto delivered = std::ranges::count(proof->intervals, Delivered::yes, &MarkedInterval::delivered);
+  Report report;
+  report
+      .add("verdict",
+           fmt::format("{} of {} marked intervals delivered; the session is {} to the bit", delivered,
+                       proof->intervals.size(), proof->same_to_the_bit ? "the same" : "not the same"))
+      .add("proven", proof->same_to_the_bit);
+  report.add("marked_intervals", proof->intervals.size())
+      .add("delivered", static_cast<std::size_t>(delivered));
+  report.add("limits", limits_in_words(limits));
+  report.add("recorded", "ticks and drive").add("predicted", "displacement, by the transducer's model");
+  if (!proof->simulated.empty()) report.add("simulated", proof->simulated);
+  std::vector<Report> rows;
+  for (const MarkedInterval& interval : proof->intervals) rows.push_back(interval_row(interval));
+  report.add("intervals", std::move(rows));
+  return proof->same_to_the_bit ? report : report.ends_with(ErrorKind::unsuitable);
+}
+
+Result<Report> run_prove_run(const ProveOptions& o) {
+  if (names_session(o.name)) return run_prove_marks(o);
+  const std::string& name = o.name;
+  if (!o.protocol.empty())
+    return schema::fail(ErrorKind::usage, "the limits of a run are those of its study", "--protocol",
+                        "leave it out");
   const auto run = read_run(name);
   TACTO_TRY(run);
   cli::Progress progress("proving");
@@ -221,15 +288,21 @@ cli::Action declare_resume_study(CLI::App& app) {
 }
 
 cli::Action declare_prove_run(CLI::App& app) {
-  auto name = std::make_shared<std::string>();
-  app.add_option("RUN", *name, "STUDY-P07, or its journal")->required();
+  auto options = std::make_shared<ProveOptions>();
+  app.add_option("RUN", options->name, "STUDY-P07, or its journal; or a session with marks of any client")
+      ->required();
+  app.add_option("--protocol", options->protocol,
+                 "Of a session: the limits of this protocol; default: those of 'new stretch'");
   app.footer(
       "Decides again from the sessions what was delivered, and computes each session's drive again. Proven "
       "are "
       "ticks and drive;\nthe displacement is predicted by the transducer's model, and the normal force is in "
       "no "
-      "session. Exit code 5: not proven.");
-  return [name] { return run_prove_run(*name); };
+      "session. Exit code 5: not proven.\n"
+      "Of a session it judges each interval from a mark ('ctl mark TEXT') to the next one, or to the end of "
+      "the "
+      "session;\nafter the mark 'end' there is no interval until the next mark.");
+  return [options] { return run_prove_run(*options); };
 }
 
 }  // namespace tacto::analysis
