@@ -8,8 +8,10 @@
 #include "analysis/cli/verbs.hpp"
 #include "analysis/experiment/answers_page.hpp"
 #include "analysis/experiment/study_answers.hpp"
+#include "analysis/experiment/withdrawal.hpp"
 #include "analysis/page/picture_svg.hpp"
 #include "data-schema/command/output_options.hpp"
+#include "data-schema/files/files.hpp"
 #include "data-schema/report/progress.hpp"
 #include "spatial/picture/figure.hpp"
 
@@ -248,7 +250,10 @@ Result<Report> run_analyse(const AnalyseOptions& o, bool json) {
   TACTO_TRY(check_outputs(o.fit.outputs, o.fit.existing, {&svg, 1}));
   auto table = study_answers(o.fit.file, o.unblind);
   TACTO_TRY(table);
-  return fit_table(o.fit, std::move(*table), json);
+  auto report = fit_table(o.fit, std::move(*table), json);
+  TACTO_TRY(report);
+  if (!o.fit.outputs.empty()) TACTO_TRY(log_outputs(schema::stem_of(o.fit.file, ".protocol"), o.fit.outputs));
+  return report;
 }
 
 cli::Action declare_analyse(CLI::App& app) {
@@ -276,6 +281,7 @@ constexpr cli::VerbPart kExperimentParts[] = {
     {"resume", "Continue an interrupted run", declare_resume_study},
     {"prove", "Compute from the sessions of a run what was delivered", declare_prove_run},
     {"analyse", "Fit psychometric functions to the answers of a study", declare_analyse},
+    {"withdraw", "Delete all files of a participant; only the fact remains", declare_withdraw},
     {"fit", "Fit psychometric functions, or a scale, to a table of answers", declare_fit},
 };
 

@@ -4,17 +4,22 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <iostream>
 #include <memory>
 
 #include "analysis/cli/participant_screen.hpp"
 #include "analysis/experiment/interval_play.hpp"
 #include "analysis/experiment/marked_proof.hpp"
 #include "analysis/experiment/study_run.hpp"
+#include "analysis/experiment/withdrawal.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/command/stop_signals.hpp"
 #include "data-schema/report/progress.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -243,6 +248,39 @@ Result<Report> run_prove_run(const ProveOptions& o) {
   return proof.holds() ? report : report.ends_with(ErrorKind::unsuitable);
 }
 
+struct WithdrawOptions {
+  std::string study, participant;
+  bool yes = false;
+};
+
+// Asks on a terminal; elsewhere the answer is no.
+bool is_confirmed(const Withdrawal& withdrawal) {
+  if (isatty(STDIN_FILENO) != 1 || isatty(STDERR_FILENO) != 1) return false;
+  cli::write_message(fmt::format("{}\nType {} to delete these {} files: ", fmt::join(withdrawal.files, "\n"),
+                                 withdrawal.participant, withdrawal.files.size()));
+  std::string line;
+  std::getline(std::cin, line);
+  return line == withdrawal.participant;
+}
+
+Result<Report> run_withdraw(const WithdrawOptions& o) {
+  const auto withdrawal = plan_withdrawal(o.study, o.participant);
+  TACTO_TRY(withdrawal);
+  const bool yes = o.yes || is_confirmed(*withdrawal);
+  if (yes) TACTO_TRY(withdraw(*withdrawal));
+  Report report;
+  report.add("participant", o.participant).add("withdrawn", yes);
+  report.add(yes ? "deleted" : "to_be_deleted", withdrawal->files);
+  if (!withdrawal->outside.empty()) {
+    report.add("outside_the_study", withdrawal->outside);
+    cli::warn("files outside the study's folder are not deleted: delete them yourself");
+  }
+  if (yes) return report;
+  report.add("next", fmt::format("tactograph experiment withdraw {} --participant {} --yes", withdrawal->stem,
+                                 o.participant));
+  return report.ends_with(ErrorKind::usage);
+}
+
 }  // namespace
 
 cli::Action declare_new_study(CLI::App& app) {
@@ -303,6 +341,20 @@ cli::Action declare_prove_run(CLI::App& app) {
       "the "
       "session;\nafter the mark 'end' there is no interval until the next mark.");
   return [options] { return run_prove_run(*options); };
+}
+
+cli::Action declare_withdraw(CLI::App& app) {
+  auto options = std::make_shared<WithdrawOptions>();
+  app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
+  app.add_option("--participant", options->participant, "Code of the participant, such as P07")->required();
+  app.add_flag("--yes", options->yes, "Delete without a question");
+  app.footer(
+      "Deletes journal, table and sessions of the participant, and the outputs of 'analyse' and 'export' in "
+      "the "
+      "study's folder,\nwhich can be made again without this participant. STUDY.withdrawn.txt keeps the code "
+      "and "
+      "the date. If it is interrupted, repeat it.");
+  return [options] { return run_withdraw(*options); };
 }
 
 }  // namespace tacto::analysis

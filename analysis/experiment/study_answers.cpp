@@ -9,6 +9,7 @@
 #include <map>
 
 #include "analysis/experiment/proof.hpp"
+#include "analysis/experiment/withdrawal.hpp"
 #include "data-schema/base/creation_time.hpp"
 
 namespace tacto::analysis {
@@ -28,7 +29,8 @@ std::vector<std::string> runs_of(const Study& study) {
     const std::string name = file.path().filename().string();
     if (!name.starts_with(study.name() + "-") || schema::run_stem(name) == name) continue;
     const std::string participant = schema::run_stem(name).substr(study.name().size() + 1);
-    if (schema::check_participant(participant)) runs.push_back(study.run(participant));
+    if (schema::check_participant(participant) && !is_withdrawn(study.stem, participant))
+      runs.push_back(study.run(participant));
   }
   std::ranges::sort(runs);
   return runs;

@@ -5,6 +5,7 @@ come again, SIGKILL and resume, a swapped stimulus, answers from a file, and the
 import csv
 import hashlib
 import json
+import os
 import pathlib
 import random
 import shutil
@@ -191,6 +192,39 @@ def the_answers_are_fitted():
         assert fit["jnd_low"] < weber < fit["jnd_high"] and fit["pse_low"] < 0 < fit["pse_high"], fit
 
 
+def a_participant_withdraws():
+    here = pathlib.Path(".")
+    tacto.run("experiment", "analyse", "more", "--unblind", "-o", "elsewhere/more.html")
+    shutil.copytree("elsewhere", "/tmp/" + here.resolve().name + "-outside")
+    outside = pathlib.Path("/tmp/" + here.resolve().name + "-outside")
+    tacto.run("experiment", "analyse", "more", "--unblind", "-o", f"{outside}/page.html")
+    pathlib.Path("more-P011.trials.tsv").write_text("")  # of another participant
+    listed = tacto.run_json("experiment", "withdraw", "more", "--participant", "P01", code=2)
+    files = set(listed["to_be_deleted"])
+    expected = {"more-P01.trials.jsonl", "more-P01.trials.tsv", *map(str, here.glob("more-P01/*"))}
+    assert listed["withdrawn"] is False and expected < files and all(map(os.path.exists, files)), listed
+    assert {os.path.basename(file) for file in files - expected} == {"more.html"} and len(files - expected) == 2, files - expected
+    assert [os.path.basename(file) for file in listed["outside_the_study"]] == ["page.html"]
+    # As if it had been killed after the record and one file: the run counts no more, and the rest is deleted by repeating it.
+    pathlib.Path("more.withdrawn.txt").write_text("2026-01-01T00:00:00Z\tP01\n")
+    os.remove("more-P01.trials.tsv")
+    tacto.run("experiment", "prove", "more-P01", code=5)
+    tacto.run("experiment", "resume", "more-P01", code=5)
+    fits = tacto.run_json("experiment", "analyse", "more", "--unblind")["fits"]
+    assert [fit["participant"] for fit in fits] == ["P02"]
+    done = tacto.run_json("experiment", "withdraw", "more.protocol.json", "--participant", "P01", "--yes")
+    assert done["withdrawn"] is True and set(done["deleted"]) == files - {"more-P01.trials.tsv"}
+    assert not any(map(os.path.exists, files)) and not os.path.exists("more-P01") and (outside / "page.html").exists()
+    assert pathlib.Path("more.withdrawn.txt").read_text().count("P01") == 1
+    assert os.path.exists("more-P02.trials.jsonl") and os.path.exists("more/K1.texture.wav") and os.path.exists("more-P011.trials.tsv")
+    assert tacto.run_json("experiment", "withdraw", "more", "--participant", "P01", "--yes")["deleted"] == []  # again
+    tacto.run("experiment", "run", "more", "-d", "sim:", "--participant", "P01", "--observer", OBSERVER, code=5)
+    tacto.run("experiment", "withdraw", "more", "--participant", "P09", "--yes", code=3)
+    tacto.run("experiment", "withdraw", "more", "--participant", "../more", "--yes", code=2)
+    tacto.run("experiment", "withdraw", "nothing", "--participant", "P01", "--yes", code=3)
+    shutil.rmtree(outside)
+
+
 def study():
     the_files_are_coded()
     a_run_is_proven()
@@ -199,6 +233,7 @@ def study():
     answers_from_a_file()
     bad_input()
     the_answers_are_fitted()
+    a_participant_withdraws()
 
 
 if __name__ == "__main__":
