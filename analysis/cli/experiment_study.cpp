@@ -13,6 +13,8 @@
 #include "analysis/cli/participant_screen.hpp"
 #include "analysis/experiment/interval_play.hpp"
 #include "analysis/experiment/marked_proof.hpp"
+#include "analysis/experiment/study_export.hpp"
+#include "analysis/experiment/study_power.hpp"
 #include "analysis/experiment/study_run.hpp"
 #include "analysis/experiment/withdrawal.hpp"
 #include "data-schema/base/quantity.hpp"
@@ -248,6 +250,73 @@ Result<Report> run_prove_run(const ProveOptions& o) {
   return proof.holds() ? report : report.ends_with(ErrorKind::unsuitable);
 }
 
+struct PowerOptions {
+  std::string study;
+  std::vector<std::string> weber;
+  PowerAssumptions assumed;
+};
+
+std::string people_in_words(const std::optional<int>& people) {
+  return people ? std::to_string(*people) : fmt::format("more than {}", kMostPeople);
+}
+
+Result<Report> run_study_power(PowerOptions o) {
+  if (o.weber.size() != 2)
+    return schema::fail(ErrorKind::usage, "needs two Weber fractions", "--weber",
+                        "give for example 15.5%,25.3%");
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto weber = schema::parse_quantity(o.weber[i], schema::Dimension::share);
+    if (!weber) return schema::fail(ErrorKind::usage, weber.error().what, "--weber", weber.error().remedy);
+    o.assumed.weber[i] = *weber;
+  }
+  const auto protocol = schema::read_protocol(o.study);
+  TACTO_TRY(protocol);
+  cli::Progress progress("simulating people");
+  const auto power = study_power(*protocol, o.assumed, [&](double part) { progress.update(part); });
+  TACTO_TRY(power);
+  Report report;
+  report.add("verdict",
+             fmt::format("for a power of {:g} %: {} people in each of two groups, or {} people in both "
+                         "conditions",
+                         100 * kPowerGoal, people_in_words(power->a_group), people_in_words(power->twice)));
+  if (power->a_group) report.add("people_a_group", *power->a_group);
+  if (power->twice) report.add("people_twice", *power->twice);
+  report.add(
+      "assumed",
+      fmt::format("Weber fractions {:g} % and {:g} %; people scatter by {:g} % (standard deviation of ln W, "
+                  "the same factor in both conditions); {:g} % of the answers by chance; {} levels, {} times "
+                  "each; each person fitted, then Student's t test of ln W, 5 %, two-sided",
+                  100 * o.assumed.weber[0], 100 * o.assumed.weber[1], 100 * o.assumed.spread,
+                  100 * o.assumed.lapse, protocol->levels.size(), protocol->repetitions));
+  report.add("simulated", fmt::format("{} people, seed {}; {} of them can't be fitted and are left out",
+                                      kSimulatedPeople, o.assumed.seed, power->unfitted));
+  for (std::size_t i = 0; i < 2; ++i)
+    report.add(fmt::format("fitted_weber_{}", i + 1), power->weber[i])
+        .add(fmt::format("fitted_spread_{}", i + 1), power->spread[i]);
+  report.add("fitted_spread_of_difference", power->spread_of_difference);
+  std::vector<Report> rows;
+  for (const StudyPower::Row& row : power->rows)
+    rows.push_back(Report()
+                       .add("people", row.people)
+                       .add("power_of_groups", row.groups)
+                       .add("power_of_twice", row.twice));
+  return report.add("powers", std::move(rows));
+}
+
+struct ExportOptions {
+  std::string study, folder;
+  bool unblind = false;
+  schema::Existing existing = schema::Existing::keep;
+};
+
+Result<Report> run_export_study(const ExportOptions& o) {
+  const auto files = export_study(o.study, o.folder, o.unblind, o.existing);
+  TACTO_TRY(files);
+  Report report;
+  report.add("written", *files);
+  return report.add("next", fmt::format("Rscript {}/analysis.R", o.folder));
+}
+
 struct WithdrawOptions {
   std::string study, participant;
   bool yes = false;
@@ -341,6 +410,41 @@ cli::Action declare_prove_run(CLI::App& app) {
       "the "
       "session;\nafter the mark 'end' there is no interval until the next mark.");
   return [options] { return run_prove_run(*options); };
+}
+
+cli::Action declare_study_power(CLI::App& app) {
+  auto options = std::make_shared<PowerOptions>();
+  app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
+  app.add_option("--weber", options->weber, "Weber fractions of the two conditions: 15.5%,25.3%")
+      ->required()
+      ->delimiter(',');
+  cli::add_quantity(app, "--spread", options->assumed.spread, schema::Dimension::share,
+                    "How much people differ: standard deviation of ln W")
+      ->required();
+  cli::add_quantity(app, "--lapse", options->assumed.lapse, schema::Dimension::share,
+                    "Share of answers by chance");
+  app.add_option("--seed", options->assumed.seed, "Seed of the simulated people")->capture_default_str();
+  app.footer(
+      "People are simulated with the levels and repetitions of the protocol, and fitted as 'analyse' does; "
+      "the "
+      "power is that of\nStudent's t test with the spread of their estimates (noncentral t).");
+  return [options] { return run_study_power(*options); };
+}
+
+cli::Action declare_export_study(CLI::App& app) {
+  auto options = std::make_shared<ExportOptions>();
+  app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
+  app.add_option("-o,--output", options->folder, "Folder of the export")->required();
+  app.add_flag("--unblind", options->unblind,
+               "Export before the planned participants are complete; STUDY.unblinded.txt keeps the date");
+  cli::declare_force(app, options->existing);
+  app.footer(
+      "trials.csv has a row for each attempt of all participants; analysis.R fits a generalised linear mixed "
+      "model "
+      "(probit) to it\nwith lme4, and to other tables: its first lines say how. The folder is a data set "
+      "after BIDS: "
+      "participants.tsv,\nsub-P07/beh/sub-P07_task-STUDY_beh.tsv and .json.");
+  return [options] { return run_export_study(*options); };
 }
 
 cli::Action declare_withdraw(CLI::App& app) {
