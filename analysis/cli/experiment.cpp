@@ -301,6 +301,10 @@ const cli::Verb kExperimentVerb{"experiment",
                                 "weber=25%,lapse=2%\n"
                                 "  tactograph experiment prove stretch-P01\n"
                                 "  tactograph experiment analyse stretch --unblind -o stretch.html\n"
+                                "  tactograph experiment prove sessions/2026-11-29.session\n"
+                                "  tactograph experiment power stretch --weber 15.5%,25.3% --spread 23%\n"
+                                "  tactograph experiment export stretch -o stretch-export\n"
+                                "  tactograph experiment withdraw stretch --participant P07\n"
                                 "  tactograph experiment fit answers.csv --guess 50% -o answers.html\n"
                                 "  tactograph experiment fit answers.csv --by participant,vibration_hz\n"
                                 "  tactograph experiment fit --pairs preferences.csv",

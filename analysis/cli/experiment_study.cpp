@@ -283,11 +283,13 @@ Result<Report> run_study_power(PowerOptions o) {
   if (power->twice) report.add("people_twice", *power->twice);
   report.add(
       "assumed",
-      fmt::format("Weber fractions {:g} % and {:g} %; people scatter by {:g} % (standard deviation of ln W, "
-                  "the same factor in both conditions); {:g} % of the answers by chance; {} levels, {} times "
-                  "each; each person fitted, then Student's t test of ln W, 5 %, two-sided",
-                  100 * o.assumed.weber[0], 100 * o.assumed.weber[1], 100 * o.assumed.spread,
-                  100 * o.assumed.lapse, protocol->levels.size(), protocol->repetitions));
+      fmt::format(
+          "Weber fractions {:g} % and {:g} %; people scatter by {:g} % (standard deviation of ln W, the same "
+          "factor in both conditions); {:g} % of the answers by chance, and a fit {} lapses; {} levels, {} "
+          "times each; Student's t test of ln W over people, 5 %, two-sided",
+          100 * o.assumed.weber[0], 100 * o.assumed.weber[1], 100 * o.assumed.spread,
+          100 * o.assumed.lapse.value_or(0), o.assumed.lapse ? "with" : "without", protocol->levels.size(),
+          protocol->repetitions));
   report.add("simulated", fmt::format("{} people, seed {}; {} of them can't be fitted and are left out",
                                       kSimulatedPeople, o.assumed.seed, power->unfitted));
   for (std::size_t i = 0; i < 2; ++i)
@@ -421,13 +423,17 @@ cli::Action declare_study_power(CLI::App& app) {
   cli::add_quantity(app, "--spread", options->assumed.spread, schema::Dimension::share,
                     "How much people differ: standard deviation of ln W")
       ->required();
-  cli::add_quantity(app, "--lapse", options->assumed.lapse, schema::Dimension::share,
-                    "Share of answers by chance");
+  cli::add_quantity(
+      app, "--lapse", options->assumed.lapse, schema::Dimension::share,
+      "Share of answers by chance, which the fit then estimates; default: none, and a fit without "
+      "lapses");
   app.add_option("--seed", options->assumed.seed, "Seed of the simulated people")->capture_default_str();
   app.footer(
       "People are simulated with the levels and repetitions of the protocol, and fitted as 'analyse' does; "
-      "the "
-      "power is that of\nStudent's t test with the spread of their estimates (noncentral t).");
+      "the power is "
+      "the share of\nsimulated studies in which Student's t test of ln W finds the difference. Lapses that "
+      "have to be "
+      "fitted cost power: try --lapse 2%.");
   return [options] { return run_study_power(*options); };
 }
 

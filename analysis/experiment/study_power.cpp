@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/non_central_t.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -20,8 +19,6 @@ using schema::fail;
 using schema::Result;
 
 namespace {
-
-constexpr double kMostNoncentrality = 30;  // beyond it the power is 1 with three people, too
 
 // Draws that are the same on any machine (std's distributions are not).
 class Draws {
@@ -49,10 +46,10 @@ std::vector<LevelCount> answers_of(const schema::Protocol& protocol, double webe
 }
 
 // ln of the fitted JND.
-std::optional<double> log_of_fit(std::vector<LevelCount> answers) {
-  const auto fit = fit_psychometric(std::move(answers), {});
+std::optional<double> log_of_fit(std::vector<LevelCount> answers, const PsychometricOptions& options) {
+  const auto fit = most_probable_function(std::move(answers), options);
   if (!fit) return std::nullopt;
-  return std::log(fit->spread.value * standard_quantile(Shape::normal, 0.75));
+  return std::log(fit->spread * standard_quantile(Shape::normal, 0.75));
 }
 
 double mean_of(std::span<const double> values) {
@@ -77,36 +74,58 @@ Result<void> check(const PowerAssumptions& assumed) {
                 "give for example 15.5%,25.3%");
   if (!(assumed.spread >= 0 && assumed.spread <= 2))
     return fail(ErrorKind::usage, "is not from 0 % to 200 %", "--spread");
-  if (assumed.lapse >= 0 && assumed.lapse <= 0.5) return {};
+  if (const double lapse = assumed.lapse.value_or(0); lapse >= 0 && lapse <= 0.5) return {};
   return fail(ErrorKind::usage, "is not from 0 % to 50 %", "--lapse");
 }
 
-void add_rows(StudyPower& power) {
-  const double effect = std::abs(std::log(power.weber[1] / power.weber[0]));
-  const double variance = power.spread[0] * power.spread[0] + power.spread[1] * power.spread[1];
+// Whether Student's t of a mean with this variance is beyond `reach`.
+bool is_found(double mean, double variance_of_mean, double reach) {
+  return mean * mean > reach * reach * variance_of_mean;
+}
+
+// Studies with people drawn from those that were simulated: the share that finds the difference.
+StudyPower::Row row_of(int people, const std::array<std::vector<double>, 2>& logs, Draws& draws) {
+  const auto n = static_cast<std::size_t>(people);
+  const auto reach_of = [](std::size_t freedom) {
+    return boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), 0.975);
+  };
+  const double reach_of_groups = reach_of(2 * n - 2), reach_of_twice = reach_of(n - 1);
+  const auto drawn = [&] {
+    return static_cast<std::size_t>(draws.uniform() * static_cast<double>(logs[0].size()));
+  };
+  std::vector<double> one(n), other(n), differences(n);
+  int groups = 0, twice = 0;
+  for (int study = 0; study < kSimulatedStudies; ++study) {
+    for (std::size_t i = 0; i < n; ++i) {
+      one[i] = logs[0][drawn()];
+      other[i] = logs[1][drawn()];
+      const std::size_t both = drawn();
+      differences[i] = logs[1][both] - logs[0][both];
+    }
+    const double a = deviation_of(one), b = deviation_of(other), d = deviation_of(differences);
+    groups += is_found(mean_of(other) - mean_of(one), (a * a + b * b) / people, reach_of_groups) ? 1 : 0;
+    twice += is_found(mean_of(differences), d * d / people, reach_of_twice) ? 1 : 0;
+  }
+  return {people, static_cast<double>(groups) / kSimulatedStudies,
+          static_cast<double>(twice) / kSimulatedStudies};
+}
+
+void add_rows(StudyPower& power, const std::array<std::vector<double>, 2>& logs, Draws& draws) {
   for (int people = 3; people <= kMostPeople && !(power.a_group && power.twice); ++people) {
-    const double n = people;
-    StudyPower::Row& row = power.rows.emplace_back();
-    row.people = people;
-    row.groups = power_of_t(2 * n - 2, effect / std::sqrt(variance / n));
-    row.twice = power_of_t(n - 1, effect / (power.spread_of_difference / std::sqrt(n)));
-    if (!power.a_group && row.groups >= kPowerGoal) power.a_group = people;
-    if (!power.twice && row.twice >= kPowerGoal) power.twice = people;
+    power.rows.push_back(row_of(people, logs, draws));
+    if (!power.a_group && power.rows.back().groups >= kPowerGoal) power.a_group = people;
+    if (!power.twice && power.rows.back().twice >= kPowerGoal) power.twice = people;
   }
 }
 
 }  // namespace
 
-double power_of_t(double freedom, double noncentrality) {
-  const double reach = boost::math::quantile(boost::math::students_t(freedom), 0.975);
-  const boost::math::non_central_t statistic(freedom, std::min(noncentrality, kMostNoncentrality));
-  return boost::math::cdf(boost::math::complement(statistic, reach)) + boost::math::cdf(statistic, -reach);
-}
-
 Result<StudyPower> study_power(const schema::Protocol& protocol, const PowerAssumptions& assumed,
                                const std::function<void(double)>& tell) {
   TACTO_TRY(check(assumed));
   Draws draws(assumed.seed);
+  PsychometricOptions fit;
+  if (!assumed.lapse) fit.lapse = 0;
   StudyPower power;
   std::array<std::vector<double>, 2> logs;
   std::vector<double> differences;
@@ -114,7 +133,8 @@ Result<StudyPower> study_power(const schema::Protocol& protocol, const PowerAssu
     const double factor = std::exp(assumed.spread * draws.normal());
     std::array<std::optional<double>, 2> both;
     for (std::size_t i = 0; i < 2; ++i)
-      both[i] = log_of_fit(answers_of(protocol, assumed.weber[i] * factor, assumed.lapse, draws));
+      both[i] =
+          log_of_fit(answers_of(protocol, assumed.weber[i] * factor, assumed.lapse.value_or(0), draws), fit);
     tell(static_cast<double>(person + 1) / kSimulatedPeople);
     if (!both[0] || !both[1]) {
       ++power.unfitted;
@@ -134,7 +154,7 @@ Result<StudyPower> study_power(const schema::Protocol& protocol, const PowerAssu
     power.spread[i] = deviation_of(logs[i]);
   }
   power.spread_of_difference = deviation_of(differences);
-  add_rows(power);
+  add_rows(power, logs, draws);
   return power;
 }
 
