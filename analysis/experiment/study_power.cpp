@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <random>
 #include <span>
 
+#include "analysis/psychometrics/over_people.hpp"
 #include "analysis/psychometrics/psychometric_fit.hpp"
 
 namespace tacto::analysis {
@@ -25,7 +24,7 @@ class Draws {
  public:
   explicit Draws(std::uint64_t seed) : random_(seed) {}
   double uniform() { return (static_cast<double>(random_() >> 12U) + 0.5) * 0x1p-52; }
-  double normal() { return boost::math::quantile(boost::math::normal(), uniform()); }
+  double normal() { return standard_quantile(Shape::normal, uniform()); }
 
  private:
   std::mt19937_64 random_;
@@ -86,9 +85,7 @@ bool is_found(double mean, double variance_of_mean, double reach) {
 // Studies with people drawn from those that were simulated: the share that finds the difference.
 StudyPower::Row row_of(int people, const std::array<std::vector<double>, 2>& logs, Draws& draws) {
   const auto n = static_cast<std::size_t>(people);
-  const auto reach_of = [](std::size_t freedom) {
-    return boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), 0.975);
-  };
+  const auto reach_of = [](std::size_t freedom) { return student_reach(static_cast<double>(freedom)); };
   const double reach_of_groups = reach_of(2 * n - 2), reach_of_twice = reach_of(n - 1);
   const auto drawn = [&] {
     return static_cast<std::size_t>(draws.uniform() * static_cast<double>(logs[0].size()));

@@ -21,7 +21,7 @@ struct PowerAssumptions {
 };
 
 inline constexpr double kPowerGoal = 0.8;
-inline constexpr int kSimulatedPeople = 400;
+inline constexpr int kSimulatedPeople = 2000;
 inline constexpr int kSimulatedStudies = 2000;  ///< the power is known within 1 % (standard error)
 inline constexpr int kMostPeople = 200;         ///< in a group
 
