@@ -219,7 +219,7 @@ def the_trials_are_exported():
 def participants_are_planned():
     command = ["experiment", "power", "stretch.protocol.json", "--spread", "23%"]
     new_study("ten", 10)
-    command[2] = "ten"
+    command = ["experiment", "power", "ten", "--spread", "23%"]
     power = tacto.run_json(*command, "--weber", "15.5%,25.3%")
     assert power["people_a_group"] in (7, 8) and power["people_twice"] in (5, 6), power
     assert power == tacto.run_json(*command, "--weber", "15.5%,25.3%", "--seed", "1")
