@@ -217,7 +217,6 @@ def the_trials_are_exported():
 
 
 def participants_are_planned():
-    command = ["experiment", "power", "stretch.protocol.json", "--spread", "23%"]
     new_study("ten", 10)
     command = ["experiment", "power", "ten", "--spread", "23%"]
     power = tacto.run_json(*command, "--weber", "15.5%,25.3%")
