@@ -8,8 +8,10 @@
 #include "analysis/cli/verbs.hpp"
 #include "analysis/experiment/answers_page.hpp"
 #include "analysis/experiment/study_answers.hpp"
+#include "analysis/experiment/withdrawal.hpp"
 #include "analysis/page/picture_svg.hpp"
 #include "data-schema/command/output_options.hpp"
+#include "data-schema/files/files.hpp"
 #include "data-schema/report/progress.hpp"
 #include "spatial/picture/figure.hpp"
 
@@ -248,7 +250,10 @@ Result<Report> run_analyse(const AnalyseOptions& o, bool json) {
   TACTO_TRY(check_outputs(o.fit.outputs, o.fit.existing, {&svg, 1}));
   auto table = study_answers(o.fit.file, o.unblind);
   TACTO_TRY(table);
-  return fit_table(o.fit, std::move(*table), json);
+  auto report = fit_table(o.fit, std::move(*table), json);
+  TACTO_TRY(report);
+  if (!o.fit.outputs.empty()) TACTO_TRY(log_outputs(schema::stem_of(o.fit.file, ".protocol"), o.fit.outputs));
+  return report;
 }
 
 cli::Action declare_analyse(CLI::App& app) {
@@ -276,6 +281,9 @@ constexpr cli::VerbPart kExperimentParts[] = {
     {"resume", "Continue an interrupted run", declare_resume_study},
     {"prove", "Compute from the sessions of a run what was delivered", declare_prove_run},
     {"analyse", "Fit psychometric functions to the answers of a study", declare_analyse},
+    {"power", "How many participants a study needs for a difference of Weber fractions", declare_study_power},
+    {"export", "Write the trials of a study as CSV and BIDS, with a script for R", declare_export_study},
+    {"withdraw", "Delete all files of a participant; only the fact remains", declare_withdraw},
     {"fit", "Fit psychometric functions, or a scale, to a table of answers", declare_fit},
 };
 
@@ -293,6 +301,10 @@ const cli::Verb kExperimentVerb{"experiment",
                                 "weber=25%,lapse=2%\n"
                                 "  tactograph experiment prove stretch-P01\n"
                                 "  tactograph experiment analyse stretch --unblind -o stretch.html\n"
+                                "  tactograph experiment prove sessions/2026-11-29.session\n"
+                                "  tactograph experiment power stretch --weber 15.5%,25.3% --spread 23%\n"
+                                "  tactograph experiment export stretch -o stretch-export\n"
+                                "  tactograph experiment withdraw stretch --participant P07\n"
                                 "  tactograph experiment fit answers.csv --guess 50% -o answers.html\n"
                                 "  tactograph experiment fit answers.csv --by participant,vibration_hz\n"
                                 "  tactograph experiment fit --pairs preferences.csv",

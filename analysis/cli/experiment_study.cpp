@@ -2,15 +2,26 @@
 #include "analysis/cli/experiment_study.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <iostream>
 #include <memory>
 
 #include "analysis/cli/participant_screen.hpp"
 #include "analysis/experiment/interval_play.hpp"
+#include "analysis/experiment/marked_proof.hpp"
+#include "analysis/experiment/study_export.hpp"
+#include "analysis/experiment/study_power.hpp"
 #include "analysis/experiment/study_run.hpp"
+#include "analysis/experiment/withdrawal.hpp"
+#include "data-schema/base/quantity.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/command/stop_signals.hpp"
 #include "data-schema/report/progress.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -153,7 +164,70 @@ std::string proof_in_words(const Proof& proof) {
       proof.delivered, proof.trials, proof.stretch_error, proof.same_to_the_bit, proof.sessions);
 }
 
-Result<Report> run_prove_run(const std::string& name) {
+struct ProveOptions {
+  std::string name, protocol;
+};
+
+std::string limits_in_words(const schema::DeliveryLimits& limits) {
+  const auto speed = [](double value_mps) { return schema::for_people(value_mps, schema::Dimension::speed); };
+  return fmt::format(
+      "at most {} lost ticks, {} in fault, {} late, {} blind; removed by limits {:g} dB; error of each whole "
+      "stroke {:g} dB; strokes at {} to {}",
+      limits.lost_ticks, limits.fault_ticks, limits.late_ticks, limits.blind_ticks,
+      limits.removed_by_limits_db, limits.error_db, speed(limits.slowest_mps), speed(limits.fastest_mps));
+}
+
+Report interval_row(const MarkedInterval& interval) {
+  const schema::IntervalFacts& facts = interval.facts;
+  Report row;
+  row.add("mark", interval.mark).add("from_s", interval.from_s).add("to_s", interval.to_s);
+  row.add("delivered", interval.delivered == Delivered::yes  ? "yes"
+                       : interval.delivered == Delivered::no ? "no"
+                                                             : "unknown");
+  row.add("strokes", facts.strokes);
+  if (facts.strokes > 0) row.add("slowest_mps", facts.slowest_mps).add("fastest_mps", facts.fastest_mps);
+  if (facts.predicted_error_db) row.add("predicted_error_db", *facts.predicted_error_db);
+  if (facts.measured_error_db) row.add("measured_error_db", *facts.measured_error_db);
+  if (facts.removed_by_limits_db) row.add("removed_by_limits_db", *facts.removed_by_limits_db);
+  row.add("ticks", facts.ticks).add("lost_ticks", facts.lost_ticks).add("fault_ticks", facts.fault_ticks);
+  row.add("late_ticks", facts.late_ticks).add("blind_ticks", facts.blind_ticks);
+  return row.add("why", fmt::format("{}", fmt::join(interval.why, "; ")));
+}
+
+Result<Report> run_prove_marks(const ProveOptions& o) {
+  schema::DeliveryLimits limits = stretch_protocol("1").delivered;
+  if (!o.protocol.empty()) {
+    const auto protocol = schema::read_protocol(o.protocol);
+    TACTO_TRY(protocol);
+    limits = protocol->delivered;
+  }
+  cli::Progress progress("proving");
+  const auto proof = prove_marks(o.name, limits, [&](double part) { progress.update(part); });
+  TACTO_TRY(proof);
+  const auto delivered = std::ranges::count(proof->intervals, Delivered::yes, &MarkedInterval::delivered);
+  Report report;
+  report
+      .add("verdict",
+           fmt::format("{} of {} marked intervals delivered; the session is {} to the bit", delivered,
+                       proof->intervals.size(), proof->same_to_the_bit ? "the same" : "not the same"))
+      .add("proven", proof->same_to_the_bit);
+  report.add("marked_intervals", proof->intervals.size())
+      .add("delivered", static_cast<std::size_t>(delivered));
+  report.add("limits", limits_in_words(limits));
+  report.add("recorded", "ticks and drive").add("predicted", "displacement, by the transducer's model");
+  if (!proof->simulated.empty()) report.add("simulated", proof->simulated);
+  std::vector<Report> rows;
+  for (const MarkedInterval& interval : proof->intervals) rows.push_back(interval_row(interval));
+  report.add("intervals", std::move(rows));
+  return proof->same_to_the_bit ? report : report.ends_with(ErrorKind::unsuitable);
+}
+
+Result<Report> run_prove_run(const ProveOptions& o) {
+  if (names_session(o.name)) return run_prove_marks(o);
+  const std::string& name = o.name;
+  if (!o.protocol.empty())
+    return schema::fail(ErrorKind::usage, "the limits of a run are those of its study", "--protocol",
+                        "leave it out");
   const auto run = read_run(name);
   TACTO_TRY(run);
   cli::Progress progress("proving");
@@ -174,6 +248,108 @@ Result<Report> run_prove_run(const std::string& name) {
   if (!run->journal.plan.observer.empty()) report.add("observer", run->journal.plan.observer);
   if (!proof.faults.empty()) report.add("faults", proof.faults);
   return proof.holds() ? report : report.ends_with(ErrorKind::unsuitable);
+}
+
+struct PowerOptions {
+  std::string study;
+  std::vector<std::string> weber;
+  PowerAssumptions assumed;
+};
+
+std::string people_in_words(const std::optional<int>& people) {
+  return people ? std::to_string(*people) : fmt::format("more than {}", kMostPeople);
+}
+
+Result<Report> run_study_power(PowerOptions o) {
+  if (o.weber.size() != 2)
+    return schema::fail(ErrorKind::usage, "needs two Weber fractions", "--weber",
+                        "give for example 15.5%,25.3%");
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto weber = schema::parse_quantity(o.weber[i], schema::Dimension::share);
+    if (!weber) return schema::fail(ErrorKind::usage, weber.error().what, "--weber", weber.error().remedy);
+    o.assumed.weber[i] = *weber;
+  }
+  const auto protocol = schema::read_protocol(o.study);
+  TACTO_TRY(protocol);
+  cli::Progress progress("simulating people");
+  const auto power = study_power(*protocol, o.assumed, [&](double part) { progress.update(part); });
+  TACTO_TRY(power);
+  Report report;
+  report.add("verdict",
+             fmt::format("for a power of {:g} %: {} people in each of two groups, or {} people in both "
+                         "conditions",
+                         100 * kPowerGoal, people_in_words(power->a_group), people_in_words(power->twice)));
+  if (power->a_group) report.add("people_a_group", *power->a_group);
+  if (power->twice) report.add("people_twice", *power->twice);
+  report.add(
+      "assumed",
+      fmt::format(
+          "Weber fractions {:g} % and {:g} %; people scatter by {:g} % (standard deviation of ln W, the same "
+          "factor in both conditions); {:g} % of the answers by chance, and a fit {} lapses; {} levels, {} "
+          "times each; Student's t test of ln W over people, 5 %, two-sided",
+          100 * o.assumed.weber[0], 100 * o.assumed.weber[1], 100 * o.assumed.spread,
+          100 * o.assumed.lapse.value_or(0), o.assumed.lapse ? "with" : "without", protocol->levels.size(),
+          protocol->repetitions));
+  report.add("simulated", fmt::format("{} people, seed {}; {} of them can't be fitted and are left out",
+                                      kSimulatedPeople, o.assumed.seed, power->unfitted));
+  for (std::size_t i = 0; i < 2; ++i)
+    report.add(fmt::format("fitted_weber_{}", i + 1), power->weber[i])
+        .add(fmt::format("fitted_spread_{}", i + 1), power->spread[i]);
+  report.add("fitted_spread_of_difference", power->spread_of_difference);
+  std::vector<Report> rows;
+  for (const StudyPower::Row& row : power->rows)
+    rows.push_back(Report()
+                       .add("people", row.people)
+                       .add("power_of_groups", row.groups)
+                       .add("power_of_twice", row.twice));
+  return report.add("powers", std::move(rows));
+}
+
+struct ExportOptions {
+  std::string study, folder;
+  bool unblind = false;
+  schema::Existing existing = schema::Existing::keep;
+};
+
+Result<Report> run_export_study(const ExportOptions& o) {
+  const auto files = export_study(o.study, o.folder, o.unblind, o.existing);
+  TACTO_TRY(files);
+  Report report;
+  report.add("written", *files);
+  return report.add("next", fmt::format("Rscript {}/analysis.R", o.folder));
+}
+
+struct WithdrawOptions {
+  std::string study, participant;
+  bool yes = false;
+};
+
+// Asks on a terminal; elsewhere the answer is no.
+bool is_confirmed(const Withdrawal& withdrawal) {
+  if (isatty(STDIN_FILENO) != 1 || isatty(STDERR_FILENO) != 1) return false;
+  cli::write_message(fmt::format("{}\nType {} to delete these {} files: ", fmt::join(withdrawal.files, "\n"),
+                                 withdrawal.participant, withdrawal.files.size()));
+  std::string line;
+  std::getline(std::cin, line);
+  return line == withdrawal.participant;
+}
+
+Result<Report> run_withdraw(const WithdrawOptions& o) {
+  const auto withdrawal = plan_withdrawal(o.study, o.participant);
+  TACTO_TRY(withdrawal);
+  const bool yes = o.yes || is_confirmed(*withdrawal);
+  if (yes) TACTO_TRY(withdraw(*withdrawal));
+  Report report;
+  report.add("participant", o.participant).add("withdrawn", yes);
+  report.add(yes ? "deleted" : "to_be_deleted", withdrawal->files);
+  if (!withdrawal->outside.empty()) {
+    report.add("outside_the_study", withdrawal->outside);
+    cli::warn("files outside the study's folder are not deleted: delete them yourself");
+  }
+  if (yes) return report;
+  report.add("next", fmt::format("tactograph experiment withdraw {} --participant {} --yes", withdrawal->stem,
+                                 o.participant));
+  return report.ends_with(ErrorKind::usage);
 }
 
 }  // namespace
@@ -221,15 +397,74 @@ cli::Action declare_resume_study(CLI::App& app) {
 }
 
 cli::Action declare_prove_run(CLI::App& app) {
-  auto name = std::make_shared<std::string>();
-  app.add_option("RUN", *name, "STUDY-P07, or its journal")->required();
+  auto options = std::make_shared<ProveOptions>();
+  app.add_option("RUN", options->name, "STUDY-P07, or its journal; or a session with marks of any client")
+      ->required();
+  app.add_option("--protocol", options->protocol,
+                 "Of a session: the limits of this protocol; default: those of 'new stretch'");
   app.footer(
       "Decides again from the sessions what was delivered, and computes each session's drive again. Proven "
       "are "
       "ticks and drive;\nthe displacement is predicted by the transducer's model, and the normal force is in "
       "no "
-      "session. Exit code 5: not proven.");
-  return [name] { return run_prove_run(*name); };
+      "session. Exit code 5: not proven.\n"
+      "Of a session it judges each interval from a mark ('ctl mark TEXT') to the next one, or to the end of "
+      "the "
+      "session;\nafter the mark 'end' there is no interval until the next mark.");
+  return [options] { return run_prove_run(*options); };
+}
+
+cli::Action declare_study_power(CLI::App& app) {
+  auto options = std::make_shared<PowerOptions>();
+  app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
+  app.add_option("--weber", options->weber, "Weber fractions of the two conditions: 15.5%,25.3%")
+      ->required()
+      ->delimiter(',');
+  cli::add_quantity(app, "--spread", options->assumed.spread, schema::Dimension::share,
+                    "How much people differ: standard deviation of ln W")
+      ->required();
+  cli::add_quantity(
+      app, "--lapse", options->assumed.lapse, schema::Dimension::share,
+      "Share of answers by chance, which the fit then estimates; default: none, and a fit without "
+      "lapses");
+  app.add_option("--seed", options->assumed.seed, "Seed of the simulated people")->capture_default_str();
+  app.footer(
+      "People are simulated with the levels and repetitions of the protocol, and fitted as 'analyse' does; "
+      "the power is "
+      "the share of\nsimulated studies in which Student's t test of ln W finds the difference. Lapses that "
+      "have to be "
+      "fitted cost power: try --lapse 2%.");
+  return [options] { return run_study_power(*options); };
+}
+
+cli::Action declare_export_study(CLI::App& app) {
+  auto options = std::make_shared<ExportOptions>();
+  app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
+  app.add_option("-o,--output", options->folder, "Folder of the export")->required();
+  app.add_flag("--unblind", options->unblind,
+               "Export before the planned participants are complete; STUDY.unblinded.txt keeps the date");
+  cli::declare_force(app, options->existing);
+  app.footer(
+      "trials.csv has a row for each attempt of all participants; analysis.R fits a generalised linear mixed "
+      "model "
+      "(probit) to it\nwith lme4, and to other tables: its first lines say how. The folder is a data set "
+      "after BIDS: "
+      "participants.tsv,\nsub-P07/beh/sub-P07_task-STUDY_beh.tsv and .json.");
+  return [options] { return run_export_study(*options); };
+}
+
+cli::Action declare_withdraw(CLI::App& app) {
+  auto options = std::make_shared<WithdrawOptions>();
+  app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
+  app.add_option("--participant", options->participant, "Code of the participant, such as P07")->required();
+  app.add_flag("--yes", options->yes, "Delete without a question");
+  app.footer(
+      "Deletes journal, table and sessions of the participant, and the outputs of 'analyse' and 'export' in "
+      "the "
+      "study's folder,\nwhich can be made again without this participant. STUDY.withdrawn.txt keeps the code "
+      "and "
+      "the date. If it is interrupted, repeat it.");
+  return [options] { return run_withdraw(*options); };
 }
 
 }  // namespace tacto::analysis

@@ -25,36 +25,12 @@ struct TickCounter {
   IntervalFacts& facts;
 
   void operator()(const std::vector<schema::SessionTick>& ticks) const {
-    constexpr std::uint32_t kBlind = wire::kTickPlaying | wire::kTickBlind;
-    for (const schema::SessionTick& tick : ticks) {
-      ++facts.ticks;
-      facts.fault_ticks += (tick.flags & wire::kTickFault) != 0;
-      facts.late_ticks += (tick.flags & wire::kTickLate) != 0;
-      facts.blind_ticks += (tick.flags & kBlind) == kBlind;
-    }
+    for (const schema::SessionTick& tick : ticks) count_tick(tick, facts);
   }
   void operator()(const schema::SessionLoss& loss) const { facts.lost_ticks += loss.count; }
   template <class Other>
   void operator()(const Other& /*other*/) const {}
 };
-
-void add_strokes(const playback::StrokeReport& report, IntervalFacts& facts) {
-  facts.strokes = report.stroke_count;
-  if (report.limits) facts.removed_by_limits_db = report.limits->removed_db();
-  bool target = !report.strokes.empty(), sensor = target;
-  double predicted_db = -INFINITY, measured_db = -INFINITY;
-  for (const playback::PlayedStroke& stroke : report.strokes) {
-    const double speed_mps = std::abs(stroke.to_m - stroke.from_m) / (stroke.to_s - stroke.from_s);
-    facts.slowest_mps = facts.slowest_mps > 0 ? std::min(facts.slowest_mps, speed_mps) : speed_mps;
-    facts.fastest_mps = std::max(facts.fastest_mps, speed_mps);
-    target &= stroke.target_rms_m > 0;
-    sensor &= stroke.measured.has_value();
-    if (target) predicted_db = std::max(predicted_db, stroke.predicted.error_db);
-    if (target && sensor) measured_db = std::max(measured_db, stroke.measured->error_db);
-  }
-  if (target) facts.predicted_error_db = predicted_db;
-  if (target && sensor) facts.measured_error_db = measured_db;
-}
 
 // Of the longest stroke.
 std::optional<double> predicted_period_m(const std::string& session) {
@@ -83,6 +59,30 @@ std::string speed_in_words(double speed_mps) {
 
 }  // namespace
 
+void count_tick(const schema::SessionTick& tick, IntervalFacts& facts) {
+  constexpr std::uint32_t kBlind = wire::kTickPlaying | wire::kTickBlind;
+  ++facts.ticks;
+  facts.fault_ticks += (tick.flags & wire::kTickFault) != 0;
+  facts.late_ticks += (tick.flags & wire::kTickLate) != 0;
+  facts.blind_ticks += (tick.flags & kBlind) == kBlind;
+}
+
+void add_strokes(std::span<const playback::PlayedStroke> strokes, IntervalFacts& facts) {
+  bool target = !strokes.empty(), sensor = target;
+  double predicted_db = -INFINITY, measured_db = -INFINITY;
+  for (const playback::PlayedStroke& stroke : strokes) {
+    const double speed_mps = std::abs(stroke.to_m - stroke.from_m) / (stroke.to_s - stroke.from_s);
+    facts.slowest_mps = facts.slowest_mps > 0 ? std::min(facts.slowest_mps, speed_mps) : speed_mps;
+    facts.fastest_mps = std::max(facts.fastest_mps, speed_mps);
+    target &= stroke.target_rms_m > 0;
+    sensor &= stroke.measured.has_value();
+    if (target) predicted_db = std::max(predicted_db, stroke.predicted.error_db);
+    if (target && sensor) measured_db = std::max(measured_db, stroke.measured->error_db);
+  }
+  if (target) facts.predicted_error_db = predicted_db;
+  if (target && sensor) facts.measured_error_db = measured_db;
+}
+
 Result<IntervalFacts> interval_facts(const std::string& session) {
   auto reader = schema::SessionReader::open(session);
   TACTO_TRY(reader);
@@ -91,29 +91,40 @@ Result<IntervalFacts> interval_facts(const std::string& session) {
   facts.closed = reader->ending() == schema::SessionEnding::closed;
   facts.simulated = reader->header().simulated;
   if (reader->header().textures.size() == 1) facts.stimulus_sha256 = reader->header().textures.front().sha256;
-  if (const auto report = playback::report_strokes(session)) add_strokes(*report, facts);
+  if (const auto report = playback::report_strokes(session)) {
+    facts.strokes = report->stroke_count;
+    if (report->limits) facts.removed_by_limits_db = report->limits->removed_db();
+    add_strokes(report->strokes, facts);
+  }
   if (facts.strokes > 0) facts.predicted_period_m = predicted_period_m(session);
   return facts;
 }
 
-std::vector<std::string> reasons_against(const IntervalFacts& facts, const schema::Protocol& protocol,
-                                         const std::string& sha256) {
-  const schema::DeliveryLimits& limits = protocol.delivered;
+std::vector<std::string> reasons_by_limits(const IntervalFacts& facts, const schema::DeliveryLimits& limits) {
   std::vector<std::string> why;
-  if (!facts.closed) why.emplace_back("session not complete");
-  if (facts.stimulus_sha256 != sha256) why.emplace_back("another texture was played");
   add_count(why, facts.lost_ticks, limits.lost_ticks, "lost ticks");
   add_count(why, facts.fault_ticks, limits.fault_ticks, "ticks in fault");
   add_count(why, facts.late_ticks, limits.late_ticks, "late ticks");
   add_count(why, facts.blind_ticks, limits.blind_ticks, "blind ticks");
   add_level(why, facts.removed_by_limits_db, limits.removed_by_limits_db, "removed by limits");
-  if (facts.strokes < static_cast<std::uint64_t>(protocol.pace.strokes)) {
-    why.push_back(fmt::format("{} of {} strokes", facts.strokes, protocol.pace.strokes));
-    return why;
-  }
-  add_level(why, facts.predicted_error_db, limits.error_db, "error");
-  if (facts.slowest_mps < limits.slowest_mps) why.push_back("too slow: " + speed_in_words(facts.slowest_mps));
+  if (facts.predicted_error_db) add_level(why, facts.predicted_error_db, limits.error_db, "error");
+  if (facts.strokes > 0 && facts.slowest_mps < limits.slowest_mps)
+    why.push_back("too slow: " + speed_in_words(facts.slowest_mps));
   if (facts.fastest_mps > limits.fastest_mps) why.push_back("too fast: " + speed_in_words(facts.fastest_mps));
+  return why;
+}
+
+std::vector<std::string> reasons_against(const IntervalFacts& facts, const schema::Protocol& protocol,
+                                         const std::string& sha256) {
+  std::vector<std::string> why;
+  if (!facts.closed) why.emplace_back("session not complete");
+  if (facts.stimulus_sha256 != sha256) why.emplace_back("another texture was played");
+  const std::vector<std::string> by_limits = reasons_by_limits(facts, protocol.delivered);
+  why.insert(why.end(), by_limits.begin(), by_limits.end());
+  if (facts.strokes < static_cast<std::uint64_t>(protocol.pace.strokes))
+    why.push_back(fmt::format("{} of {} strokes", facts.strokes, protocol.pace.strokes));
+  else if (!facts.predicted_error_db)
+    why.emplace_back("error unknown");
   return why;
 }
 

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "data-schema/experiment/journal.hpp"
 #include "data-schema/experiment/protocol.hpp"
+#include "data-schema/session/session.hpp"
+#include "playback/strokes/stroke_report.hpp"
 
 namespace tacto::analysis {
 
@@ -15,6 +18,16 @@ namespace tacto::analysis {
 /// displacement is that of the transducer's model; the normal force is in no session. Errors: not_found;
 /// malformed, for a file without a header.
 schema::Result<schema::IntervalFacts> interval_facts(const std::string& session);
+
+/// Adds a tick to the counts.
+void count_tick(const schema::SessionTick& tick, schema::IntervalFacts& facts);
+/// Speeds and errors of the strokes of an interval.
+void add_strokes(std::span<const playback::PlayedStroke> strokes, schema::IntervalFacts& facts);
+
+/// Which limits the facts exceed, as far as they are known: counts, what the limits removed (unknown is a
+/// reason), error and speeds of strokes.
+std::vector<std::string> reasons_by_limits(const schema::IntervalFacts& facts,
+                                           const schema::DeliveryLimits& limits);
 
 /// Why an interval is not delivered, each reason in words without the stimulus; empty: it is. `sha256` is
 /// that of the stimulus by the key.

@@ -10,6 +10,7 @@
 
 #include "analysis/experiment/interval_facts.hpp"
 #include "analysis/experiment/trial_runner.hpp"
+#include "analysis/experiment/withdrawal.hpp"
 #include "playback/session/session_replay.hpp"
 
 namespace tacto::analysis {
@@ -142,7 +143,9 @@ Result<Run> read_run(const std::string& name) {
 }
 
 Result<Run> run_of(const std::string& stem, schema::Journal journal) {
-  auto study = read_study(folder_with(stem) + journal.plan.study);
+  const std::string study_stem = folder_with(stem) + journal.plan.study;
+  TACTO_TRY(check_not_withdrawn(study_stem, journal.plan.participant));
+  auto study = read_study(study_stem);
   TACTO_TRY(study);
   TACTO_TRY(check_unchanged(journal.plan, *study));
   auto queue = queue_of(journal, study->protocol, study->key);

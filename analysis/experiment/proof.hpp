@@ -21,7 +21,8 @@ struct Run {
 };
 
 /// `name`: STUDY-P07 or its journal; the study is in the same folder. Errors: those of read_journal,
-/// read_study; unsuitable: protocol or key have changed since the run began, an entry that does not follow.
+/// read_study; unsuitable: protocol or key have changed since the run began, an entry that does not follow, a
+/// participant who has withdrawn.
 schema::Result<Run> read_run(const std::string& name);
 /// The same for a journal that was read already.
 schema::Result<Run> run_of(const std::string& stem, schema::Journal journal);

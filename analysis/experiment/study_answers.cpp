@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <map>
 
-#include "analysis/experiment/proof.hpp"
+#include "analysis/experiment/withdrawal.hpp"
 #include "data-schema/base/creation_time.hpp"
 
 namespace tacto::analysis {
@@ -28,15 +28,11 @@ std::vector<std::string> runs_of(const Study& study) {
     const std::string name = file.path().filename().string();
     if (!name.starts_with(study.name() + "-") || schema::run_stem(name) == name) continue;
     const std::string participant = schema::run_stem(name).substr(study.name().size() + 1);
-    if (schema::check_participant(participant)) runs.push_back(study.run(participant));
+    if (schema::check_participant(participant) && !is_withdrawn(study.stem, participant))
+      runs.push_back(study.run(participant));
   }
   std::ranges::sort(runs);
   return runs;
-}
-
-// Interval `interval` has the smaller period by the answer: whether that is the standard's.
-bool seemed_longer(const Attempt& attempt) {
-  return attempt.trial.standard_comes_first() == (attempt.answered->interval == 1);
 }
 
 AnswerGroup<LevelCount> answers_of_run(const Run& run) {
@@ -80,23 +76,23 @@ Result<void> log_unblinding(const Study& study, std::size_t complete) {
 
 }  // namespace
 
-Result<AnswersTable> study_answers(const std::string& name, bool unblind) {
+// Interval `interval` has the smaller period by the answer: whether that is the standard's.
+bool seemed_longer(const Attempt& attempt) {
+  return attempt.trial.standard_comes_first() == (attempt.answered->interval == 1);
+}
+
+Result<std::vector<Run>> answered_runs(const std::string& name, bool unblind) {
   const auto study = read_study(name);
   TACTO_TRY(study);
-  AnswersTable table;
+  std::vector<Run> runs;
   std::size_t complete = 0;
-  std::vector<std::string> simulated;
   for (const std::string& stem : runs_of(*study)) {
-    const auto run = read_run(stem);
+    auto run = read_run(stem);
     TACTO_TRY(run);
     complete += run->queue.has_ended();
-    auto group = answers_of_run(*run);
-    if (group.rows.empty()) continue;
-    table.groups.push_back(std::move(group));
-    add_simulated(simulated, *run);
+    if (run->queue.counted() > 0) runs.push_back(std::move(*run));
   }
-  if (table.groups.empty())
-    return fail(ErrorKind::unsuitable, "has no answers yet", study->stem, "run it first");
+  if (runs.empty()) return fail(ErrorKind::unsuitable, "has no answers yet", study->stem, "run it first");
   if (complete < static_cast<std::size_t>(study->protocol.participants)) {
     if (!unblind)
       return fail(
@@ -104,6 +100,18 @@ Result<AnswersTable> study_answers(const std::string& name, bool unblind) {
           fmt::format("{} of {} planned participants are complete", complete, study->protocol.participants),
           study->stem, "wait for the others; --unblind analyses now, and that is logged");
     TACTO_TRY(log_unblinding(*study, complete));
+  }
+  return runs;
+}
+
+Result<AnswersTable> study_answers(const std::string& name, bool unblind) {
+  const auto runs = answered_runs(name, unblind);
+  TACTO_TRY(runs);
+  AnswersTable table;
+  std::vector<std::string> simulated;
+  for (const Run& run : *runs) {
+    table.groups.push_back(answers_of_run(run));
+    add_simulated(simulated, run);
   }
   table.columns.by = {"participant"};
   table.columns.level = table.level_name = "stretch";

@@ -3,15 +3,23 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "analysis/experiment/answers_table.hpp"
+#include "analysis/experiment/proof.hpp"
 
 namespace tacto::analysis {
 
-/// Of each run STUDY-*.trials.jsonl, by the stretch of the period: how often the stretched stimulus seemed
-/// the longer one, among the trials that were delivered and answered. Before as many runs are complete as the
-/// protocol plans, the answers are given only to `unblind`, and STUDY.unblinded.txt keeps when that was.
-/// Errors: those of read_study and read_run; unsuitable: no answers, not enough complete runs; cannot_write.
+/// The runs STUDY-*.trials.jsonl of participants who have not withdrawn. Before as many are complete as the
+/// protocol plans, they are given only to `unblind`, and STUDY.unblinded.txt keeps when that was. Errors:
+/// those of read_study and read_run; unsuitable: no answers, not enough complete runs; cannot_write.
+schema::Result<std::vector<Run>> answered_runs(const std::string& study, bool unblind);
+
+/// Whether the stretched stimulus seemed to have the longer period. Precondition: an answer.
+bool seemed_longer(const Attempt& attempt);
+
+/// Of those runs, by the stretch of the period: how often the stretched stimulus seemed the longer one, among
+/// the trials that were delivered and answered. Errors: those of answered_runs.
 schema::Result<AnswersTable> study_answers(const std::string& study, bool unblind);
 
 }  // namespace tacto::analysis

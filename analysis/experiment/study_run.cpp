@@ -9,6 +9,7 @@
 #include "analysis/experiment/interval_facts.hpp"
 #include "analysis/experiment/interval_play.hpp"
 #include "analysis/experiment/trial_runner.hpp"
+#include "analysis/experiment/withdrawal.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/version.hpp"
 
@@ -136,6 +137,7 @@ Result<Run> begin_run(const std::string& study_name, const std::string& particip
   TACTO_TRY(schema::check_participant(participant));
   auto study = read_study(study_name);
   TACTO_TRY(study);
+  TACTO_TRY(check_not_withdrawn(study->stem, participant));
   TACTO_TRY(check_on_device(*study, request.device_uri));
   const std::string stem = study->run(participant);
   auto file = schema::JournalFile::create(schema::journal_path(stem));

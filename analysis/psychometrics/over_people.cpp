@@ -26,12 +26,16 @@ Mean mean_and_error(const std::vector<double>& values) {
 
 }  // namespace
 
+double student_reach(double freedom) {
+  return boost::math::quantile(boost::math::students_t(freedom), 0.975);
+}
+
 Estimate geometric_mean(std::span<const double> figures) {
   std::vector<double> logs;
   for (const double figure : figures) logs.push_back(std::log(figure));
   const Mean mean = mean_and_error(logs);
   if (mean.freedom < 1) return {std::exp(mean.value), 0, INFINITY};
-  const double reach = boost::math::quantile(boost::math::students_t(mean.freedom), 0.975) * mean.error;
+  const double reach = student_reach(mean.freedom) * mean.error;
   return {std::exp(mean.value), std::exp(mean.value - reach), std::exp(mean.value + reach)};
 }
 

@@ -8,6 +8,9 @@
 
 namespace tacto::analysis {
 
+/// Quantile 97.5 % of Student's t: the ends of a 95 % interval in standard errors. Pure.
+double student_reach(double freedom);
+
 /// Geometric mean with its 95 % interval: one figure per person, each above 0. With fewer than two people the
 /// interval is infinite. Pure.
 Estimate geometric_mean(std::span<const double> figures);

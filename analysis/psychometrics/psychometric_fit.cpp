@@ -138,6 +138,17 @@ void note_limits(PsychometricFit& fit, const PsychometricOptions& options, const
 
 }  // namespace
 
+Result<PsychometricFunction> most_probable_function(std::vector<LevelCount> counts,
+                                                    const PsychometricOptions& options) {
+  const std::vector<LevelCount> levels = merged(std::move(counts));
+  TACTO_TRY(check_answers(levels, options));
+  const PsychometricLikelihood likelihood(levels, options);
+  const PsychometricPeak peak = peak_of(likelihood);
+  TACTO_TRY(check_peak(levels, likelihood, range_of(likelihood.scaled_levels()), peak));
+  return PsychometricFunction{options.shape, peak.centre, std::exp(peak.log_spread), peak.lapse,
+                              options.guess};
+}
+
 Result<PsychometricFit> fit_psychometric(std::vector<LevelCount> counts, const PsychometricOptions& options) {
   PsychometricFit fit;
   fit.levels = merged(std::move(counts));

@@ -55,4 +55,8 @@ struct PsychometricFit {
 schema::Result<PsychometricFit> fit_psychometric(std::vector<LevelCount> levels,
                                                  const PsychometricOptions& options);
 
+/// The function of fit_psychometric() without its intervals, which take most of the time. Errors: the same.
+schema::Result<PsychometricFunction> most_probable_function(std::vector<LevelCount> levels,
+                                                            const PsychometricOptions& options);
+
 }  // namespace tacto::analysis

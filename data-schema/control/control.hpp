@@ -18,7 +18,7 @@ namespace tacto::schema {
 inline constexpr std::string_view kControlVersion = "1.0";
 inline constexpr std::size_t kMostControlLine = 16384;  ///< bytes, newline included
 
-enum class ControlVerb { hello, load, arm, play, stop, disarm, gain, set, move, raise, status, watch };
+enum class ControlVerb { hello, load, arm, play, stop, disarm, gain, set, move, raise, mark, status, watch };
 
 struct ControlRequest {
   ControlVerb verb = ControlVerb::status;
@@ -40,6 +40,7 @@ struct ControlRequest {
   std::string patch;               ///< move, raise
   std::optional<double> x_m, y_m;  ///< move: of its centre
   std::optional<double> over_s;    ///< set, move
+  std::string text;                ///< mark
   /// Filled in by the socket; not in the line.
   std::string asked_by;  ///< the user, for a saved gain
   std::uint64_t client = 0;

@@ -15,8 +15,9 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 12> kControlVerbs = {
-    "hello", "load", "arm", "play", "stop", "disarm", "gain", "set", "move", "raise", "status", "watch"};
+constexpr std::array<std::string_view, 13> kControlVerbs = {"hello",  "load",   "arm",  "play", "stop",
+                                                            "disarm", "gain",   "set",  "move", "raise",
+                                                            "mark",   "status", "watch"};
 constexpr int kDeepestRequest = 3;
 constexpr std::string_view kRequestWhere = "request";
 
@@ -57,6 +58,10 @@ Result<void> check_version_of(const std::string& version) {
               std::string(kRequestWhere), "use the tactograph that came with the daemon");
 }
 
+bool is_one_line(const std::string& text) {
+  return !text.empty() && std::ranges::none_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+}
+
 Result<void> check_members(const ControlRequest& request) {
   if (request.verb == ControlVerb::hello && request.version.empty())
     return bad_member("version", "hello contains no version", R"(add "version":"1.0")");
@@ -70,6 +75,8 @@ Result<void> check_members(const ControlRequest& request) {
   if (request.verb == ControlVerb::move && !(request.x_m && request.y_m))
     return bad_member(request.x_m ? "y_m" : "x_m", "move needs the place of the patch's centre",
                       R"(add "x_m":0.01,"y_m":0.02)");
+  if (request.verb == ControlVerb::mark && !is_one_line(request.text))
+    return bad_member("text", "mark needs a text of one line", R"(add "text":"trial 1")");
   const int gains =
       request.gain.has_value() + request.gain_m_per_n.has_value() + request.times_default.has_value();
   if (request.verb == ControlVerb::gain && gains == 0)
@@ -84,7 +91,7 @@ Result<void> check_members(const ControlRequest& request) {
 
 // A member of another request was meant for that request: it must not be ignored, because it may be a limit.
 Result<void> check_taken(const Json& body, ControlVerb verb) {
-  constexpr std::array<std::pair<const char*, ControlVerb>, 15> kTakenBy = {
+  constexpr std::array<std::pair<const char*, ControlVerb>, 16> kTakenBy = {
       {{"version", ControlVerb::hello},
        {"token", ControlVerb::hello},
        {"file", ControlVerb::load},
@@ -99,7 +106,8 @@ Result<void> check_taken(const Json& body, ControlVerb verb) {
        {"number", ControlVerb::set},
        {"value", ControlVerb::set},
        {"x_m", ControlVerb::move},
-       {"y_m", ControlVerb::move}}};
+       {"y_m", ControlVerb::move},
+       {"text", ControlVerb::mark}}};
   const auto word = [](ControlVerb of) { return kControlVerbs[static_cast<std::size_t>(of)]; };
   for (const auto& [name, taker] : kTakenBy)
     if (body.contains(name) && verb != taker)
@@ -146,6 +154,7 @@ ControlRequest request_of(const Json& body) {
   request.x_m = asked_number(body, "x_m");
   request.y_m = asked_number(body, "y_m");
   request.over_s = asked_number(body, "over_s");
+  request.text = text_or(body, "text");
   for (const TextureEnds ends : {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop})
     if (text_or(body, "ends") == to_string(ends)) request.ends = ends;
   return request;
@@ -241,6 +250,7 @@ std::string control_request_line(const ControlRequest& request) {
   if (request.x_m) body["x_m"] = *request.x_m;
   if (request.y_m) body["y_m"] = *request.y_m;
   if (request.over_s) body["over_s"] = *request.over_s;
+  put_text(body, "text", request.text);
   return line_of(body);
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data-schema/base/error.hpp"
@@ -67,6 +68,10 @@ struct SessionEvent {
   std::int64_t time_ns = 0;
   std::string text;
 };
+
+/// A client's mark is an event with this before the client's text.
+inline constexpr std::string_view kMarkEvent = "mark: ";
+inline constexpr std::size_t kMostMarks = 10000;  ///< of a session
 
 /// The last block of a session that was closed.
 struct SessionEnd {

@@ -145,6 +145,11 @@ struct Count {
   void operator()(const SessionLoss& loss) { totals.lost_ticks += loss.count; }
   // Of many events, keeps the first and the last.
   void operator()(const SessionEvent& event) {
+    if (event.text.starts_with(kMarkEvent)) {
+      if (totals.marks.size() < kMostMarks)
+        totals.marks.push_back({event.tick, event.time_ns, event.text.substr(kMarkEvent.size())});
+      return;
+    }
     ++totals.event_count;
     if (totals.events.size() == kMostEventsKept)
       totals.events.erase(totals.events.begin() + kMostEventsKept / 2);

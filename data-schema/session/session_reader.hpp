@@ -53,6 +53,7 @@ struct SessionTotals {
   std::int64_t first_ns = 0, last_ns = 0;
   std::vector<SessionEvent> events;    ///< at most the first 500 and the last 500
   std::uint64_t event_count = 0;       ///< of all
+  std::vector<SessionEvent> marks;     ///< the first kMostMarks, with the client's text; not among the events
   std::vector<SessionChange> changes;  ///< the first 1000 that took effect
   std::optional<SessionEnd> end;
   SessionEnding ending = SessionEnding::unread;

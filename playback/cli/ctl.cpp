@@ -35,9 +35,9 @@ namespace {
 
 constexpr const char* kUsualSocket = "/run/tactographd/control";
 constexpr int kEventMs = 500;
-constexpr std::array<std::string_view, 13> kCtlActions = {"hello",  "load",  "arm", "play", "stop",
-                                                          "disarm", "gain",  "set", "move", "raise",
-                                                          "status", "watch", "top"};
+constexpr std::array<std::string_view, 14> kCtlActions = {"hello",  "load",   "arm",   "play", "stop",
+                                                          "disarm", "gain",   "set",   "move", "raise",
+                                                          "mark",   "status", "watch", "top"};
 
 struct CtlOptions {
   std::string socket = kUsualSocket, action, what, value;  // value: of set, move
@@ -82,9 +82,9 @@ Result<void> check_taken(const CtlOptions& o) {
                         "command line", who);
   };
   const bool load = o.action == "load", gain = o.action == "gain", set = o.action == "set",
-             move = o.action == "move", raise = o.action == "raise";
-  if (!o.what.empty() && !load && !gain && !set && !move && !raise)
-    return refuse(o.what, "only load, gain, set, move and raise have an argument");
+             move = o.action == "move", raise = o.action == "raise", mark = o.action == "mark";
+  if (!o.what.empty() && !load && !gain && !set && !move && !raise && !mark)
+    return refuse(o.what, "only load, gain, set, move, raise and mark have an argument");
   if (!o.value.empty() && !set && !move) return refuse(o.value, "only set and move have a value");
   if (o.over_s && !set && !move) return refuse("--over", "only set and move accept it");
   const auto missing = [&](const char* what, const char* form) {
@@ -95,6 +95,8 @@ Result<void> check_taken(const CtlOptions& o) {
     return missing("value", "write 'ctl set PATCH.LAYER.MEMBER VALUE', with a plain number");
   if (move && o.value.empty()) return missing("place", "write 'ctl move PATCH X,Y', as in 10mm,20mm");
   if (raise && o.what.empty()) return missing("patch", "write 'ctl raise PATCH'");
+  if (mark && o.what.empty())
+    return missing("text", "write 'ctl mark TEXT', for example 'ctl mark \"trial 1\"'");
   for (const auto& [option, given] : {std::pair{"--at", o.at_m.has_value()},
                                       {"--gain", o.gain.has_value()},
                                       {"--ends", o.ends.has_value()},
@@ -131,6 +133,7 @@ Result<ControlRequest> request_of(const CtlOptions& o) {
     request.value = *value;
   }
   if (request.verb == ControlVerb::move || request.verb == ControlVerb::raise) request.patch = o.what;
+  if (request.verb == ControlVerb::mark) request.text = o.what;
   if (request.verb == ControlVerb::move) {
     const auto place = parse_place(o.value);
     TACTO_TRY(place);
@@ -232,12 +235,14 @@ cli::Action declare_ctl(CLI::App& app) {
            const std::vector<std::string> words(kCtlActions.begin(), kCtlActions.end());
            o.action = kCtlActions[cli::choose("action", word, words)];
          },
-         "load, arm, play, stop, disarm, gain, set, move, raise, status; watch: events as lines of JSON; "
+         "load, arm, play, stop, disarm, gain, set, move, raise, mark, status; watch: events as lines of "
+         "JSON; "
          "top: live figures")
       ->type_name(cli::words_of({kCtlActions.begin(), kCtlActions.end()}))
       ->required();
   app.add_option("what", o.what,
-                 "load: a texture or scene; gain: as --gain; set: PATCH.LAYER.MEMBER; move, raise: PATCH");
+                 "load: a texture or scene; gain: as --gain; set: PATCH.LAYER.MEMBER; move, raise: PATCH; "
+                 "mark: a text for the session");
   app.add_option(
       "value", o.value,
       "set: within the member's slider, in the unit of its name; move: the place X,Y of the patch's "
@@ -264,7 +269,7 @@ cli::Action declare_ctl(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kCtlVerb{
-    "ctl", "Control the daemon: load, arm, play, stop, gain, set, move, raise, status, watch, top",
+    "ctl", "Control the daemon: load, arm, play, stop, gain, set, move, raise, mark, status, watch, top",
     "tactograph ctl load oak --at 10mm\n"
     "  tactograph ctl play --watch\n"
     "  tactograph ctl arm && tactograph ctl play\n"

@@ -159,7 +159,7 @@ void warn_of(const StrokeReport& strokes) {
                           strokes.strokes.size(), strokes.stroke_count));
 }
 
-// Adds states, faults, gains, changes of texture.
+// Adds states, faults, gains, changes of texture, and the clients' marks.
 Result<void> add_events(Report& report, const std::string& session) {
   auto reader = schema::SessionReader::open(session);
   TACTO_TRY(reader);
@@ -170,6 +170,10 @@ Result<void> add_events(Report& report, const std::string& session) {
   if (totals.event_count > totals.events.size())
     report.add("events_left_out", totals.event_count - totals.events.size());
   report.add("events", std::move(rows));
+  std::vector<Report> marks;
+  for (const schema::SessionEvent& mark : totals.marks)
+    marks.push_back(Report().add("tick", mark.tick).add("mark", mark.text));
+  if (!marks.empty()) report.add("marks", std::move(marks));
   return {};
 }
 

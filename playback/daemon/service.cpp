@@ -409,6 +409,16 @@ Result<ControlFields> Service::raise(const ControlRequest& request) {
   return change_scene(*command, "raise", {{"patch", request.patch}});
 }
 
+Result<ControlFields> Service::mark(const ControlRequest& request) {
+  const auto tick = player_->mark(request.text);
+  TACTO_TRY(tick);
+  const double device_s = 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns);
+  const ControlFields fields{
+      {"text", request.text}, {"tick", static_cast<std::int64_t>(*tick)}, {"device_s", device_s}};
+  publish_("mark", fields);
+  return fields;
+}
+
 Result<void> Service::require_forces() const {
   if (player_->forces()) return {};
   return fail(ErrorKind::usage, "no scene of forces is loaded", {}, "load one first");
@@ -509,6 +519,8 @@ std::optional<Result<ControlFields>> Service::handle(const ControlRequest& reque
       return move(request);
     case ControlVerb::raise:
       return raise(request);
+    case ControlVerb::mark:
+      return mark(request);
     case ControlVerb::status:
     case ControlVerb::watch:
       return status();

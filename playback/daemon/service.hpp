@@ -60,6 +60,7 @@ class Service {
   schema::Result<schema::ControlFields> set(const schema::ControlRequest& request);
   schema::Result<schema::ControlFields> move(const schema::ControlRequest& request);
   schema::Result<schema::ControlFields> raise(const schema::ControlRequest& request);
+  schema::Result<schema::ControlFields> mark(const schema::ControlRequest& request);
   schema::Result<void> require_forces() const;
   schema::Result<schema::ControlFields> change_scene(const SceneCommand& command, const char* event,
                                                      schema::ControlFields fields);

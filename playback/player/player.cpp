@@ -229,6 +229,7 @@ Result<void> Player::begin_session(const std::string& path) {
   auto recorder = FlightRecorder::begin(path, header, options_.full_queue, limits.get());
   TACTO_TRY(recorder);
   recorder_ = std::move(*recorder);
+  marks_ = 0;
   limits_ = std::move(limits);
   tray_.begin(header.rate_hz, [this](schema::SessionSamples run) { recorder_->measured(std::move(run)); });
   return {};
@@ -315,6 +316,20 @@ Result<void> Player::change_scene(const SceneCommand& command) {
   const auto done = std::visit([&](const auto& message) { return steer(message); }, command.message);
   if (done) recorder_->event({view_.expected(), steady_ns(), command.text});
   return done;
+}
+
+// The heartbeat's answer follows the ticks that the device has sent before it.
+Result<std::uint64_t> Player::mark(const std::string& text) {
+  TACTO_TRY(require(recorder_ != nullptr, "mark", "arm first: a mark is in a session"));
+  if (marks_ >= schema::kMostMarks)
+    return fail(ErrorKind::usage, fmt::format("this session has {} marks", marks_), session_path_,
+                "disarm and arm: the next session has room for as many");
+  if (const auto beaten = beat(); !beaten) return tl::unexpected(lose(beaten.error()).error());
+  take_faults();
+  take_ticks();
+  ++marks_;
+  recorder_->event({view_.expected(), steady_ns(), std::string(schema::kMarkEvent) + text});
+  return view_.expected();
 }
 
 wire::Gain Player::device_gain() const {

@@ -98,6 +98,9 @@ class Player {
   schema::Result<void> may_gain(double gain) const;
   /// Changes the scene of forces that is played. Errors: usage, in idle and for a drive; device.
   schema::Result<void> change_scene(const SceneCommand& command);
+  /// Puts a client's mark into the session, and returns its tick: the first one that the device had not sent.
+  /// Errors: usage, without a session and after kMostMarks; device.
+  schema::Result<std::uint64_t> mark(const std::string& text);
   /// Ramps to zero, waits for idle (a second at most), and closes the session; `why` as in stop(). Errors:
   /// device; cannot_write.
   schema::Result<void> disarm(const std::string& why = {});
@@ -165,7 +168,8 @@ class Player {
   std::uint64_t faded_at_ = 0;      // the tick at which the last change is complete
   TickView view_;
   TraySamples tray_;
-  double pulse_s_ = 0;  // the device's clock at the last heartbeat
+  std::size_t marks_ = 0;  // of the session
+  double pulse_s_ = 0;     // the device's clock at the last heartbeat
   double next_beat_s_ = 0, round_trip_s_ = 0;
 };
 

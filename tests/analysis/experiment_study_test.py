@@ -5,6 +5,7 @@ come again, SIGKILL and resume, a swapped stimulus, answers from a file, and the
 import csv
 import hashlib
 import json
+import os
 import pathlib
 import random
 import shutil
@@ -191,6 +192,77 @@ def the_answers_are_fitted():
         assert fit["jnd_low"] < weber < fit["jnd_high"] and fit["pse_low"] < 0 < fit["pse_high"], fit
 
 
+def the_trials_are_exported():
+    tacto.run("experiment", "export", "more", "-o", "out", code=5)
+    assert not os.path.exists("out")
+    written = tacto.run_json("experiment", "export", "more", "--unblind", "-o", "out")["written"]
+    assert sorted(written) == sorted(str(file) for file in pathlib.Path("out").rglob("*") if file.is_file())
+    tacto.run("experiment", "export", "more", "--unblind", "-o", "out", code=2)  # exists
+    with open("out/trials.csv") as file:
+        rows = list(csv.DictReader(file))
+    for participant in ("P01", "P02"):
+        own, stem = table(f"more-{participant}"), f"out/sub-{participant}/beh/sub-{participant}_task-more_beh"
+        with open(f"{stem}.tsv") as file:
+            bids = list(csv.DictReader(file, delimiter="\t"))
+        exported = [row for row in rows if row["participant"] == participant]
+        assert len(own) == len(bids) == len(exported) >= 32
+        for row, other, line in zip(own, exported, bids):
+            assert row == {name: other[name] for name in row} == {name: line[name].replace("n/a", "") for name in row}, (row, other, line)
+            assert other["seemed_longer"] == ("" if not row["answer"] else str(int(row["answer_interval"] == row["standard_interval"])))
+        described = json.loads(pathlib.Path(f"{stem}.json").read_text())
+        assert set(bids[0]) == set(described) - {"TaskName"} and all(described[name]["Description"] for name in bids[0])
+    with open("out/participants.tsv") as file:
+        assert [row["participant_id"] for row in csv.DictReader(file, delimiter="\t")] == ["sub-P01", "sub-P02"]
+    assert json.loads(pathlib.Path("out/dataset_description.json").read_text())["Name"] == "more"
+
+
+def participants_are_planned():
+    new_study("ten", 10)
+    command = ["experiment", "power", "ten", "--spread", "23%"]
+    power = tacto.run_json(*command, "--weber", "15.5%,25.3%")
+    assert power["people_a_group"] in (7, 8) and power["people_twice"] in (5, 6), power
+    assert power == tacto.run_json(*command, "--weber", "15.5%,25.3%", "--seed", "1")
+    last = power["powers"][-1]
+    assert last["people"] == power["people_a_group"] and last["power_of_groups"] >= 0.8 > power["powers"][-2]["power_of_groups"]
+    assert tacto.run_json(*command, "--weber", "15.5%,25.3%", "--lapse", "2%")["people_a_group"] > power["people_a_group"]
+    for wrong in (["--weber", "15.5%"], ["--weber", "15.5%,15.5%"], ["--weber", "15.5,25.3"], ["--weber", "15.5%,500%"], ["--weber", "15.5%,25.3%", "--lapse", "60%"]):
+        tacto.run(*command, *wrong, code=2)
+    tacto.run("experiment", "power", "nothing", "--weber", "15.5%,25.3%", "--spread", "23%", code=3)
+
+
+def a_participant_withdraws():
+    here = pathlib.Path(".")
+    tacto.run("experiment", "analyse", "more", "--unblind", "-o", "elsewhere/more.html")
+    shutil.copytree("elsewhere", "/tmp/" + here.resolve().name + "-outside")
+    outside = pathlib.Path("/tmp/" + here.resolve().name + "-outside")
+    tacto.run("experiment", "analyse", "more", "--unblind", "-o", f"{outside}/page.html")
+    pathlib.Path("more-P011.trials.tsv").write_text("")  # of another participant
+    listed = tacto.run_json("experiment", "withdraw", "more", "--participant", "P01", code=2)
+    files = set(listed["to_be_deleted"])
+    expected = {"more-P01.trials.jsonl", "more-P01.trials.tsv", *map(str, here.glob("more-P01/*"))}
+    assert listed["withdrawn"] is False and expected < files and all(map(os.path.exists, files)), listed
+    assert {os.path.basename(file) for file in files - expected} >= {"more.html", "trials.csv", "sub-P02_task-more_beh.tsv"} and len(files - expected) == 10, files - expected
+    assert [os.path.basename(file) for file in listed["outside_the_study"]] == ["page.html"]
+    # As if it had been killed after the record and one file: the run counts no more, and the rest is deleted by repeating it.
+    pathlib.Path("more.withdrawn.txt").write_text("2026-01-01T00:00:00Z\tP01\n")
+    os.remove("more-P01.trials.tsv")
+    tacto.run("experiment", "prove", "more-P01", code=5)
+    tacto.run("experiment", "resume", "more-P01", code=5)
+    fits = tacto.run_json("experiment", "analyse", "more", "--unblind")["fits"]
+    assert [fit["participant"] for fit in fits] == ["P02"]
+    done = tacto.run_json("experiment", "withdraw", "more.protocol.json", "--participant", "P01", "--yes")
+    assert done["withdrawn"] is True and set(done["deleted"]) == files - {"more-P01.trials.tsv"}
+    assert not any(map(os.path.exists, files)) and not os.path.exists("more-P01") and (outside / "page.html").exists()
+    assert pathlib.Path("more.withdrawn.txt").read_text().count("P01") == 1
+    assert os.path.exists("more-P02.trials.jsonl") and os.path.exists("more/K1.texture.wav") and os.path.exists("more-P011.trials.tsv")
+    assert tacto.run_json("experiment", "withdraw", "more", "--participant", "P01", "--yes")["deleted"] == []  # again
+    tacto.run("experiment", "run", "more", "-d", "sim:", "--participant", "P01", "--observer", OBSERVER, code=5)
+    tacto.run("experiment", "withdraw", "more", "--participant", "P09", "--yes", code=3)
+    tacto.run("experiment", "withdraw", "more", "--participant", "../more", "--yes", code=2)
+    tacto.run("experiment", "withdraw", "nothing", "--participant", "P01", "--yes", code=3)
+    shutil.rmtree(outside)
+
+
 def study():
     the_files_are_coded()
     a_run_is_proven()
@@ -199,6 +271,9 @@ def study():
     answers_from_a_file()
     bad_input()
     the_answers_are_fitted()
+    the_trials_are_exported()
+    participants_are_planned()
+    a_participant_withdraws()
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 
 import numpy as np
 
@@ -189,6 +190,80 @@ def a_scene_of_forces_is_played_and_set():
     assert f"set {number} 100 over 0.01 s" in events and f"set {number} 20 over 0 s" in events, events
 
 
+def what_is_between_the_marks_of_any_client_is_proven():
+    sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "data-schema/python"))
+    import tactograph
+    prepare_files(device=UNPACED)
+    # Again and again 30 mm at 60 mm/s, and back: 2.2 s contain at least three whole strokes.
+    pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.004\n0.5,0.034\n1,0.004\n")
+
+    def play_for(client, duration_s):
+        until_s = client.status()["played_s"] + duration_s
+        while client.status()["played_s"] < until_s:
+            pass
+
+    with daemon():
+        with tactograph.Daemon("control") as client:
+            try:
+                client.mark("too early")
+                raise AssertionError("a mark without a session")
+            except tactograph.DaemonProblem as early:
+                assert early.kind == "usage", early
+            client.load("oak", gain_m_per_n=0.0005)
+            session = client.arm()["session"]
+            client.play()
+            play_for(client, 1)  # the onset
+            ticks = []
+            for trial in ("trial 1", "trial 2"):
+                ticks.append(client.mark(trial)["tick"])
+                play_for(client, 2.2)
+                ticks.append(client.mark("end")["tick"])
+                play_for(client, 0.5)
+            client.stop()
+            client.mark("at rest")
+            tacto.run("ctl", "mark", "Größe 2", "--socket", "control")
+            for wrong in ({}, {"text": ""}, {"text": "two\nlines"}, {"text": "a" * 201}, {"text": "a", "file": "oak"}):
+                try:
+                    client.ask("mark", **wrong)
+                    raise AssertionError(wrong)
+                except tactograph.DaemonProblem as refused:
+                    assert refused.kind == "malformed", (wrong, refused)
+            client.disarm()
+        tacto.run("ctl", "mark", "--socket", "control", code=2)
+    assert ticks == sorted(ticks) and ticks[1] - ticks[0] > 2.2 * 2000 - 2, ticks
+    listed = tacto.run_json("session", session)
+    assert [mark["mark"] for mark in listed["marks"]] == ["trial 1", "end", "trial 2", "end", "at rest", "Größe 2"], listed["marks"]
+    assert [mark["tick"] for mark in listed["marks"]][:4] == ticks
+    assert not any("trial" in event["event"] for event in listed["events"])
+    assert tacto.run_json("replay", session)["same_to_the_bit"] is True
+    proof = tacto.run_json("experiment", "prove", session)
+    assert proof["proven"] is True and "emulated" in proof["simulated"] and "-20 dB" in proof["limits"], proof
+    found = {row["mark"]: row for row in proof["intervals"]}
+    assert list(found) == ["trial 1", "trial 2", "at rest", "Größe 2"] and proof["marked_intervals"] == 4 and proof["delivered"] == 2
+    strokes = listed["strokes"]
+    for i, trial in enumerate(("trial 1", "trial 2")):
+        row = found[trial]
+        assert row["delivered"] == "yes" and row["why"] == "" and row["ticks"] == ticks[2 * i + 1] - ticks[2 * i], row
+        whole = [stroke for stroke in strokes if row["from_s"] <= stroke["from_s"] and stroke["to_s"] <= row["to_s"]]
+        assert row["strokes"] == len(whole) >= 3 and row["predicted_error_db"] == max(stroke["predicted_error_db"] for stroke in whole)
+        assert abs(row["slowest_mps"] - 0.06) < 0.001 and abs(row["fastest_mps"] - 0.06) < 0.001  # 1 um counts; a stroke's end by 0.2 mm
+        assert row["lost_ticks"] == row["fault_ticks"] == row["late_ticks"] == row["blind_ticks"] == 0
+    assert found["at rest"]["delivered"] == "unknown" and found["at rest"]["strokes"] == 0, found["at rest"]
+    # A protocol with a lower limit of speed: the same strokes are too fast.
+    tacto.run("experiment", "new", "stretch", "-o", "slow")
+    protocol = json.loads(pathlib.Path("slow.protocol.json").read_text())
+    protocol["delivered"]["fastest_mps"], protocol["delivered"]["slowest_mps"], protocol["pace"]["speed_mps"] = 0.055, 0.04, 0.05
+    pathlib.Path("slow.protocol.json").write_text(json.dumps(protocol))
+    slow = tacto.run_json("experiment", "prove", session, "--protocol", "slow")
+    assert slow["delivered"] == 0 and "too fast" in slow["intervals"][0]["why"] and slow["intervals"][0]["delivered"] == "no"
+    # A session whose writer was killed: the open interval is not complete.
+    whole = pathlib.Path(session).read_bytes()
+    at = whole.index("mark: trial 2".encode())
+    pathlib.Path("cut.session").write_bytes(whole[:at + 2000])
+    cut = json.loads(subprocess.run([tacto.COMMAND, "experiment", "prove", "cut.session", "--json"], capture_output=True, text=True).stdout)
+    assert cut["intervals"][-1]["mark"] == "trial 2" and "not complete" in cut["intervals"][-1]["why"], cut["intervals"]
+
+
 if __name__ == "__main__":
-    for test in (load_arm_play_stop, a_scene_of_forces_is_played_and_set, a_jump_of_the_encoder_is_a_fault, wrong_files_are_refused):
+    for test in (load_arm_play_stop, what_is_between_the_marks_of_any_client_is_proven, a_scene_of_forces_is_played_and_set, a_jump_of_the_encoder_is_a_fault, wrong_files_are_refused):
         tacto.in_folder(test)

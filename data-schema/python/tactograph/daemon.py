@@ -50,6 +50,10 @@ class Daemon:
     def disarm(self):
         return self.ask("disarm")
 
+    def mark(self, text):
+        """Puts a line into the session; the answer has its `tick`."""
+        return self.ask("mark", text=text)
+
     def status(self):
         return self.ask("status")
 

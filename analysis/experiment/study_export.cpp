@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiment/study_export.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <utility>
+
+#include "analysis/experiment/study_answers.hpp"
+#include "analysis/experiment/withdrawal.hpp"
+#include "data-schema/version.hpp"
+
+namespace tacto::analysis {
+
+using schema::Result;
+
+namespace {
+
+struct Column {
+  const char *name, *description, *units;
+};
+
+// Those of trials_table(), and seemed_longer.
+constexpr std::array<Column, 14> kColumns = {{
+    {"attempt", "number of the attempt in the run; what was not delivered comes again", ""},
+    {"trial", "code of the stretched stimulus and number of its repetition", ""},
+    {"standard_interval", "interval in which the standard was played, 1 or 2", ""},
+    {"nominal_stretch", "period of the stretched stimulus over that of the standard, minus 1", "1"},
+    {"predicted_stretch", "the same of the displacement that the transducer's model predicts", "1"},
+    {"predicted_error_db", "RMS of predicted displacement - target of the worst stroke, re the target", "dB"},
+    {"measured_error_db", "the same of the displacement that the tray's sensor measured", "dB"},
+    {"answer_interval", "interval whose stimulus seemed to have the smaller period, 1 or 2", ""},
+    {"answer", "the answer in the protocol's word", ""},
+    {"answer_s", "time from the question to the answer; 0 of an observer or a file", "s"},
+    {"delivered", "whether the session proves that both intervals kept the protocol's limits", ""},
+    {"why", "reasons why an attempt was not delivered, or has no answer", ""},
+    {"simulated", "simulated observer that answered", ""},
+    {"seemed_longer", "1: the stretched stimulus seemed to have the longer period, else 0", ""},
+}};
+
+constexpr const char* kScript =
+    R"R(# Generalised linear mixed model (probit) of the answers of all persons, by lme4: the point of subjective
+# equality (PSE) and the just noticeable difference (JND, from there to 75 %) of the average person.
+#   Rscript analysis.R                                            trials.csv beside this script
+#   Rscript analysis.R TABLE PERSON LEVEL YES [NO [CONDITION]]    another table, by the names of its columns
+arguments <- commandArgs(trailingOnly = TRUE)
+script <- sub("^--file=", "", grep("^--file=", commandArgs(), value = TRUE)[1])
+if (length(arguments) == 0)
+  arguments <- c(file.path(dirname(script), "trials.csv"), "participant", "nominal_stretch", "seemed_longer")
+trials <- read.csv(arguments[1])
+if ("delivered" %in% names(trials)) trials <- trials[trials$delivered == "yes" & !is.na(trials$seemed_longer), ]
+answers <- data.frame(person = factor(trials[[arguments[2]]]), level = trials[[arguments[3]]],
+                      yes = trials[[arguments[4]]])
+answers$no <- if (length(arguments) > 4) trials[[arguments[5]]] else 1 - answers$yes
+answers$condition <- factor(if (length(arguments) > 5) trials[[arguments[6]]] else "all")
+several <- nlevels(answers$condition) > 1
+fixed <- if (several) "cbind(yes, no) ~ 0 + condition + condition:level" else "cbind(yes, no) ~ level"
+if (nlevels(answers$person) > 1) {
+  model <- lme4::glmer(as.formula(paste(fixed, "+ (1 + level | person)")), family = binomial("probit"), data = answers)
+  b <- lme4::fixef(model)
+} else {
+  b <- coef(glm(as.formula(fixed), family = binomial("probit"), data = answers))
+}
+conditions <- levels(answers$condition)
+intercept <- if (several) b[paste0("condition", conditions)] else b["(Intercept)"]
+slope <- if (several) b[paste0("condition", conditions, ":level")] else b["level"]
+write.csv(data.frame(condition = conditions, pse = -intercept / slope, jnd = qnorm(0.75) / slope),
+          row.names = FALSE, quote = FALSE)
+)R";
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == at)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string json_text(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string row_of(const std::vector<std::string>& cells, char between,
+                   std::string (*cell)(const std::string&)) {
+  std::string row;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    row += (i > 0 ? std::string(1, between) : "") + cell(cells[i]);
+  return row + "\n";
+}
+
+std::string bids_cell(const std::string& text) {
+  return text.empty() ? "n/a" : text;
+}
+
+// The cells of trials_table(), with seemed_longer.
+std::vector<std::vector<std::string>> rows_of(const Run& run) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> lines = split(trials_table(run), '\n');
+  lines.pop_back();
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    rows.push_back(split(lines[i], '\t'));
+    const Attempt* const attempt = i > 0 ? &run.queue.attempts()[i - 1] : nullptr;
+    const bool answered = attempt != nullptr && attempt->answered;
+    rows.back().emplace_back(attempt == nullptr ? "seemed_longer"
+                             : !answered        ? ""
+                                                : (seemed_longer(*attempt) ? "1" : "0"));
+  }
+  return rows;
+}
+
+// A label has letters and digits only.
+std::string task_label(const std::string& study) {
+  std::string label;
+  for (const char c : study)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) label += c;
+  return label.empty() ? "study" : label;
+}
+
+std::string sidecar(const std::string& task) {
+  std::string text = "{\n  \"TaskName\": " + json_text(task);
+  for (const Column& column : kColumns) {
+    text +=
+        fmt::format(",\n  {}: {{\"Description\": {}", json_text(column.name), json_text(column.description));
+    if (*column.units != '\0') text += fmt::format(", \"Units\": {}", json_text(column.units));
+    text += "}";
+  }
+  return text + "\n}\n";
+}
+
+class Export {
+ public:
+  explicit Export(std::string folder) : folder_(std::move(folder)) {}
+
+  Result<void> add(const std::string& name, const std::string& text) {
+    files_.push_back((std::filesystem::path(folder_) / name).string());
+    return pending_.write(files_.back(), text);
+  }
+  Result<void> add_run(const Run& run, const std::string& task) {
+    const std::string subject = "sub-" + run.journal.plan.participant;
+    const std::string stem = fmt::format("{0}/beh/{0}_task-{1}_beh", subject, task);
+    std::string table;
+    for (const auto& row : rows_of(run)) table += row_of(row, '\t', bids_cell);
+    TACTO_TRY(add(stem + ".tsv", table));
+    return add(stem + ".json", sidecar(task));
+  }
+  Result<void> commit(schema::Existing existing) { return pending_.commit(existing); }
+  const std::vector<std::string>& files() const { return files_; }
+
+ private:
+  std::string folder_;
+  std::vector<std::string> files_;
+  schema::PendingFiles pending_;
+};
+
+std::string csv_of(const std::vector<Run>& runs) {
+  std::string csv;
+  for (const Run& run : runs) {
+    auto rows = rows_of(run);
+    if (!csv.empty()) rows.erase(rows.begin());
+    for (auto& row : rows) {
+      row.insert(row.begin(), csv.empty() ? "participant" : run.journal.plan.participant);
+      csv += row_of(row, ',', csv_cell);
+    }
+  }
+  return csv;
+}
+
+std::string participants_of(const std::vector<Run>& runs) {
+  std::string table = "participant_id\tcomplete\tsimulated\n";
+  for (const Run& run : runs)
+    table += fmt::format("sub-{}\t{}\t{}\n", run.journal.plan.participant,
+                         run.queue.has_ended() ? "yes" : "no", bids_cell(run.journal.plan.observer));
+  return table;
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> export_study(const std::string& study, const std::string& folder,
+                                              bool unblind, schema::Existing existing) {
+  const auto runs = answered_runs(study, unblind);
+  TACTO_TRY(runs);
+  const std::string name = runs->front().study.name(), task = task_label(name);
+  Export all(folder);
+  TACTO_TRY(all.add("trials.csv", csv_of(*runs)));
+  TACTO_TRY(all.add("analysis.R", kScript));
+  TACTO_TRY(all.add("dataset_description.json",
+                    fmt::format("{{\"Name\": {}, \"BIDSVersion\": \"1.8.0\", \"DatasetType\": \"raw\", "
+                                "\"GeneratedBy\": [{{\"Name\": {}}}]}}\n",
+                                json_text(name), json_text(std::string(kCreator)))));
+  TACTO_TRY(all.add("participants.tsv", participants_of(*runs)));
+  for (const Run& run : *runs) TACTO_TRY(all.add_run(run, task));
+  // The log first: what it names may be missing, but no file is unknown to a withdrawal.
+  TACTO_TRY(log_outputs(runs->front().study.stem, all.files()));
+  TACTO_TRY(all.commit(existing));
+  return all.files();
+}
+
+}  // namespace tacto::analysis

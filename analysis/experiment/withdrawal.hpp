@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A participant withdraws: all files with the answers are deleted, and only the fact remains.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "data-schema/base/error.hpp"
+
+namespace tacto::analysis {
+
+/// What would be deleted.
+struct Withdrawal {
+  std::string stem, participant;     ///< of the study
+  std::vector<std::string> files;    ///< in the study's folder
+  std::vector<std::string> outside;  ///< outputs elsewhere with answers: never deleted
+};
+
+/// Whether STUDY.withdrawn.txt names the participant. `stem`: of the study.
+bool is_withdrawn(const std::string& stem, const std::string& participant);
+/// Errors: unsuitable, if it does.
+schema::Result<void> check_not_withdrawn(const std::string& stem, const std::string& participant);
+
+/// Keeps in STUDY.outputs.txt, a path a line, where answers of the study's participants were written.
+/// Errors: cannot_write.
+schema::Result<void> log_outputs(const std::string& stem, const std::vector<std::string>& files);
+
+/// The files of a participant: the journal, its table, all in STUDY-P07/, and the outputs of the study that
+/// were logged and exist. `study`: STEM or STEM.protocol.json. Errors: not_found: no study, or neither a file
+/// nor a record of this participant; usage: no code of a participant.
+schema::Result<Withdrawal> plan_withdrawal(const std::string& study, const std::string& participant);
+
+/// Writes the record, then deletes the files; after an interruption it can be repeated. Links are deleted,
+/// not what they name. Errors: unsuitable, while the participant's run is going on; cannot_write.
+schema::Result<void> withdraw(const Withdrawal& withdrawal);
+
+}  // namespace tacto::analysis
