@@ -152,6 +152,7 @@ Result<void> play_through(const Playing& playing, const std::string& session,
   outcome.status = player.status();
   if (player.state() != PlayerState::fault) TACTO_TRY(ramp_down(player));
   TACTO_TRY(player.disarm());
+  outcome.status.ticks = player.status().ticks;  // all that the session has
   outcome.recorder = player.last_session();
   return {};
 }

@@ -35,7 +35,7 @@ struct HostLoopFigures {
 };
 
 struct PlayOutcome {
-  PlayerStatus status;  ///< before the device was disarmed
+  PlayerStatus status;  ///< its ticks are all to the end, the rest is from before the stop
   RecorderCounts recorder;
   std::string device, simulated;
   bool real_time = true;                ///< whether the device keeps time
