@@ -95,10 +95,11 @@ Result<Report> run_run(CorpusRunOptions options, const std::optional<std::string
       options, [&](double fraction) { progress.update(fraction); }, [&] { return signals.stop_asked(); });
   TACTO_TRY(counts);
   Report report;
-  report.add("recordings", counts->recordings).add("made", counts->made);
+  report.add("recordings", counts->recordings).add("recordings_worked_on", counts->worked_on);
+  report.add("results_made", counts->made);
   if (counts->failed > 0) report.add("of_these_failures", counts->failed);
-  report.add("already_there", counts->present);
-  if (counts->others > 0) report.add("made_by_another_run", counts->others);
+  report.add("results_already_there", counts->present);
+  if (counts->others > 0) report.add("results_made_by_another_run", counts->others);
   if (counts->removed > 0) report.add("removed_work_of_killed_runs", counts->removed);
   // A job whose exit code is 0 is complete for the programs that started it.
   if (counts->stopped) report.add("stopped", true).ends_with(ErrorKind::unsuitable);

@@ -118,14 +118,17 @@ Report report_of(const DesignVerbOptions& o, const Design& design) {
   return report;
 }
 
-// A scene that is refused for playback is judged without the dampers, and with the reason.
-void add_adaptive(schema::Scene& scene, const std::string& file, const DesignRequest& request) {
+// A scene that is refused for playback is judged without the dampers, and with the reason. With --hold-stable
+// it is refused here, too.
+Result<void> add_adaptive(schema::Scene& scene, const std::string& file, const DesignRequest& request,
+                          bool hold_stable) {
   const auto added =
       playback::add_adaptive_damping(scene, file, request.device, request.rate_hz, request.hand);
-  if (added) return;
+  if (added || hold_stable) return added;
   cli::warn(schema::message(added.error()));
   for (schema::Patch& patch : scene.patches)
     for (schema::ForceLayer& layer : patch.layers) clear_adaptive(layer);
+  return {};
 }
 
 Result<Report> run_design(const DesignVerbOptions& o) {
@@ -143,7 +146,7 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   const double limit = playback::stiffness_limit_of(request->device, request->rate_hz, request->hand);
   TACTO_TRY(playback::set_filters(*scene, limit, file));
   TACTO_TRY(playback::read_reliefs(*scene, file, request->rate_hz));
-  add_adaptive(*scene, file, *request);
+  TACTO_TRY(add_adaptive(*scene, file, *request, o.hold_stable));
   std::vector<playback::HeldLayer> held;
   if (o.hold_stable) {
     auto scaled = playback::hold_stable(scene->patches, request->device, request->rate_hz, request->hand);

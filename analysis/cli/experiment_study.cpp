@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "analysis/cli/participant_screen.hpp"
 #include "analysis/experiment/interval_play.hpp"
@@ -82,9 +83,21 @@ Result<Report> run_new_study(const NewStudyOptions& o) {
 Result<Report> run_check_study(const CheckStudyOptions& o) {
   const auto study = read_study(o.study);
   TACTO_TRY(study);
-  if (!o.device.empty()) TACTO_TRY(check_on_device(*study, o.device));
+  std::optional<SlowestLoad> slowest;
+  if (!o.device.empty()) {
+    auto loaded = check_on_device(*study, o.device);
+    TACTO_TRY(loaded);
+    slowest = std::move(*loaded);
+  }
   auto report = warn_and_report(*study);
   TACTO_TRY(report);
+  report->add("lead_s", study->protocol.lead_s);
+  if (!slowest)
+    report->add("slowest_load", "not measured: no device is named");
+  else if (slowest->code.empty())
+    report->add("slowest_load", "not measured: this device does not keep time");
+  else
+    report->add("slowest_load_s", slowest->time_s);
   return report->add("valid", true);
 }
 
@@ -366,7 +379,9 @@ cli::Action declare_new_study(CLI::App& app) {
 cli::Action declare_check_study(CLI::App& app) {
   auto options = std::make_shared<CheckStudyOptions>();
   app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
-  app.add_option("-d,--device", options->device, "Check also that this device can play each stimulus");
+  app.add_option("-d,--device", options->device,
+                 "Check also that this device can play each stimulus, and has each of them loaded within the "
+                 "protocol's lead");
   return [options] { return run_check_study(*options); };
 }
 

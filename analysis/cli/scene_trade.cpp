@@ -10,6 +10,8 @@
 #include "analysis/cli/results_output.hpp"
 #include "analysis/trade/scene/scene_trade_page.hpp"
 #include "data-schema/base/unknown_note.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/kinds/file_kind.hpp"
 #include "data-schema/report/progress.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/plane_render.hpp"
@@ -66,6 +68,14 @@ Result<void> check_chosen_outputs(const std::vector<std::string>& outputs, const
         std::filesystem::absolute(scene).lexically_normal().parent_path())
       return schema::fail(ErrorKind::usage, "the files that a scene names are found from its folder", path,
                           fmt::format("write the chosen scene into the folder of {}", scene));
+    if (schema::same_file(path, scene))
+      return schema::fail(ErrorKind::usage, "would replace the scene that it is made from", path,
+                          "choose another name");
+    if (!schema::is_file(path)) continue;
+    const auto there = schema::stored_files(path);
+    if (!there || there->front().kind != schema::FileKind::scene)
+      return schema::fail(ErrorKind::usage, "is not a scene, and would be overwritten", path,
+                          "choose another name");
   }
   return {};
 }
@@ -115,7 +125,7 @@ Result<Report> run_scene_trade(const std::string& scene, const SceneTradeOptions
   const std::vector<OutputKind> kinds = {
       {".csv", [](std::string_view beginning) { return beginning.starts_with(kSceneTradeCsvHead); },
        [&]() -> Result<std::string> { return scene_trade_csv(trade); }},
-      {kSceneEnding, [](std::string_view /*beginning*/) { return false; },
+      {kSceneEnding, [](std::string_view /*its kind was checked*/) { return true; },
        [&] { return schema::scene_json(trade.chosen->scene, scene); }}};
   const std::string file = schema::scene_path(scene);
   TACTO_TRY(check_chosen_outputs(outputs, file, o));

@@ -147,6 +147,7 @@ class CorpusRun {
       if (*failed) break;
       input = work;
     }
+    if (!made.empty()) add_one(&CorpusRunCounts::worked_on);
     add(std::move(made));
   }
 

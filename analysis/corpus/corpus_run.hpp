@@ -24,6 +24,7 @@ struct CorpusRunCounts {
   std::size_t present = 0;     ///< units that were there
   std::size_t others = 0;      ///< units that another run published in the meantime
   std::size_t removed = 0;     ///< working folders of runs that were killed
+  std::size_t worked_on = 0;   ///< recordings of which this run computed a unit
   bool stopped = false;
 };
 

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <thread>
 
 #include "playback/player/play.hpp"
 #include "playback/player/player_device.hpp"
+#include "playback/prepare/upload.hpp"
 
 namespace tacto::analysis {
 
@@ -55,13 +55,24 @@ playback::PlayOptions options_of(const schema::Protocol& protocol, const Interva
   return options;
 }
 
-// Waits for a time of the clock; whether that was still ahead.
-bool wait_until(SteadyClock::time_point when, const std::function<bool()>& stop_asked) {
-  const bool ahead =
-      SteadyClock::now() <= when + std::chrono::duration_cast<SteadyClock::duration>(Seconds(kLateStartS));
-  while (SteadyClock::now() < when && !stop_asked())
-    std::this_thread::sleep_until(std::min(when, SteadyClock::now() + std::chrono::milliseconds(10)));
-  return ahead;
+// From opening the device until it has the texture: what an interval needs before it can begin, but its
+// session's file. Errors: of opening the device, of make_program, of the upload.
+Result<double> load_time_s(const Study& study, const std::string& code, const std::string& device_uri) {
+  const SteadyClock::time_point begun = SteadyClock::now();
+  const auto device = playback::open_player_device(device_uri, {});
+  TACTO_TRY(device);
+  const auto& transducer = device->device->capabilities().transducer;
+  if (!transducer)
+    return fail(ErrorKind::unsuitable, "the device does not report its transducer", device_uri,
+                "give the device its calibration, or use another one");
+  const auto options = options_of(study.protocol, {device_uri, study.stimulus(code), {}, false, {}});
+  playback::PrepareOptions prepare;
+  prepare.most_samples = device->client->description().welcome.profile_samples;
+  const auto program = playback::make_program(options.program, transducer->name, prepare);
+  TACTO_TRY(program);
+  if (!device->device->is_real_time()) return 0.0;
+  TACTO_TRY(playback::upload(*device->client, program->prepared));
+  return Seconds(SteadyClock::now() - begun).count();
 }
 
 }  // namespace
@@ -84,34 +95,29 @@ playback::FingerPath paced_path(const schema::ProtocolPace& pace) {
 }
 
 Result<std::string> play_interval(const schema::Protocol& protocol, const IntervalPlay& play) {
-  const SteadyClock::time_point asked = SteadyClock::now();
-  std::string late;
+  const Seconds lead(protocol.lead_s);
   playback::PlayOptions options = options_of(protocol, play);
-  options.ready = [&](bool real_time) {
-    const auto begin = asked + std::chrono::duration_cast<SteadyClock::duration>(Seconds(protocol.lead_s));
-    if (!real_time || wait_until(begin, play.stop_asked)) return;
-    late = fmt::format("began {:.3f} s late", Seconds(SteadyClock::now() - begin).count());
-  };
+  options.begins_at = SteadyClock::now() + std::chrono::duration_cast<SteadyClock::duration>(lead);
   const auto outcome = playback::play_once(options, play.stop_asked);
   TACTO_TRY(outcome);
-  return late;
+  return outcome->late_s > kLateStartS ? fmt::format("began {:.3f} s late", outcome->late_s) : std::string();
 }
 
-Result<void> check_on_device(const Study& study, const std::string& device_uri) {
-  const auto device = playback::open_player_device(device_uri, {});
-  TACTO_TRY(device);
-  const auto& transducer = device->device->capabilities().transducer;
-  if (!transducer)
-    return fail(ErrorKind::unsuitable, "the device does not report its transducer", device_uri,
-                "give the device its calibration, or use another one");
+Result<SlowestLoad> check_on_device(const Study& study, const std::string& device_uri) {
+  SlowestLoad slowest;
   for (const schema::CodedStimulus& stimulus : study.key.stimuli) {
-    const auto options =
-        options_of(study.protocol, {device_uri, study.stimulus(stimulus.code), {}, false, {}});
-    playback::PrepareOptions prepare;
-    prepare.most_samples = device->client->description().welcome.profile_samples;
-    TACTO_TRY(playback::make_program(options.program, transducer->name, prepare));
+    const auto time_s = load_time_s(study, stimulus.code, device_uri);
+    TACTO_TRY(time_s);
+    if (*time_s > slowest.time_s) slowest = {*time_s, stimulus.code};
   }
-  return {};
+  if (slowest.time_s <= study.protocol.lead_s) return slowest;
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format("intervals are to begin {:g} s after the go-ahead, but stimulus {} is on the device "
+                  "only after {:.3f} s",
+                  study.protocol.lead_s, slowest.code, slowest.time_s),
+      schema::protocol_path(study.stem) + "#/lead_s",
+      fmt::format("choose twice as long, {:.1f} s", std::ceil(20 * slowest.time_s) / 10));
 }
 
 }  // namespace tacto::analysis

@@ -23,13 +23,21 @@ struct IntervalPlay {
   std::function<bool()> stop_asked;
 };
 
-/// Begins `lead_s` after this call on a device that keeps time, and lasts as long as the pace. An emulated
-/// finger follows the pace. Returns words if it could begin only later, else nothing. Errors: those of
-/// playback::play_once.
+/// Begins `lead_s` after this call on a device that keeps time, when the texture is on the device, and lasts
+/// as long as the pace. An emulated finger follows the pace. Returns words if it could begin only later, else
+/// nothing. Errors: those of playback::play_once.
 schema::Result<std::string> play_interval(const schema::Protocol& protocol, const IntervalPlay& play);
 
-/// Whether the device can play every stimulus: what make_program refuses, without its code. Errors: those of
-/// opening the device, of make_program.
-schema::Result<void> check_on_device(const Study& study, const std::string& device_uri);
+/// The stimulus that needs the longest time until the device has it. 0 on a device that does not keep time:
+/// there no interval waits for a clock.
+struct SlowestLoad {
+  double time_s = 0;
+  std::string code;
+};
+
+/// Whether the device can play every stimulus, each of them loaded once, as an interval loads it. Errors:
+/// those of opening the device, of make_program, of the upload; unsuitable: the lead is shorter than the
+/// slowest load.
+schema::Result<SlowestLoad> check_on_device(const Study& study, const std::string& device_uri);
 
 }  // namespace tacto::analysis

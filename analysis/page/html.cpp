@@ -138,6 +138,16 @@ std::string_view unit_at(std::string_view text) {
   return std::ranges::find(kUnits, before) == std::end(kUnits) ? "" : before;
 }
 
+bool is_micro(std::string_view unit) {
+  return unit.size() == 2 && unit.front() == 'u';
+}
+
+// The unit behind the space at `i`, if a number is before it.
+std::string_view unit_of_number(std::string_view text, std::size_t i) {
+  if (i == 0 || text[i] != ' ' || std::isdigit(static_cast<unsigned char>(text[i - 1])) == 0) return {};
+  return unit_at(text.substr(i + 1));
+}
+
 // The space in "p 0.03".
 bool is_after_p(std::string_view text, std::size_t i) {
   const auto is_word = [&](std::size_t at) {
@@ -152,13 +162,12 @@ bool is_after_p(std::string_view text, std::size_t i) {
 std::string escaped(std::string_view text) {
   std::string safe;
   for (std::size_t i = 0; i < text.size();) {
-    if (i > 0 && text[i] == ' ' && std::isdigit(static_cast<unsigned char>(text[i - 1])))
-      if (const std::string_view unit = unit_at(text.substr(i + 1)); !unit.empty()) {
-        const bool micro = unit.size() == 2 && unit.front() == 'u';
-        safe += fmt::format("&nbsp;{}{}", micro ? "\u00B5" : "", unit.substr(micro ? 1 : 0));
-        i += 1 + unit.size();
-        continue;
-      }
+    if (const std::string_view unit = unit_of_number(text, i); !unit.empty()) {
+      const bool micro = is_micro(unit);
+      safe += fmt::format("&nbsp;{}{}", micro ? "\u00B5" : "", unit.substr(micro ? 1 : 0));
+      i += 1 + unit.size();
+      continue;
+    }
     if (is_after_p(text, i)) {
       safe += "&nbsp;";
       ++i;
@@ -169,6 +178,17 @@ std::string escaped(std::string_view text) {
     i += std::max<std::size_t>(1, bytes);
   }
   return safe;
+}
+
+std::string with_micro_signs(std::string_view text) {
+  std::string typeset;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    typeset += text[i];
+    if (!is_micro(unit_of_number(text, i))) continue;
+    typeset += "\u00B5";
+    ++i;  // the u
+  }
+  return typeset;
 }
 
 namespace {

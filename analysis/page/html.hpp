@@ -15,6 +15,8 @@ namespace tacto::analysis {
 /// unit, and between p and its number, a space that does not break; um, us and uV after a number as people
 /// print them.
 std::string escaped(std::string_view text);
+/// "12 um" as "12 µm", for the text of a picture; as escaped(), but plain text.
+std::string with_micro_signs(std::string_view text);
 
 /// An <img> with its SVG as a data: URI, in a box that scrolls where the screen is too narrow to read it;
 /// `alternative` is the text for readers without pictures.

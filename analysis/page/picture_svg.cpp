@@ -36,9 +36,10 @@ spatial::LineFigure figure_of(const schema::ResultPicture& picture, const std::s
     const bool labelled = curve.marks && curve.x.size() == 1;
     // A curve without a name continues the previous one and has its colour.
     if (!labelled && !curve.name.empty() && !figure.series.empty()) ++colour;
-    figure.series.push_back({labelled ? "" : curve.name, curve.x, curve.y, spatial::series_colour(colour),
-                             1.2, curve.dashed, curve.marks});
-    if (labelled) figure.series.back().labels = {curve.name};
+    const std::string name = with_micro_signs(curve.name);
+    figure.series.push_back({labelled ? "" : name, curve.x, curve.y, spatial::series_colour(colour), 1.2,
+                             curve.dashed, curve.marks});
+    if (labelled) figure.series.back().labels = {name};
   }
   return figure;
 }

@@ -66,6 +66,11 @@ Result<Checked> check_document(const StoredFile& file, const Progress& progress)
   if (file.kind == FileKind::corpus) checked.findings = check_by_reading(read_corpus_plan(file.path));
   if (file.kind == FileKind::results) checked.findings = check_by_reading(read_results(file.path));
   if (file.kind == FileKind::texture) checked.findings = check_texture(file.path, *document, progress);
+  // Its reader refuses what it does not know; then nothing is ignored.
+  std::erase_if(checked.unknown_members, [&](const std::string& member) {
+    return std::ranges::any_of(checked.findings,
+                               [&](const Finding& each) { return each.where.ends_with("#/" + member); });
+  });
   return checked;
 }
 

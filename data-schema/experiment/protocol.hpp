@@ -51,7 +51,7 @@ struct Protocol {
   std::string seed;            ///< of codes and order
   double gain_m_per_n = 0;     ///< of playback
   ProtocolPace pace;
-  double lead_s = 0;         ///< from the participant's go-ahead to the beginning of an interval
+  double lead_s = 0;  ///< from the participant's go-ahead to the beginning of an interval: above any load
   AnswerWord first, second;  ///< the answers
   std::string begin_key;
   int most_attempts = 0;  ///< of one trial; then the run goes on without it

@@ -138,9 +138,9 @@ Report report_of(const ForceRendering& asked, const schema::Device& device, cons
   report.add("hand", asked.hand.empty() ? "none: the path is imposed" : asked.hand).add("rate_hz", r.rate_hz);
   report.add("ticks", r.time_s.size()).add("duration_s", r.time_s.back() - r.time_s.front());
   report.add("axes", rows_of_axes(r, device)).add("force_peak_n", r.largest_force_n);
-  report.add("peak_limited_ticks", r.peak_limited)
-      .add("slew_limited_ticks", r.slew_limited)
-      .add("rms_limited_ticks", r.rms_limited);
+  report.add("peak_limited_ticks", r.limits.amplitude)
+      .add("slew_limited_ticks", r.limits.slew)
+      .add("rms_limited_ticks", r.limits.energy);
   return report.add("largest_rounding_n", r.largest_rounding_n).add("delay_s", device.delay_s);
 }
 

@@ -207,9 +207,9 @@ Result<Report> run_force_session(const SessionVerbOptions& o) {
                        .add("force_rms_n", axis.force_rms_n)
                        .add("force_peak_n", axis.force_peak_n));
   report.add("axes", std::move(rows));
-  report.add("peak_limited_ticks", session->peak_limited)
-      .add("slew_limited_ticks", session->slew_limited)
-      .add("rms_limited_ticks", session->rms_limited);
+  report.add("peak_limited_ticks", session->limits.amplitude)
+      .add("slew_limited_ticks", session->limits.slew)
+      .add("rms_limited_ticks", session->limits.energy);
   TACTO_TRY(add_events(report, o.session));
   if (session->damaged) report.ends_with(schema::ErrorKind::malformed);
   return report;

@@ -386,7 +386,7 @@ Result<ControlFields> Service::gain(const ControlRequest& request) {
 Result<ControlFields> Service::set(const ControlRequest& request) {
   TACTO_TRY(require_forces());
   const double over_s = request.over_s.value_or(kUsualRampS);
-  const auto command = set_command(request.number, *request.value, over_s, player_->forces()->scene);
+  const auto command = set_command(request.number, *request.value, over_s, *player_->forces());
   TACTO_TRY(command);
   return change_scene(*command, "set",
                       {{"number", request.number}, {"value", *request.value}, {"over_s", over_s}});

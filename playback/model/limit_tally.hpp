@@ -8,6 +8,7 @@
 #include "firmware-host/core/kernel/tick_kernel.hpp"
 
 #include "data-schema/base/decibels.hpp"
+#include "playback/model/limit_counts.hpp"
 
 namespace tacto::playback {
 
@@ -16,9 +17,7 @@ class LimitTally {
  public:
   void add(const core::TickOutput& output) noexcept {
     ++ticks_;
-    amplitude_ += (output.flags & wire::kTickAmplitudeLimited) != 0;
-    slew_ += (output.flags & wire::kTickSlewLimited) != 0;
-    energy_ += (output.flags & wire::kTickEnergyLimited) != 0;
+    limits_.add(output.flags);
     gated_ += (output.flags & wire::kTickGated) != 0;
     const double unlimited_v = output.unlimited_v, removed_v = unlimited_v - output.drive_v;
     unlimited_v2_ += unlimited_v * unlimited_v;
@@ -27,14 +26,14 @@ class LimitTally {
   /// Adds the sums of other ticks.
   void add(const LimitTally& other) noexcept {
     ticks_ += other.ticks_;
-    amplitude_ += other.amplitude_, slew_ += other.slew_, energy_ += other.energy_;
+    limits_.add(other.limits_);
     gated_ += other.gated_;
     unlimited_v2_ += other.unlimited_v2_, removed_v2_ += other.removed_v2_;
   }
   std::uint64_t ticks() const { return ticks_; }
-  std::uint64_t amplitude_limited() const { return amplitude_; }
-  std::uint64_t slew_limited() const { return slew_; }
-  std::uint64_t energy_limited() const { return energy_; }
+  std::uint64_t amplitude_limited() const { return limits_.amplitude; }
+  std::uint64_t slew_limited() const { return limits_.slew; }
+  std::uint64_t energy_limited() const { return limits_.energy; }
   std::uint64_t gated() const { return gated_; }
   bool removed_any() const { return removed_v2_ > 0; }
   /// RMS of what amplitude, slew and energy limits removed, re RMS of the unlimited drive; at least -300.
@@ -45,7 +44,8 @@ class LimitTally {
   }
 
  private:
-  std::uint64_t ticks_ = 0, amplitude_ = 0, slew_ = 0, energy_ = 0, gated_ = 0;
+  std::uint64_t ticks_ = 0, gated_ = 0;
+  LimitCounts limits_;
   double unlimited_v2_ = 0, removed_v2_ = 0;
 };
 

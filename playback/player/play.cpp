@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 #include <span>
 #include <utility>
@@ -96,9 +97,9 @@ Result<void> run_until(Player& player, const PlayTime& time, std::span<const Tim
 
 // If this computer closes the loop, the path begins now and reaches the tray after the loop's delay.
 PlayTime begin_path(const Player& player, const PlayerDevice& device, const HostLoopClient& here,
-                    double time_s) {
-  if (!device.begin_path) return {0, time_s};
-  device.begin_path();
+                    double time_s, bool waited) {
+  if (!device.begin_path && !waited) return {0, time_s};
+  if (device.begin_path) device.begin_path();
   const double from_s = player.armed_s() + (here ? here.loop->delay_s() : 0);
   return {from_s, from_s + time_s};
 }
@@ -129,13 +130,31 @@ PlayOutcome outcome_of(const Program& program) {
   return outcome;
 }
 
+using SteadyClock = std::chrono::steady_clock;
+
 // The device, loop and player of one playback.
 struct Playing {
   const PlayerDevice& device;
   const HostLoopClient& here;
   Player& player;
   std::span<const TimedSceneCommand> script = {};
+  std::optional<SteadyClock::time_point> begins_at = std::nullopt;
 };
+
+double seconds_to(SteadyClock::time_point when) {
+  return std::chrono::duration<double>(when - SteadyClock::now()).count();
+}
+
+// Waits armed, as the device then has the texture; how much later than asked it is then.
+Result<double> wait_for_begin(const Playing& playing, const std::function<bool()>& stop_asked) {
+  if (!playing.begins_at || !playing.device.device->is_real_time()) return 0.0;
+  for (double left_s = seconds_to(*playing.begins_at); left_s > 0 && !stop_asked();
+       left_s = seconds_to(*playing.begins_at)) {
+    TACTO_TRY(playing.player.step(std::min(left_s, kPlayStepS)));
+    if (playing.player.state() == PlayerState::fault) break;
+  }
+  return std::max(0.0, -seconds_to(*playing.begins_at));
+}
 
 // Precondition: the program is loaded.
 Result<void> play_through(const Playing& playing, const std::string& session,
@@ -146,12 +165,17 @@ Result<void> play_through(const Playing& playing, const std::string& session,
   outcome.real_time = playing.device.device->is_real_time();
   outcome.simulated = firmware_host::simulated_device(playing.device.client->description());
   TACTO_TRY(player.arm(session));
+  const auto late_s = wait_for_begin(playing, stop_asked);
+  TACTO_TRY(late_s);
+  outcome.late_s = *late_s;
   TACTO_TRY(player.play());
-  const PlayTime time = begin_path(player, playing.device, playing.here, outcome.asked_s);
+  const PlayTime time =
+      begin_path(player, playing.device, playing.here, outcome.asked_s, playing.begins_at.has_value());
   TACTO_TRY(run_until(player, time, playing.script, stop_asked, progress));
   outcome.status = player.status();
   if (player.state() != PlayerState::fault) TACTO_TRY(ramp_down(player));
   TACTO_TRY(player.disarm());
+  outcome.status.ticks = player.status().ticks;  // all that the session has
   outcome.recorder = player.last_session();
   return {};
 }
@@ -207,8 +231,9 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   TACTO_TRY(check_play_options(options.time_s, options.session));
   std::optional<FingerScript> script;
   // The emulated finger moves from the stream's beginning on. With this computer's loop that is before the
-  // loop's delay is measured, so the finger waits.
-  if (options.finger_path) script = FingerScript{*options.finger_path, false, options.loop_here};
+  // loop's delay is measured, so the finger waits; as it does for a beginning at a certain time.
+  if (options.finger_path)
+    script = FingerScript{*options.finger_path, false, options.loop_here || options.begins_at.has_value()};
   auto device = open_player_device(options.device_uri, script);
   TACTO_TRY(device);
   PlayerOptions player_options;
@@ -228,8 +253,8 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   TACTO_TRY((*player)->load(std::move(*program)));
   TACTO_TRY((*player)->gain(options.gain));
   if (*here) lock_memory();
-  if (options.ready) options.ready(device->device->is_real_time());
-  TACTO_TRY(play_through({*device, *here, **player}, options.session, stop_asked, progress, outcome));
+  const Playing playing{*device, *here, **player, {}, options.begins_at};
+  TACTO_TRY(play_through(playing, options.session, stop_asked, progress, outcome));
   if (*here) outcome.looped = looped_by(*here->loop);
   tell_limits(options.session, outcome);
   if (auto silence = note_of_silence(outcome.status.ticks, what))
@@ -267,7 +292,7 @@ Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std:
   TACTO_TRY(script);
   note_moves(*script, outcome.notes);
   TACTO_TRY((*player)->load(std::move(*program)));
-  const Playing playing{device->player, {}, **player, *script};
+  const Playing playing{device->player, {}, **player, *script, {}};
   TACTO_TRY(play_through(playing, options.session, stop_asked, progress, outcome));
   return outcome;
 }

@@ -2,7 +2,9 @@
 // One playback without a daemon, from opening the device to the closed session.
 #pragma once
 
+#include <chrono>
 #include <functional>
+#include <optional>
 
 #include "playback/host-loop/host_loop.hpp"
 #include "playback/model/finger_path.hpp"
@@ -22,9 +24,9 @@ struct PlayOptions {
   bool loop_here = false;  ///< closed by this computer, on a device that keeps time
   PrepareOptions prepare;  ///< rate, inverse, delay ...; gain, ends, encoder and limits are set later
   std::string session;     ///< its file
-  /// Called when the texture is prepared, before the device is armed; may wait. `real_time`: the device keeps
-  /// time.
-  std::function<void(bool real_time)> ready = {};
+  /// On a device that keeps time, play begins at this time, or as soon as the texture is on the device. An
+  /// emulated finger begins its path with it.
+  std::optional<std::chrono::steady_clock::time_point> begins_at = std::nullopt;
 };
 
 /// Figures of a loop on this computer.
@@ -35,12 +37,13 @@ struct HostLoopFigures {
 };
 
 struct PlayOutcome {
-  PlayerStatus status;  ///< before the device was disarmed
+  PlayerStatus status;  ///< its ticks are all to the end, the rest is from before the stop
   RecorderCounts recorder;
   std::string device, simulated;
   bool real_time = true;                ///< whether the device keeps time
   std::optional<std::string> off_note;  ///< if the finger was off the textures for over a tenth of the time
   double asked_s = 0;
+  double late_s = 0;                   ///< of the beginning, after PlayOptions::begins_at
   std::optional<double> rests_from_s;  ///< end of the path, if the playback is longer: the finger rests
   double passes_to_hz = 0, delay_s = 0, delay_left_s = 0, inverse_error_db = 0;
   double loop_period_m = 0, loop_seam_m = 0;  ///< of a looped texture

@@ -85,18 +85,35 @@ Result<std::size_t> layer_place(const schema::Patch& patch, const std::string& n
   return place_of(fmt::format("layer in the patch '{}' named", patch.name), name, types);
 }
 
-Result<void> check_value(const schema::NamedLayerNumber& member, double value) {
+// What a scene's file has of a range that was scaled; empty if it was not.
+std::string range_in_file(const ForceProgram& forces, const Words& path, std::size_t layer,
+                          const schema::SliderRange& scaled) {
+  const auto held = std::ranges::find_if(forces.held, [&](const HeldLayer& each) {
+    return each.patch == path[0] && each.index == layer && each.member == path[2];
+  });
+  if (held == forces.held.end()) return {};
+  const double factor = held->to_n_per_m / held->from_n_per_m;
+  return fmt::format(
+      "; in the scene's file the slider is from {:g} to {:g}, --hold-stable scaled it by {:.4g}",
+      scaled.from / factor, scaled.to / factor, factor);
+}
+
+Result<void> check_value(const schema::NamedLayerNumber& member, double value, const Words& path,
+                         std::size_t layer, const ForceProgram& forces) {
   const auto& slider = member.number.slider;
   if (!slider)
     return fail(ErrorKind::usage, fmt::format("{} has no slider in the scene", member.name), {},
                 "give it one, as in {\"value\": 3, \"slider\": {\"from\": 1, \"to\": 5}}");
   if (value >= slider->from && value <= slider->to) return {};
-  return fail(ErrorKind::usage, fmt::format("{} {:g} is outside its slider", member.name, value), {},
-              fmt::format("set a value from {:g} to {:g}", slider->from, slider->to));
+  return fail(ErrorKind::usage,
+              fmt::format("{} {:g} is outside its slider{}", member.name, value,
+                          range_in_file(forces, path, layer, *slider)),
+              {}, fmt::format("set a value from {:g} to {:g}", slider->from, slider->to));
 }
 
 // The layer's index in the block, and the number's index in the layer.
-Result<wire::Set> target_of(const Words& path, double value, const PreparedScene& scene) {
+Result<wire::Set> target_of(const Words& path, double value, const ForceProgram& forces) {
+  const PreparedScene& scene = forces.scene;
   const auto at_patch = patch_place(path[0], scene);
   TACTO_TRY(at_patch);
   const schema::Patch& patch = scene.patches[*at_patch];
@@ -108,7 +125,7 @@ Result<wire::Set> target_of(const Words& path, double value, const PreparedScene
   for (const auto& [name, number, whole] : numbers) members.emplace_back(name);
   const auto at_member = place_of(fmt::format("member in the {} named", type_of(layer)), path[2], members);
   TACTO_TRY(at_member);
-  TACTO_TRY(check_value(numbers[*at_member], value));
+  TACTO_TRY(check_value(numbers[*at_member], value, path, *at_layer, forces));
   const auto in_block = numbers_in_block(layer);
   const auto number = std::ranges::find(in_block, path[2]);
   if (number == in_block.end())
@@ -163,12 +180,12 @@ Result<double> time_in(const ScriptLine& line, double unit_s, double last_s) {
 }  // namespace
 
 Result<SceneCommand> set_command(const std::string& number, double value, double ramp_s,
-                                 const PreparedScene& scene) {
+                                 const ForceProgram& forces) {
   const Words path = words_in(number, ".");
   if (path.size() != 3)
     return fail(ErrorKind::usage, fmt::format("'{}' does not name a number of a layer", number), {},
                 "name it as PATCH.LAYER.MEMBER");
-  auto set = target_of(path, value, scene);
+  auto set = target_of(path, value, forces);
   TACTO_TRY(set);
   TACTO_TRY(check_ramp(ramp_s));
   set->ramp_s = static_cast<float>(ramp_s);
@@ -234,7 +251,7 @@ Result<SceneCommand> parse_scene_command(std::string_view text, const ForceProgr
   }
   const auto value = number_in_text(words[2]);
   TACTO_TRY(value);
-  return set_command(words[1], *value, *ramp_s, forces.scene);
+  return set_command(words[1], *value, *ramp_s, forces);
 }
 
 Result<std::vector<TimedSceneCommand>> read_scene_script(const std::string& file,

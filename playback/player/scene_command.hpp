@@ -34,9 +34,10 @@ schema::Result<PatchPlace> parse_place(const std::string& text);
 /// Sets a number, PATCH.LAYER.MEMBER, to a value in the unit that ends the member's name; LAYER is its index
 /// in the patch, or its type if no other layer there has this type. Errors: usage, without a place: an
 /// unknown patch, layer or member (with the nearest name), a member without a slider or that cannot change
-/// during playback, a value outside the slider, a ramp outside 0 to 10 s.
+/// during playback, a value outside the slider (of a scaled one with the range of the file), a ramp outside 0
+/// to 10 s.
 schema::Result<SceneCommand> set_command(const std::string& number, double value, double ramp_s,
-                                         const PreparedScene& scene);
+                                         const ForceProgram& forces);
 
 /// Moves a patch to the whole count of each axis that is nearest to the place. Notes if a part of it is then
 /// outside the travel of the device. Errors: usage: an unknown patch (with the nearest name), a place farther

@@ -28,12 +28,6 @@ std::vector<double> places_along(const FingerPath* path, double rate_hz, std::si
   return path == nullptr ? std::vector<double>(ticks) : positions_along(*path, rate_hz, ticks);
 }
 
-void count_limits(PlaneRendering& rendering, std::uint32_t flags) {
-  rendering.peak_limited += (flags & wire::kTickAmplitudeLimited) != 0;
-  rendering.slew_limited += (flags & wire::kTickSlewLimited) != 0;
-  rendering.rms_limited += (flags & wire::kTickEnergyLimited) != 0;
-}
-
 // What moves the axes: the path, or a hand that the path moves.
 class Motion {
  public:
@@ -81,7 +75,7 @@ void run_kernel(PlaneRendering& rendering, const PreparedScene& scene, const cor
     for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = rendering.axes[i].counts[tick];
     const core::ForceOutput output = kernel.tick(counts.data(), true);
     const ExactScene::Output reference = exact.tick(counts);
-    count_limits(rendering, output.flags);
+    rendering.limits.add(output.flags);
     double square = 0;
     for (std::size_t i = 0; i < counts.size(); ++i) {
       force_n[i] = output.force_n[i];

@@ -9,6 +9,7 @@
 #include "data-schema/device/device.hpp"
 #include "data-schema/device/hand.hpp"
 #include "playback/model/finger_path.hpp"
+#include "playback/model/limit_counts.hpp"
 #include "playback/prepare/scene/prepared_scene.hpp"
 
 namespace tacto::playback {
@@ -26,7 +27,7 @@ struct PlaneRendering {
   double rate_hz = 0;
   std::vector<double> time_s;  ///< of the path, at each tick
   std::vector<PlaneAxisRun> axes;
-  std::size_t peak_limited = 0, slew_limited = 0, rms_limited = 0;  ///< ticks
+  LimitCounts limits;
   double largest_rounding_n = 0;  ///< greatest difference to the kernel in double precision
   double largest_force_n = 0;     ///< of the vector
 };

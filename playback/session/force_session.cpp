@@ -28,9 +28,7 @@ void add_tick(ForceSession& session, const SessionTick& tick, const std::vector<
     axis.force_rms_n += force_n * force_n;
     axis.force_peak_n = std::max(axis.force_peak_n, std::abs(force_n));
   }
-  session.peak_limited += (tick.flags & wire::kTickAmplitudeLimited) != 0;
-  session.slew_limited += (tick.flags & wire::kTickSlewLimited) != 0;
-  session.rms_limited += (tick.flags & wire::kTickEnergyLimited) != 0;
+  session.limits.add(tick.flags);
   ++session.ticks;
 }
 

@@ -8,6 +8,7 @@
 
 #include "data-schema/files/files.hpp"
 #include "data-schema/session/session_reader.hpp"
+#include "playback/model/limit_counts.hpp"
 
 namespace tacto::playback {
 
@@ -20,7 +21,7 @@ struct ForceSessionAxis {
 struct ForceSession {
   std::vector<ForceSessionAxis> axes;
   std::uint64_t ticks = 0, lost = 0;
-  std::uint64_t peak_limited = 0, slew_limited = 0, rms_limited = 0;  ///< ticks
+  LimitCounts limits;
   bool damaged = false;
 };
 

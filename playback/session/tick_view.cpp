@@ -13,7 +13,6 @@ namespace {
 constexpr double kSpeedOverS = 0.02, kLevelOverS = 0.1, kLateOverS = 1;
 constexpr std::uint32_t kHeldBack = wire::kTickGated | wire::kTickPlaying;
 constexpr std::uint32_t kPlaysOrFails = wire::kTickPlaying | wire::kTickFault;
-constexpr std::uint32_t kAnyLimit = wire::kTickAmplitudeLimited | wire::kTickSlewLimited;
 
 }  // namespace
 
@@ -37,10 +36,7 @@ void TickView::take(const schema::SessionTick& tick) {
   playing_ += playing;
   off_ += playing && (position_m() < from_m_ || position_m() > to_m_);
   blind_ += (tick.flags & wire::kTickBlind) != 0;
-  limited_ += (tick.flags & kAnyLimit) != 0;
-  peak_limited_ += (tick.flags & wire::kTickAmplitudeLimited) != 0;
-  slew_limited_ += (tick.flags & wire::kTickSlewLimited) != 0;
-  energy_limited_ += (tick.flags & wire::kTickEnergyLimited) != 0;
+  limits_.add(tick.flags);
   gated_ += (tick.flags & kHeldBack) == kHeldBack;
   const double drive_v = tick.drive_v;
   mean_square_ += share_ * (drive_v * drive_v - mean_square_);

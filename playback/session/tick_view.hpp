@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "data-schema/session/session.hpp"
+#include "playback/model/limit_counts.hpp"
 
 namespace tacto::playback {
 
@@ -25,12 +26,12 @@ class TickView {
   std::uint64_t ticks() const { return ticks_; }
   std::uint64_t lost() const { return lost_; }
   std::uint64_t late() const { return late_; }
-  std::uint64_t limited() const { return limited_; }
+  std::uint64_t limited() const { return limits_.amplitude_or_slew; }
   /// Those whose force was limited at its peak, or in its change.
-  std::uint64_t peak_limited() const { return peak_limited_; }
-  std::uint64_t slew_limited() const { return slew_limited_; }
+  std::uint64_t peak_limited() const { return limits_.amplitude; }
+  std::uint64_t slew_limited() const { return limits_.slew; }
   /// Ticks whose drive or force was reduced to keep its RMS limit.
-  std::uint64_t energy_limited() const { return energy_limited_; }
+  std::uint64_t energy_limited() const { return limits_.energy; }
   /// Ticks during playback in which the contact gate reduced the drive: no contact, or contact began or ended
   /// just now.
   std::uint64_t gated() const { return gated_; }
@@ -61,8 +62,9 @@ class TickView {
  private:
   static constexpr std::size_t kPlaces = 512;  // 25 ms at 20 kHz
   double rate_hz_ = 1, metres_per_count_ = 0;
-  std::uint64_t expected_ = 0, ticks_ = 0, lost_ = 0, late_ = 0, limited_ = 0, blind_ = 0;
-  std::uint64_t peak_limited_ = 0, slew_limited_ = 0, energy_limited_ = 0, gated_ = 0, playing_ = 0, off_ = 0;
+  std::uint64_t expected_ = 0, ticks_ = 0, lost_ = 0, late_ = 0, blind_ = 0;
+  std::uint64_t gated_ = 0, playing_ = 0, off_ = 0;
+  LimitCounts limits_;
   double from_m_ = -INFINITY, to_m_ = INFINITY;
   std::uint64_t second_from_ = 0, late_before_ = 0;
   double late_part_ = 0, mean_square_ = 0, share_ = 0, peak_v_ = 0, force_peak_n_ = 0;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -91,6 +93,9 @@ Result<void> check_task(const TransformOptions& options) {
   if (options.stretched.period_m && options.stretched.lengthening == Lengthening::best_fit)
     return schema::fail(ErrorKind::usage, "has no use with --lengthen best", "--period",
                         "leave one of them out");
+  if (options.band == "off")
+    return schema::fail(ErrorKind::usage, "off: a texture has no filter that could be switched off", "--band",
+                        "leave --band out to keep all frequencies");
   for (const std::string& name : options.names)
     if (schema::same_file(sidecar_of(name), sidecar_of(options.output)))
       return schema::fail(ErrorKind::usage, "would replace the texture that it is made from", options.output,
@@ -165,6 +170,19 @@ void warn_of_losses(const Texture& texture) {
   }
 }
 
+// Only --gain and --weights multiply by numbers of any size.
+Result<void> check_largest(const Texture& texture, const std::string& output) {
+  double largest = 0;
+  for (const double value : texture.signal.values) largest = std::max(largest, std::abs(value));
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  if (largest <= kLargest) return {};
+  return schema::fail(ErrorKind::unsuitable,
+                      fmt::format("its largest value would be {:.3g} {}, above the {:.2g} that a texture's "
+                                  "file can store",
+                                  largest, texture.unit, kLargest),
+                      output, "choose a smaller factor for --gain or --weights");
+}
+
 Report report_of(const Texture& texture, const std::string& stem) {
   Report report;
   report.add("length_m", texture.signal.length_m()).add("pitch_m", texture.signal.pitch_m);
@@ -179,6 +197,7 @@ Result<Report> run_transform(const TransformOptions& options) {
   TACTO_TRY(check_task(options));
   const auto texture = made(options);
   TACTO_TRY(texture);
+  TACTO_TRY(check_largest(*texture, options.output));
   schema::PendingFiles pending;
   TACTO_TRY(schema::add_texture(pending, options.output, *texture));
   TACTO_TRY(pending.commit(options.existing));

@@ -86,8 +86,8 @@ Result<BandLimits> parse_band(const std::string& text, Dimension dimension) {
   const std::size_t dots = text.find("..");
   if (dots == std::string::npos)
     return schema::fail(
-        ErrorKind::usage, "is neither 'off' nor a pair of frequencies", where_of_band(text),
-        dimension == Dimension::frequency ? "write it as 15Hz..500Hz" : "write it as 0.5/mm..10/mm");
+        ErrorKind::usage, "is not a pair of frequencies", where_of_band(text),
+        dimension == Dimension::frequency ? "write it as 15Hz..500Hz, or off" : "write it as 0.5/mm..10/mm");
   const auto end = [&](const std::string& words) -> Result<double> {
     auto value = schema::parse_quantity(words, dimension);
     if (!value) value.error().where = where_of_band(text);

@@ -21,7 +21,7 @@ schema::Result<void> check(const SpaceFilter& filter, double pitch_m, std::size_
     return schema::fail(
         ErrorKind::unsuitable,
         fmt::format("the band ends at {}, but the grid at {}", per_mm(high_per_m), per_mm(0.5 / pitch_m)), {},
-        "use a lower band, or a finer --grid");
+        "use a lower band, or a finer grid ('spatial' makes it with --grid)");
   if (static_cast<double>(count) * pitch_m * low_per_m < 1 && low_per_m > 0)
     return schema::fail(ErrorKind::unsuitable,
                         fmt::format("the texture of {:.4g} mm is shorter than one period of {}",

@@ -32,6 +32,7 @@ using Values = std::span<const double>;
 constexpr std::size_t kFewestStretched = 8 * WindowedSinc::kReach;
 constexpr double kSincReach = static_cast<double>(WindowedSinc::kReach);
 constexpr double kAllRemoved = 0.99;
+constexpr double kEqualJoints = 1e-3;        // re the RMS of value and slope: 60 dB below the texture
 constexpr std::size_t kCoarsePlaces = 2000;  // on each side of a joint: 4e6 pairs
 
 // The way through the source, in its samples: from 0 to `end`, where it goes on at end - length.
@@ -83,18 +84,19 @@ struct JointScale {
   double error(double jump, double kink) const { return std::hypot(jump / value, kink / slope); }
 };
 
-// The pair of samples, one in the first quarter and one in the last, whose values and slopes fit best.
+// The pair of samples, one in the first quarter and one in the last, whose values and slopes fit best. Of
+// pairs that fit as well, within kEqualJoints, the latest one: after it the texture is left out.
 class BestJoint {
  public:
   explicit BestJoint(Values values) : values_(values), scale_(values) {}
 
-  Course course() {
+  Course course() const {
     const std::size_t size = values_.size(), reach = WindowedSinc::kReach;
     const Range early{reach, size / 4}, late{size - size / 4, size - 1 - reach};
     const std::size_t step = std::max<std::size_t>(1, size / 4 / kCoarsePlaces);
-    search(early, late, step);
-    if (step > 1) search(early.near(early_, step), late.near(late_, step), 1);
-    return {static_cast<double>(late_), static_cast<double>(late_ - early_)};
+    Joint joint = best(early, late, step);
+    if (step > 1) joint = best(early.near(joint.early, step), late.near(joint.late, step), 1);
+    return {static_cast<double>(joint.late), static_cast<double>(joint.late - joint.early)};
   }
 
  private:
@@ -104,20 +106,28 @@ class BestJoint {
       return {std::max(first, place - std::min(place, reach)), std::min(last, place + reach)};
     }
   };
+  struct Joint {
+    std::size_t early = 0, late = 0;
+    double error = std::numeric_limits<double>::infinity();
+  };
 
-  void search(Range early, Range late, std::size_t step) {
-    for (std::size_t b = late.first; b <= late.last; b += step)
-      for (std::size_t a = early.first; a <= early.last; a += step) {
-        const double error = scale_.error(values_[b] - values_[a], slope(b) - slope(a));
-        if (error < least_) least_ = error, early_ = a, late_ = b;
-      }
+  Joint best(Range early, Range late, std::size_t step) const {
+    std::vector<Joint> joints;  // of each end the best one
+    for (std::size_t b = late.first; b <= late.last; b += step) {
+      Joint& joint = joints.emplace_back();
+      for (std::size_t a = early.first; a <= early.last; a += step)
+        if (const double error = scale_.error(values_[b] - values_[a], slope(b) - slope(a));
+            error < joint.error)
+          joint = {a, b, error};
+    }
+    const double least = std::ranges::min(joints, {}, &Joint::error).error;
+    return *std::ranges::find_if(joints.rbegin(), joints.rend(),
+                                 [&](const Joint& joint) { return joint.error <= least + kEqualJoints; });
   }
   double slope(std::size_t i) const { return 0.5 * (values_[i + 1] - values_[i - 1]); }
 
   Values values_;
   JointScale scale_;
-  double least_ = std::numeric_limits<double>::infinity();
-  std::size_t early_ = 0, late_ = 0;
 };
 
 Result<void> check_stretch(const Texture& texture, const Stretch& stretch) {

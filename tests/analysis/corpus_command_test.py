@@ -77,7 +77,7 @@ def an_unbroken_run_equals_the_verbs():
     assert made["recordings"] == recordings and made["skipped_other_files"] == 1, made
     assert run_json("corpus", "status", "whole", code=UNSUITABLE)["missing"] == recordings
     counts = job("whole")
-    assert (counts["recordings"], counts["made"], counts["already_there"]) == (recordings, 2 * recordings, 0), counts
+    assert (counts["recordings"], counts["recordings_worked_on"], counts["results_made"], counts["results_already_there"]) == (recordings, recordings, 2 * recordings, 0), counts
     assert len(units("whole")) == 2 * recordings and is_idle("whole")
     status = run_json("corpus", "status", "whole")
     assert (status["done"], status["failed"], status["missing"]) == (recordings, 0, 0) and len(status["results"]) == 2 * recordings, status
@@ -99,7 +99,7 @@ def an_unbroken_run_equals_the_verbs():
     assert run_json("info", "whole/plan.corpus.json")["recordings"] == recordings
     before = identity("whole")
     again = job("whole", "--jobs", 2)
-    assert (again["made"], again["already_there"]) == (0, 2 * recordings) and identity("whole") == before, again
+    assert (again["recordings_worked_on"], again["results_made"], again["results_already_there"]) == (0, 0, 2 * recordings) and identity("whole") == before, again
 
 
 def options_are_those_of_the_verbs():
@@ -148,7 +148,7 @@ def killed_at_any_moment_it_ends_like_an_unbroken_run():
             break
     assert killed > 0
     counts = job("killed")
-    assert counts["made"] + counts["already_there"] == all_units and counts["already_there"] == len(known), (counts, len(known))
+    assert counts["results_made"] + counts["results_already_there"] == all_units and counts["results_already_there"] == len(known), (counts, len(known))
     assert known.items() <= identity("killed").items() and contents("killed") == contents("whole") and is_idle("killed")
     run("corpus", "status", "killed", "--verify")
 
@@ -160,9 +160,9 @@ def a_stopped_run_loses_nothing():
     process.send_signal(signal.SIGTERM)
     counts = json.loads(process.communicate()[0])
     assert process.returncode == (UNSUITABLE if counts.get("stopped") else 0), (process.returncode, counts)
-    assert counts["made"] == len(units("stopped")) >= 3 and is_idle("stopped"), counts
+    assert counts["results_made"] == len(units("stopped")) >= 3 and is_idle("stopped"), counts
     rest = job("stopped")
-    assert rest["already_there"] == counts["made"] and contents("stopped") == contents("whole"), rest
+    assert rest["results_already_there"] == counts["results_made"] and contents("stopped") == contents("whole"), rest
 
 
 def two_runs_at_once_share_the_work():
@@ -172,14 +172,14 @@ def two_runs_at_once_share_the_work():
         counts.append(process)
     counts = [(process, json.loads(process.communicate()[0])) for process in counts]
     assert all(process.returncode == 0 for process, _ in counts), counts
-    assert sum(count["made"] for _, count in counts) == len(units("whole")), counts
+    assert sum(count["results_made"] for _, count in counts) == len(units("whole")), counts
     assert contents("shared") == contents("whole") and is_idle("shared")
 
 
 def shards_are_parts():
     init("parts")
     parts = [job("parts", "--shard", f"{i}/3") for i in (3, 1, 2)]
-    assert [part["recordings"] for part in parts] == [16, 17, 17] and all(part["made"] == 2 * part["recordings"] for part in parts), parts
+    assert [part["recordings"] for part in parts] == [16, 17, 17] and all(part["results_made"] == 2 * part["recordings"] for part in parts), parts
     assert contents("parts") == contents("whole")
     assert job("parts", "--shard", "77/77")["recordings"] == 0
     assert "shard" in run("corpus", "run", "parts", "--shard", "", code=USAGE)[1]  # a variable that is not set
@@ -195,7 +195,7 @@ def only_what_depends_on_a_change_is_made_again():
     def made_with(*options):
         init("parts", "--force", *options)
         counts = job("parts", "--jobs", 2)
-        return counts["made"], counts["already_there"]
+        return counts["results_made"], counts["results_already_there"]
 
     assert made_with("--describe", "--window 5mm") == (recordings, recordings)
     assert made_with("--spatial", "--band 20Hz..400Hz") == (2 * recordings, 0)
@@ -221,7 +221,7 @@ def a_failure_is_noted_and_stops_nothing():
     text = pathlib.Path("odd/changed.json").read_text()
     pathlib.Path("odd/changed.json").write_text(text + "\n")
     counts = job("odd-study", "--jobs", 2)
-    assert (counts["recordings"], counts["made"], counts["of_these_failures"]) == (5, 6, 4), counts
+    assert (counts["recordings"], counts["results_made"], counts["of_these_failures"]) == (5, 6, 4), counts
     status = run_json("corpus", "status", "odd-study", code=UNSUITABLE)
     assert (status["done"], status["failed"], status["missing"]) == (1, 4, 0) and "not_made" not in status, status
     because = {pathlib.Path(row["recording"]).stem: row["because"] for row in status["failures"]}
@@ -231,11 +231,11 @@ def a_failure_is_noted_and_stops_nothing():
     fine = identity("odd-study")
     # What its key covers will not change: a finger at rest is not tried again. The others are.
     again = job("odd-study")
-    assert (again["made"], again["of_these_failures"], again["already_there"]) == (3, 3, 3), again
+    assert (again["results_made"], again["of_these_failures"], again["results_already_there"]) == (3, 3, 3), again
     pathlib.Path("odd/changed.json").write_text(text)
     pathlib.Path("odd/broken.wav").write_bytes(data)
     repaired = job("odd-study")
-    assert (repaired["made"], repaired["of_these_failures"]) == (5, 1), repaired
+    assert (repaired["results_made"], repaired["of_these_failures"]) == (5, 1), repaired
     status = run_json("corpus", "status", "odd-study", code=UNSUITABLE)
     assert (status["done"], status["failed"]) == (3, 2), status
     kept = [unit for unit in fine if identity("odd-study").get(unit) == fine[unit]]
@@ -271,18 +271,18 @@ def damaged_results_are_made_again():
     os.utime(wav, ns=(times.st_atime_ns, times.st_mtime_ns + 10**12))  # later than its checksum
     status = run_json("corpus", "status", "shared", code=UNSUITABLE)
     assert status["missing"] == 1 and [row["damaged"] for row in status["not_made"]] == [True], status
-    assert job("shared")["made"] == 1 and contents("shared") == wanted
+    assert job("shared")["results_made"] == 1 and contents("shared") == wanted
     # A disk that loses a bit leaves the date: --verify reads everything.
     times = wav.stat()
     wav.write_bytes(data)
     os.utime(wav, ns=(times.st_atime_ns, times.st_mtime_ns))
     run("corpus", "status", "shared")
     assert run_json("corpus", "status", "shared", "--verify", code=UNSUITABLE)["missing"] == 1
-    assert job("shared", "--verify")["made"] == 1 and contents("shared") == wanted
+    assert job("shared", "--verify")["results_made"] == 1 and contents("shared") == wanted
     wav.unlink()
-    assert job("shared")["made"] == 1 and contents("shared") == wanted
+    assert job("shared")["results_made"] == 1 and contents("shared") == wanted
     shutil.rmtree(wav.parent)
-    assert job("shared")["made"] == 1 and contents("shared") == wanted
+    assert job("shared")["results_made"] == 1 and contents("shared") == wanted
 
 
 def foreign_plans_are_refused():
@@ -334,7 +334,7 @@ def patterns_name_recordings():
     shutil.copytree("raw", "place/raw")
     run("corpus", "init", "study", "--recordings", "raw/A0.json", cwd="place")
     pathlib.Path("place").rename("other")
-    assert job("other/study")["made"] == 2
+    assert job("other/study")["results_made"] == 2
 
 
 def thousands_of_recordings_need_little_memory():
@@ -348,7 +348,7 @@ def thousands_of_recordings_need_little_memory():
             for ending in (".json", ".wav"):
                 (folder / f"{name}{ending}").symlink_to(source.with_suffix(ending).resolve())
     peaks = {"init": peak_mb("corpus", "init", "thousands", "--recordings", "many/*/*.json")}
-    assert job("thousands", "--jobs", 2)["made"] == 80
+    assert job("thousands", "--jobs", 2)["results_made"] == 80
     assert run_json("corpus", "status", "thousands")["done"] == 18880
     for part in ("run", "status"):
         peaks[part] = peak_mb("corpus", part, "thousands")

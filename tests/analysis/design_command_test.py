@@ -222,6 +222,10 @@ def adaptive_viscosity_is_the_least_that_suffices():
     for what in (("explain", "s.scene.json", "--device", "d", "--hand", "h"), ("play", "s.scene.json", "-d", "sim:planar,device=d,hand=h", "-o", "x")):
         _, err = run(*what, code=UNSUITABLE)
         assert "s.scene.json#/patches/0/layers/0/adaptive" in tacto.unwrapped(err), err
+    # With --hold-stable, design refuses what play refuses.
+    for what in (("design", "s.scene.json", "--device", "d", "--hand", "h", "--hold-stable"), ("play", "s.scene.json", "-d", "sim:planar,device=d,hand=h", "-o", "x", "--hold-stable")):
+        _, err = run(*what, code=UNSUITABLE)
+        assert "s.scene.json#/patches/0/layers/0/adaptive" in tacto.unwrapped(err), err
     # With a tick of delay more than K T is needed, so that the Coulomb friction has to carry B D / T.
     needed = least_damping((0.1, 1, 0), 1e-3, 1, 5000, 20)
     assert needed > 5, needed

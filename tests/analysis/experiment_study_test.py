@@ -63,6 +63,23 @@ def the_files_are_coded():
     tacto.run("experiment", "new", "stretch", "-o", "stretch", code=2)  # exists
 
 
+def a_lead_is_longer_than_the_slowest_load():
+    """A device that keeps time: preparing and sending 22 mm of texture takes more than 1 ms and less than a minute."""
+    new_study("lead", 1)
+    path = pathlib.Path("lead.protocol.json")
+    protocol = json.loads(path.read_text())
+    path.write_text(json.dumps({**protocol, "lead_s": 60}))
+    slowest = tacto.run_json("experiment", "check", "lead", "-d", "sim:paced=1")["slowest_load_s"]
+    assert 0.001 < slowest < 60, slowest
+    path.write_text(json.dumps({**protocol, "lead_s": 0.001}))
+    for verb in (["check", "lead"], ["run", "lead", "--participant", "P01", "--observer", OBSERVER]):
+        _, said = tacto.run("experiment", *verb, "-d", "sim:paced=1", code=5)
+        assert "lead.protocol.json#/lead_s" in tacto.unwrapped(said), said
+    # An emulated device that does not keep time has no clock to be late for.
+    assert "slowest_load_s" not in tacto.run_json("experiment", "check", "lead", "-d", "sim:")
+    tacto.run("experiment", "check", "lead")
+
+
 def a_run_is_proven():
     out, err = tacto.run("experiment", "run", "stretch", "-d", "sim:", "--participant", "P01", "--observer", OBSERVER)
     for level in LEVELS:
@@ -265,6 +282,7 @@ def a_participant_withdraws():
 
 def study():
     the_files_are_coded()
+    a_lead_is_longer_than_the_slowest_load()
     a_run_is_proven()
     a_session_that_was_changed_is_found()
     a_killed_run_is_resumed()

@@ -10,6 +10,8 @@ namespace {
 
 TEST(Html, ANumberAndItsUnitDoNotBreakApart) {
   EXPECT_EQ(escaped("2.8 um, 15 um/V at 2 1/mm"), "2.8&nbsp;\u00B5m, 15&nbsp;\u00B5m/V at 2&nbsp;1/mm");
+  EXPECT_EQ(with_micro_signs("filter 12 um (knee), 3 us; number 4 umbra; 5 m, um"),
+            "filter 12 \u00B5m (knee), 3 \u00B5s; number 4 umbra; 5 m, um");
   EXPECT_EQ(escaped("5 %; 3 strokes; take 2 mumble; 7 m"), "5&nbsp;%; 3 strokes; take 2 mumble; 7&nbsp;m");
   EXPECT_EQ(escaped("um 4; p 0.003; step 4"), "um 4; p&nbsp;0.003; step 4");
 }

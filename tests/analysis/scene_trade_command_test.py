@@ -150,6 +150,18 @@ def the_chosen_scene_keeps_the_error():
         layer = json.loads(pathlib.Path(f"chosen{error}.scene.json").read_text())["patches"][1]["layers"][1]
         assert layer["type"] == "damper" and layer["damping_n_s_per_m"] == 0.5
     assert changed == [0, 1, 2], changed
+    # A chosen scene is replaced with --force only; a file that is no scene, and the scene itself, never.
+    before = pathlib.Path("chosen0.2.scene.json").read_text()
+    refused(USAGE, "--max-error", "4N", "-o", "chosen0.2.scene.json")
+    assert pathlib.Path("chosen0.2.scene.json").read_text() == before
+    trade("--max-error", "4N", "-o", "chosen0.2.scene.json", "--force")
+    assert pathlib.Path("chosen0.2.scene.json").read_text() != before
+    run("validate", "chosen0.2.scene.json")
+    pathlib.Path("other.scene.json").write_text('{"kind": "device"}')
+    for kept in ("other.scene.json", "s.scene.json"):
+        before = pathlib.Path(kept).read_text()
+        refused(USAGE, "--max-error", "4N", "-o", kept, "--force")
+        assert pathlib.Path(kept).read_text() == before
     # Both at once: with time enough the scene stays as it is; nothing is as fast as this.
     assert trade("--max-tick", "1s")["changed"] == []
     refused(UNSUITABLE, "--max-tick", "0.001us")
@@ -253,7 +265,18 @@ def files_are_written_and_valid():
     page = pathlib.Path("t.html").read_text()
     assert page.count("<img") == 2 and "prefers-color-scheme" in page
     run("validate", "t.results.json")
-    assert len(json.loads(pathlib.Path("t.results.json").read_text())["pictures"]) == 2
+    pictures = json.loads(pathlib.Path("t.results.json").read_text())["pictures"]
+    assert len(pictures) == 2
+    # A knee is behind its line, so that it gets its colour.
+    knees = 0
+    for picture in pictures:
+        for curve in picture["curves"]:
+            if not curve.get("marks"):
+                line = list(zip(curve["x"], curve["y"]))
+                continue
+            assert (curve["x"][0], curve["y"][0]) in line, (curve, line)
+            knees += 1
+    assert knees == sum(row["worth_it"] == "the knee" for row in report["choices"]), (knees, report)
     pathlib.Path("mine.csv").write_text("a,b\n1,2\n")
     refused(USAGE, "-o", "mine.csv")
     refused(USAGE, "-o", "mine.csv", "--force")

@@ -103,6 +103,11 @@ def validate_finds_damage():
     pathlib.Path("oak.json").write_text(json.dumps(side))
     out, _ = tacto.run("validate", "oak", code=MALFORMED)
     assert "/sample_rate_hz" in out, out
+    # A member that a transducer's reader refuses is a fault, and not also a warning that it is ignored.
+    tray = json.loads((pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json").read_text())
+    pathlib.Path("typo.transducer.json").write_text(json.dumps({**tray, "pole_hx": 3}))
+    report = tacto.run_json("validate", "typo.transducer.json", code=MALFORMED)
+    assert [fault["where"] for fault in report["faults"]] == ["typo.transducer.json#/pole_hx"] and "warnings" not in report, report
 
 
 def the_rest_refuses():

@@ -194,6 +194,9 @@ def what_the_limits_took_is_told_in_db():
     # They sample at other times between the encoder's edges (-75 dB of the drive), and the finger rests at the ends.
     assert abs(played["removed_by_limits_db"] - rendered["limits_removed_db"]) < 0.05, (played, rendered)
     assert said["amplitude_limited_ticks"] == played["amplitude_limited_ticks"] > 500 and said["slew_limited_ticks"] == 0, said
+    # Every count is of all ticks to the end of the session.
+    tacto.run("session", "weak", "-o", "weak.csv")
+    assert np.genfromtxt("weak.csv", delimiter=",", names=True)["limited"].sum() == played["limited_ticks"] == said["amplitude_limited_ticks"], played
     strokes = said["strokes"]
     assert len(strokes) == 2 and all(-20 < s["removed_by_limits_db"] < -5 for s in strokes), strokes
     assert "finger_rests_from_s" not in played, played

@@ -105,6 +105,20 @@ TEST_F(MeasuredStrokes, AnInstrumentThatIsLateIsShiftedBack) {
   }
 }
 
+// The search goes to 1 ms; the smallest error is then at its end, and no shift is given.
+TEST_F(MeasuredStrokes, AShiftBeyondTheSearchIsNotFound) {
+  const StrokeReport whole = report_of(session_);
+  constexpr double kBeyondS = 1.15e-3;
+  const double late_s = kBeyondS - *whole.strokes.front().measured->shift_s;
+  const StrokeReport late = report_of(changed([&](SessionSamples& sample) {
+    sample.time_ns += static_cast<std::int64_t>(1e9 * late_s);
+    return true;
+  }));
+  ASSERT_TRUE(late.strokes.front().measured);
+  EXPECT_FALSE(late.strokes.front().measured->shift_s);
+  EXPECT_TRUE(late.strokes.front().predicted.shift_s);
+}
+
 TEST_F(MeasuredStrokes, AreNotToldNearMissingSamples) {
   const StrokeReport whole = report_of(session_);
   ASSERT_GE(whole.strokes.size(), 4U);

@@ -174,6 +174,18 @@ def what_the_device_refuses_or_makes_unstable():
     assert not pathlib.Path("late.session").exists()
 
 
+def play_counts_the_limited_ticks_of_its_session():
+    """All ticks to the end of the session, with the fall of the force after the stop: 9 N at 1 mm, the device has 4 N."""
+    write_path("out.csv", {"time_s": [0, 0.2, 0.5], "x_m": [0, 0.001, 0.001], "y_m": [0, 0, 0]})
+    write_scene("hard", patch(layers=[spring(9000)]))
+    report = play("hard.scene.json", "sim:planar", "hard", "--finger-path", "out.csv")
+    said = run_json("session", "hard")
+    keys = [key for key in report if key.endswith("_limited_ticks")]
+    assert len(keys) == 3 and report["peak_limited_ticks"] > 500, report
+    assert [report[key] for key in keys] == [said[key] for key in keys], (report, said)
+    assert report["ticks"] == said["ticks"], (report, said)
+
+
 def a_scene_is_held_stable_and_replayed():
     """The free device's limit at 4 kHz is 9365 N/m; held are 1 / 1.2 of it, with the range of the slider. The layers that act
     together are scaled by one factor."""
@@ -200,10 +212,16 @@ def a_scene_is_held_stable_and_replayed():
     assert rendered["held_stable"] == report["held_stable"], rendered
     # A place at the border of a count may be rounded to the other one; else single precision of 4 N.
     assert np.mean(np.abs(table("f.csv")["force_x_n"][:5000] - played["force_x_n"][:5000]) < 1e-5) > 0.99
+    write_script("beyond.csv", [0.1], ["set wall.0.stiffness_n_per_m 15001"])
     # A number is set within the range that was scaled.
     for value, code in ((0.99, 0), (1.01, MALFORMED)):
         write_script("set.csv", [0.1], [f"set wall.0.stiffness_n_per_m {value * factor * 15000:.3f}"])
         run("play", "wall.scene.json", "-d", "sim:planar", "--finger-path", "out.csv", "--hold-stable", "--script", "set.csv", "-o", f"set{code}", code=code)
+    # The range of the file is in the message, too: 15000 N/m is what a reader of the scene expects.
+    _, said = run("play", "wall.scene.json", "-d", "sim:planar", "--finger-path", "out.csv", "--hold-stable", "--script", "set.csv", "-o", "again", code=MALFORMED)
+    assert "15000" in said and "--hold-stable" in said and f"{factor:.4g}" in said, said
+    _, said = run("play", "wall.scene.json", "-d", "sim:planar", "--finger-path", "out.csv", "--script", "beyond.csv", "-o", "again", code=MALFORMED)
+    assert "15000" in said and "--hold-stable" not in said, said
     # In a hand that carries it nothing is scaled.
     report = play("wall.scene.json", "sim:planar,hand=minsky-radial", "in_hand", "--time", "0.1s", "--hold-stable")
     assert isinstance(report["held_stable"], str), report
@@ -382,5 +400,5 @@ def a_wrong_script_plays_nothing():
 
 
 if __name__ == "__main__":
-    for test in (what_the_device_refuses_or_makes_unstable, a_scene_is_held_stable_and_replayed, an_adaptive_spring_is_a_spring_and_a_damper, moved_and_raised_patches_have_their_forces_and_are_replayed, sliders_move_the_force_and_are_replayed, a_hand_under_sliders_is_replayed, a_wrong_script_plays_nothing, a_played_scene_has_the_forces_of_render, bodies_replay_to_the_bit, surfaces_replay_to_the_bit, a_hand_on_sim_planar_is_scipys_loop, wrong_uses_are_refused, a_jump_of_the_encoder_ends_in_a_fault):
+    for test in (what_the_device_refuses_or_makes_unstable, play_counts_the_limited_ticks_of_its_session, a_scene_is_held_stable_and_replayed, an_adaptive_spring_is_a_spring_and_a_damper, moved_and_raised_patches_have_their_forces_and_are_replayed, sliders_move_the_force_and_are_replayed, a_hand_under_sliders_is_replayed, a_wrong_script_plays_nothing, a_played_scene_has_the_forces_of_render, bodies_replay_to_the_bit, surfaces_replay_to_the_bit, a_hand_on_sim_planar_is_scipys_loop, wrong_uses_are_refused, a_jump_of_the_encoder_ends_in_a_fault):
         tacto.in_folder(test)

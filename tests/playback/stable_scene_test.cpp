@@ -147,6 +147,18 @@ TEST(AdaptiveLayer, ARefusalNamesTheLayer) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, schema::ErrorKind::unsuitable);
   EXPECT_EQ(refused.error().where, "s#/patches/1/layers/1/adaptive");
+  // 10 kN/m alone would be damped; the upper end of the slider, 180 N s/m, changes the force by more than the
+  // stiffness does at each count.
+  const auto slid = prepare_scene(
+      held_scene({held_patch(
+          "a", 0,
+          {held_spring(10'000, true), schema::DamperLayer{{1, schema::SliderRange{0, 180}}, "", false}})}),
+      "s", device, kHeldRate);
+  ASSERT_FALSE(slid);
+  EXPECT_EQ(slid.error().kind, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(slid.error().where, "s#/patches/0/layers/1/damping_n_s_per_m/slider/to");
+  EXPECT_TRUE(
+      prepare_scene(held_scene({held_patch("a", 0, {held_spring(10'000, true)})}), "s", device, kHeldRate));
   // The dampers count among the 256 layers of a scene.
   std::vector<schema::ForceLayer> many(255, held_spring(0, false));
   many.emplace_back(held_spring(5000, true));

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "spatial/dsp/resample/windowed_sinc.hpp"
 #include "spatial/transform/period.hpp"
 #include "spatial/transform/stretch.hpp"
 
@@ -146,6 +147,18 @@ TEST(Stretch, WhatHasNoPeriodKeepsItsLengthAndIsJoinedWhereItFits) {
     EXPECT_LT(*step.joint_error, 0.01);
     // No step exceeds the steepest of the source by more than the joint's error.
     EXPECT_LT(steepest(*result), 1.02 * steepest(source) / factor);
+  }
+}
+
+// A sinusoid fits everywhere: the joint is as late as the interpolation allows.
+TEST(Stretch, OfEqualJointsTheOneThatLeavesOutTheLeastIsTaken) {
+  for (const std::size_t samples : {17600U, 17603U}) {
+    const auto result = stretch(sinusoid(samples), {0.7, false, Lengthening::best_fit, std::nullopt});
+    ASSERT_TRUE(result) << message(result.error());
+    const auto& step = result->transform->steps.back();
+    EXPECT_NEAR(*step.left_out_m, 1e-6 * static_cast<double>(WindowedSinc::kReach), 1e-9) << samples;
+    EXPECT_LT(*step.joint_error, 1.1e-3)
+        << samples;  // the least one is below 1e-4, and joints within 1e-3 are equal
   }
 }
 

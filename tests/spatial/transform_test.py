@@ -4,6 +4,7 @@
 import hashlib
 import json
 import pathlib
+import re
 
 import numpy as np
 import soundfile
@@ -192,6 +193,7 @@ def bad_requests():
     write("force", grating, quantity="tangential_force", unit="N")
     write("short", grating[:100])
     write("surface", Harmonics(range(20, 201), seed=4).samples())
+    options = set(re.findall(r"--[a-z-]+", tacto.run("transform", "--help")[0]))
     for code, *arguments in (
             (2, "grating", "-o", "new"),
             (2, "grating", "-o", "new", "--stretch", "1.3"),
@@ -204,6 +206,8 @@ def bad_requests():
             (2, "grating", "surface", "-o", "new", "--weights", "0x,1x"),
             (2, "grating", "-o", "new", "--stretch", "70%", "--lengthen", "best", "--period", "1.76mm"),
             (2, "grating", "-o", "new", "--band", "4/mm..1/mm"),
+            (2, "grating", "-o", "new", "--band", "off"),
+            (5, "grating", "-o", "new", "--gain", "1e300x"),
             (2, "grating", "-o", "surface", "--gain", "2x"),
             (2, "grating", "-o", "./grating", "--gain", "2x", "--force"),
             (2, "grating", "--gain", "2x"),
@@ -213,8 +217,10 @@ def bad_requests():
             (5, "surface", "-o", "new", "--stretch", "1.3x", "--lengthen", "periods"),
             (5, "grating", "-o", "new", "--band", "4/mm..600/mm"),
             (5, "grating", "-o", "new", "--stretch", "1.3x", "--period", "30mm")):
-        tacto.run("transform", *arguments, code=code)
+        _, said = tacto.run("transform", *arguments, code=code)
         assert not pathlib.Path("new.texture.json").exists(), arguments
+        # A remedy does not name an option of another verb, except with the verb.
+        assert set(re.findall(r"(?<!'spatial' makes it with )--[a-z-]+", tacto.unwrapped(said))) <= options, (arguments, said)
     tacto.run("transform", "grating", "-o", "surface", "--gain", "2x", "--force")
     np.testing.assert_allclose(tacto.texture("surface")[1], 2 * grating, rtol=1e-6, atol=1e-12)
 

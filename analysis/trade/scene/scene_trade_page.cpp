@@ -189,19 +189,27 @@ std::vector<schema::ResultPicture> scene_trade_pictures(const SceneTrade& trade)
                                   "error, RMS (dB re 1 N)",
                                   true,
                                   {}};
-    std::vector<schema::ResultCurve> knees;
+    std::vector<schema::ResultCurve> knees;  // of the last curve, behind it in the list: they get its colour
+    const auto add_knees = [&] {
+      picture.curves.insert(picture.curves.end(), knees.begin(), knees.end());
+      knees.clear();
+    };
+    std::string knob;
     for (std::size_t i = 0; i < trade.rows.size(); ++i) {
       const SceneTradeRow& row = trade.rows[i];
       if (row.row.per != per || !row.row.is_judged()) continue;
-      if (picture.curves.empty() || picture.curves.back().name != row.row.knob)
-        picture.curves.push_back({row.row.knob, {}, {}, false, false});
+      if (picture.curves.empty() || knob != row.row.knob) {
+        add_knees();
+        knob = row.row.knob;
+        picture.curves.push_back({knob, {}, {}, false, false});
+      }
       picture.curves.back().x.push_back(row.row.cost_ns);
       picture.curves.back().y.push_back(error_level(row));
       if (worth[i].knee)
         knees.push_back({row.row.choice + " (knee)", {row.row.cost_ns}, {error_level(row)}, false, true});
     }
     if (picture.curves.empty()) continue;
-    picture.curves.insert(picture.curves.end(), knees.begin(), knees.end());
+    add_knees();
     pictures.push_back(std::move(picture));
   }
   return pictures;

@@ -52,19 +52,25 @@ struct DeviceLoop {
       if (axis.name != "z") mass_kg = std::min(mass_kg, axis.mass_kg);
     return 2 * (mass_kg + (hand ? hand->mass_kg : 0)) * rate_hz;
   }
-  // Whether a damper changes the force at a count by no more than friction or stiffness allow.
-  Result<void> check_rounding(double stiffness, double damping) const {
+  // Whether a damper changes the force at a count by no more than friction or stiffness allow; `own` is the
+  // damping that the scene has.
+  Result<void> check_rounding(double stiffness, double own, double added) const {
+    const double damping = own + added;
     for (const schema::DeviceAxis& axis : device.axes) {
       if (axis.name == "z") continue;
       const double step_n = damping * axis.encoder_step_m * rate_hz,
                    allowed_n = std::max(axis.coulomb_n, stiffness * axis.encoder_step_m);
       if (step_n > allowed_n)
-        return fail(ErrorKind::unsuitable,
-                    fmt::format("{:.4g} N/m need a damping of {:.4g} N s/m with {}, which changes the force "
-                                "by {:.3g} N at each count of the encoder along {}: at most {:.3g} N are "
-                                "allowed, the friction of the device or the change of the stiffness itself",
-                                stiffness, damping, held(), step_n, axis.name, allowed_n),
-                    {}, "choose less stiffness, a finer encoder or less delay");
+        return fail(
+            ErrorKind::unsuitable,
+            fmt::format(
+                "{:.4g} N/m need a damping of {:.4g} N s/m with {}{}, which changes the force "
+                "by {:.3g} N at each count of the encoder along {}: at most {:.3g} N are "
+                "allowed, the friction of the device or the change of the stiffness itself",
+                stiffness, added, held(),
+                own > 0 ? fmt::format(" beside the {:.4g} N s/m of the scene's dampers", own) : std::string(),
+                step_n, axis.name, allowed_n),
+            {}, "choose less stiffness, a finer encoder or less delay");
     }
     return {};
   }
@@ -92,6 +98,34 @@ std::string stiffest_adaptive(const std::vector<schema::Patch>& patches,
   return pointer;
 }
 
+// The damper of a place with the largest damping, by JSON pointer; precondition: there is one.
+std::string strongest_damper(const std::vector<schema::Patch>& patches,
+                             const std::vector<std::size_t>& acting) {
+  double most = -1;
+  std::string pointer;
+  for (const std::size_t i : acting)
+    for (std::size_t j = 0; j < patches[i].layers.size(); ++j)
+      patches[i].layers[j].visit(
+          [&](const schema::DamperLayer& damper) {
+            if (largest_value(damper.damping_n_s_per_m) <= most) return;
+            most = largest_value(damper.damping_n_s_per_m);
+            pointer = fmt::format("#/patches/{}/layers/{}/damping_n_s_per_m{}", i, j,
+                                  damper.damping_n_s_per_m.slider ? "/slider/to" : "");
+          },
+          [](const auto& /*other*/) {});
+  return pointer;
+}
+
+// A damper whose slider reaches so far that a damping is refused which would be accepted at its lower end; or
+// a damper without which the stiffness would be accepted. None: the stiffness is too large.
+bool dampers_prevent(const ActingLoad& load, const Device& device, double rate_hz,
+                     const std::optional<Hand>& hand) {
+  const double least = load.least_damping_n_s_per_m;
+  return load.most_damping_n_s_per_m > 0 &&
+         (added_damping({load.stiffness_n_per_m, least, least, {}}, device, rate_hz, hand) ||
+          added_damping({load.stiffness_n_per_m, 0, 0, {}}, device, rate_hz, hand));
+}
+
 bool has_added(const schema::Patch& patch) {
   return std::ranges::any_of(patch.layers, schema::is_added);
 }
@@ -101,15 +135,20 @@ void scale_number(schema::LayerNumber& number, double factor) {
   if (number.slider) number.slider->from *= factor, number.slider->to *= factor;
 }
 
-// The number of a layer to which its stiffness is proportional.
-void scale_stiffness(schema::ForceLayer& layer, double factor) {
-  layer.visit([&](schema::SpringLayer& spring) { scale_number(spring.stiffness_n_per_m, factor); },
-              [&](schema::GroovesLayer& grooves) { scale_number(grooves.kappa_n, factor); },
-              [&](schema::NoiseLayer& noise) { scale_number(noise.kappa_n, factor); },
-              [&](schema::HeightMapLayer& map) { scale_number(map.kappa_n, factor); },
-              [&](schema::TextureForceLayer& texture) { scale_number(texture.gain, factor); },
-              [&](schema::FieldLayer& field) { scale_number(field.force_scale, factor); },
-              [](auto& /*of another stiffness or none*/) {});
+// Of the number of a layer to which its stiffness is proportional; its name.
+std::string_view scale_stiffness(schema::ForceLayer& layer, double factor) {
+  const auto scaled = [&](schema::LayerNumber& number, std::string_view name) {
+    scale_number(number, factor);
+    return name;
+  };
+  return layer.visit(
+      [&](schema::SpringLayer& spring) { return scaled(spring.stiffness_n_per_m, "stiffness_n_per_m"); },
+      [&](schema::GroovesLayer& grooves) { return scaled(grooves.kappa_n, "kappa_n"); },
+      [&](schema::NoiseLayer& noise) { return scaled(noise.kappa_n, "kappa_n"); },
+      [&](schema::HeightMapLayer& map) { return scaled(map.kappa_n, "kappa_n"); },
+      [&](schema::TextureForceLayer& texture) { return scaled(texture.gain, "gain"); },
+      [&](schema::FieldLayer& field) { return scaled(field.force_scale, "force_scale"); },
+      [](auto& /*of another stiffness or none*/) { return std::string_view(); });
 }
 
 }  // namespace
@@ -162,7 +201,7 @@ Result<double> added_damping(const ActingLoad& load, const Device& device, doubl
     if (middle <= bad || middle >= good) break;
     (suffices(middle) ? good : bad) = middle;
   }
-  TACTO_TRY(loop.check_rounding(stiffness, own + good));
+  TACTO_TRY(loop.check_rounding(stiffness, own, good));
   return good;
 }
 
@@ -185,7 +224,11 @@ Result<void> add_adaptive_damping(schema::Scene& scene, const std::string& where
                                         where + stiffest_adaptive(patches, place.patches), error.remedy});
   };
   for (const ActingPatches& place : places) {
-    const auto needed = added_damping(load_of(patches, place.patches), device, rate_hz, hand);
+    const ActingLoad load = load_of(patches, place.patches);
+    const auto needed = added_damping(load, device, rate_hz, hand);
+    if (!needed && dampers_prevent(load, device, rate_hz, hand))
+      return fail(needed.error().kind, needed.error().what, where + strongest_damper(patches, place.patches),
+                  "choose less damping, or leave 'adaptive' out");
     if (!needed) return refused(place, needed.error());
     for (const std::size_t i : place.patches)
       added[i] = std::max(added[i], *needed * adaptive[i] / sum_at(place, adaptive));
@@ -203,7 +246,7 @@ Result<void> add_adaptive_damping(schema::Scene& scene, const std::string& where
                              {},
                              "place the patches side by side, or give each place its own patch"});
     if (sum > 0)
-      if (const auto fine = loop.check_rounding(load.stiffness_n_per_m, load.most_damping_n_s_per_m + sum);
+      if (const auto fine = loop.check_rounding(load.stiffness_n_per_m, load.most_damping_n_s_per_m, sum);
           !fine)
         return refused(place, fine.error());
   }
@@ -234,8 +277,9 @@ Result<std::vector<HeldLayer>> hold_stable(std::vector<schema::Patch>& patches, 
       schema::ForceLayer& layer = patches[i].layers[j];
       const double from = local_stiffness_n_per_m(layer);
       if (factors[i] >= 1 || !(from > 0)) continue;
-      scale_stiffness(layer, factors[i]);
-      held.push_back({patches[i].name, std::string(type_of(layer)), j, from, local_stiffness_n_per_m(layer)});
+      const std::string_view member = scale_stiffness(layer, factors[i]);
+      held.push_back(
+          {patches[i].name, std::string(type_of(layer)), j, from, local_stiffness_n_per_m(layer), member});
     }
   return held;
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data-schema/device/device.hpp"
@@ -60,6 +61,7 @@ struct HeldLayer {
   std::string patch, type;
   std::size_t index = 0;  ///< in its patch
   double from_n_per_m = 0, to_n_per_m = 0;
+  std::string_view member = {};  ///< the number that was scaled, with its slider
 };
 
 /// Where layers that act together are beyond their limit, scales the stiffness of all of them (of sliders the
