@@ -186,7 +186,7 @@ double worst_error(wire::Interpolation kind, double period) {
   return worst;
 }
 
-// The errors that core/interpolation.hpp states.
+// The errors that core/kernel/interpolation.hpp states.
 TEST(Interpolation, ErrsAsStated) {
   for (const double period : {10.0, 16.0, 40.0, 100.0}) {
     const double w = kTwoPi / period;
