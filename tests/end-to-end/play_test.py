@@ -174,8 +174,8 @@ def a_loop_is_the_sine_that_it_is():
         {"type": "texture", "texture": "short", "at_m": 0, "gain_m_per_n": 5e-4, "ends": "loop"}]}))
     explained = tacto.run_json("explain", "short.scene.json")
     assert abs(explained["loop_period_m"] - 0.013) < 1e-12 and explained["loop_seam_m"] == 0, explained
-    _, said = tacto.run("render", "two.scene.json", "--at", "1mm", "--finger-path", "even.csv", "--transducer", "wiertlewski2011", "-o", "x.wav", code=2)
-    assert "--at" in said and not pathlib.Path("x.wav").exists(), said
+    error = tacto.error_of("render", "two.scene.json", "--at", "1mm", "--finger-path", "even.csv", "--transducer", "wiertlewski2011", "-o", "x.wav", code=2)
+    assert error["where"] == "two.scene.json" and not pathlib.Path("x.wav").exists(), error
 
 
 def what_the_limits_took_is_told_in_db():
