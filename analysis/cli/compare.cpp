@@ -80,7 +80,7 @@ constexpr const char* kRule =
     "ones) are called different more often: 7 % of the pairs of noise whose level wanders by 3 dB over 10 "
     "mm, but more than half of the pairs of single strokes of 35 mm with bursts.\n'point by point' says "
     "whether "
-    "the coherence is above the value that independent signals reach once in 20 times: two stretches of one "
+    "the coherence is above the value that independent signals reach once in 20 times: two sections of one "
     "rough surface can be alike without it.\n\n"
     "A session and its texture: the error in dB, the power of the difference over that of the target.\n\n"
     "More than two inputs: each pair by itself, so that one pair in 20 is called different by chance.";

@@ -350,7 +350,7 @@ void compare_formants(Comparison& comparison, const CompareOptions& options,
                                schema::message(of_a ? of_b.error() : of_a.error()));
     return;
   }
-  constexpr double kBlackmanResolution = 1.7268;  // as in spatial/formants for linking points
+  constexpr double kBlackmanResolution = 1.7268;  // as in spatial/features/formants.cpp for linking points
   comparison.a_formants = std::move(*of_a);
   comparison.b_formants = std::move(*of_b);
   comparison.formant_resolution_per_m = kBlackmanResolution / options.spectrogram.window_m;

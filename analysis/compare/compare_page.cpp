@@ -161,7 +161,7 @@ ResultPicture coherence_picture(const Comparison& c) {
           {std::move(coherence), std::move(chance)}};
 }
 
-// A stretch in the middle, short enough to show single waves.
+// A section in the middle, short enough to show single waves.
 ResultPicture signal_picture(const Comparison& c, const ComparedNames& names) {
   const std::size_t size = std::min(c.pair.a.size(), c.pair.b.size());
   const double wave_m = 40 / std::sqrt(c.low_per_m * c.high_per_m);

@@ -27,7 +27,7 @@ struct ComparedNames {
 };
 
 /// Both spectra by band, their difference with its scatter and, if they are paired, the coherence and a
-/// stretch of both signals. A curve has at most 2,000 points: spectra are means over neighbouring bins,
+/// section of both signals. A curve has at most 2,000 points: spectra are means over neighbouring bins,
 /// signals are unchanged.
 std::vector<schema::ResultPicture> comparison_pictures(const Comparison& comparison,
                                                        const ComparedNames& names);

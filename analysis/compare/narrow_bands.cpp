@@ -12,6 +12,7 @@
 
 #include "analysis/compare/local_mean.hpp"
 #include "data-schema/base/decibels.hpp"
+#include "data-schema/base/raised_cosine.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::analysis {
@@ -48,8 +49,8 @@ Powers tapered(std::span<const double> values, std::size_t length) {
   const auto edge = static_cast<std::size_t>(kTapered * static_cast<double>(n));
   const auto weight = [&](std::size_t from_end) {
     if (from_end >= edge) return 1.0;
-    return 0.5 - 0.5 * std::cos(std::numbers::pi * (static_cast<double>(from_end) + 0.5) /
-                                static_cast<double>(edge));
+    return schema::rising_cosine(std::numbers::pi * (static_cast<double>(from_end) + 0.5) /
+                                 static_cast<double>(edge));
   };
   for (std::size_t i = 0; i < n; ++i) out[i] = weight(std::min(i, n - 1 - i)) * (values[i] - mean);
   return out;

@@ -122,7 +122,7 @@ Result<void> check_strokes(const Strokes& strokes) {
     });
     if (twin != stroke)
       return schema::fail(ErrorKind::usage,
-                          fmt::format("is of the same stretch of a recording as {}", twin->name),
+                          fmt::format("is of the same section of a recording as {}", twin->name),
                           stroke->name, "name each stroke once, on one side");
   }
   return {};

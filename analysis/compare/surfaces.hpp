@@ -64,7 +64,7 @@ struct SurfaceComparison {
 /// load explain more than three quarters of the side. different: p is at most 0.05, and the strongest window
 /// differs by the tolerance or more. Otherwise no_difference_found.
 ///
-/// Errors: usage: a tolerance that is not above 0, two textures of one stretch of a recording; unsuitable:
+/// Errors: usage: a tolerance that is not above 0, two textures of one section of a recording; unsuitable:
 /// different quantities or units, a mean of several strokes, fewer than 64 samples at steady speed, less than
 /// an octave in common, a stroke without power, measured and simulated strokes on one side.
 schema::Result<SurfaceComparison> compare_surfaces(const SurfaceSide& a, const SurfaceSide& b,

@@ -49,7 +49,7 @@ constexpr double kAroundS = 2;            // s before and behind the texture, an
 constexpr double kPlayedShare = 0.4;      // share of the time of one speed; the trays take the rest
 constexpr double kOtherUnitRatio = 31.6;  // times the displacement limit: 30 dB
 
-// A stretch of samples over time, with the positions of the finger.
+// A section of samples over time, with the positions of the finger.
 struct Stretch {
   std::vector<double> position_m;
   std::size_t first = 0, count = 0;
@@ -241,14 +241,14 @@ Result<FidelityRow> compared_row(const std::string& tray, const Texture& target,
   return row;
 }
 
-struct Wanted {
+struct FidelityTarget {
   const Texture& texture;
   const Stretch& stretch;
   spatial::Band band;
 };
 
 // Compares the displacement, and the displacement as the sensor measures it, with the target.
-Result<FidelityRow> twice_compared_row(const std::string& tray, const Wanted& target,
+Result<FidelityRow> twice_compared_row(const std::string& tray, const FidelityTarget& target,
                                        const std::vector<double>& finger_m,
                                        const std::vector<double>& seen_m) {
   const auto row_of = [&](const std::vector<double>& moved_m) -> Result<FidelityRow> {

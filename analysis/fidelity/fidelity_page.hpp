@@ -13,7 +13,7 @@ namespace tacto::analysis {
 /// The error for each speed and tray, and what was removed from the texture at each speed.
 std::vector<schema::ResultFigure> fidelity_figures(const Fidelity& fidelity);
 
-/// For each speed: the error by band of every tray, and a stretch of target and displacement (the first and
+/// For each speed: the error by band of every tray, and a section of target and displacement (the first and
 /// the last tray).
 std::vector<schema::ResultPicture> fidelity_pictures(const Fidelity& fidelity);
 

@@ -73,7 +73,7 @@ class Page final : public WebConversation {
     return done ? schema::control_reply_line("", *done) : schema::control_error_line("", done.error());
   }
   std::string receive_bytes(std::span<const std::uint8_t> bytes) override {
-    if (session_ == nullptr) return {};  // it could not begin, which the page knows
+    if (session_ == nullptr) return {};  // it could not begin; the page has shown why
     const auto taken = session_->take(bytes);
     const auto fault = session_->take_fault();
     if (taken && fault)

@@ -7,6 +7,8 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "data-schema/base/column_unit.hpp"
+
 namespace tacto::analysis {
 namespace {
 
@@ -128,14 +130,11 @@ std::size_t sign_bytes(std::string_view text) {
 
 // The unit that begins at `text`, without what it is divided by; empty if it is another word.
 std::string_view unit_at(std::string_view text) {
-  constexpr std::string_view kUnits[] = {"um", "mm", "nm", "cm", "m",  "Hz",  "kHz", "dB",
-                                         "%",  "N",  "mN", "uN", "uV", "mV",  "V",   "ns",
-                                         "us", "ms", "s",  "g",  "kg", "1/m", "1/mm"};
   const auto end = std::ranges::find_if(
       text, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)) && c != '%' && c != '/'; });
   const std::string_view word(text.begin(), end);
   const std::string_view before = word.substr(0, word.find('/', word.starts_with("1/") ? 2 : 0));
-  return std::ranges::find(kUnits, before) == std::end(kUnits) ? "" : before;
+  return before != "1" && schema::is_known_unit(before) ? before : "";
 }
 
 bool is_micro(std::string_view unit) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "data-schema/base/raised_cosine.hpp"
+
 namespace tacto::analysis {
 namespace {
 
@@ -50,7 +52,7 @@ void place_by_gauss(GridAxis& axis) {
 }
 
 double raised_cosine(double part) {
-  return 0.5 + 0.5 * std::cos(std::numbers::pi * std::clamp(part, -1.0, 1.0));
+  return schema::falling_cosine(std::numbers::pi * std::clamp(part, -1.0, 1.0));
 }
 
 class PosteriorGrid {

@@ -18,10 +18,10 @@ namespace tacto::analysis {
 /// "samples per period", "interpolation x samples per period" (for these three the error is that of the read
 /// force alone), "inverse", "inverse, amplitudes alone", "inverse delay", "look ahead", "between counts",
 /// "tick rate", "tick rate x inverse", "tick rate x delay compensation", "pyramid", "precision",
-/// "hysteresis", "loop". Errors against playback/reference over 15-500 Hz, re the target displacement; cost
-/// per tick, median CPU time of this thread; memory of the samples; latency of the tray behind the finger,
-/// for "loop" from the encoder's edge to its drive. A refused choice (an inverse with a residual over a
-/// tenth) has an error of 1 and a note. Takes about 5 s. Errors: unsuitable: prepare() cannot play the
+/// "hysteresis", "loop". Errors against playback/render/reference over 15-500 Hz, re the target displacement;
+/// cost per tick, median CPU time of this thread; memory of the samples; latency of the tray behind the
+/// finger, for "loop" from the encoder's edge to its drive. A refused choice (an inverse with a residual over
+/// a tenth) has an error of 1 and a note. Takes about 5 s. Errors: unsuitable: prepare() cannot play the
 /// texture at all.
 schema::Result<std::vector<TradeRow>> measure_realtime(const schema::Texture& texture,
                                                        const schema::Transducer& transducer,

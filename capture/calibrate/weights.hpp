@@ -12,9 +12,8 @@
 
 namespace tacto::capture {
 
-/// Standard gravity (CGPM 1901), and its uncertainty if the local value is not given: from 9.780 at the
-/// equator to 9.832 at the poles, as a rectangular distribution.
-inline constexpr double kGravity_mps2 = 9.80665;
+/// Uncertainty of standard gravity if the local value is not given: from 9.780 at the equator to 9.832 at the
+/// poles, as a rectangular distribution.
 inline constexpr double kGravityUncertainty_mps2 = 0.015;
 
 /// One known force, and the channel's mean under it.

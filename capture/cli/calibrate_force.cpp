@@ -10,6 +10,7 @@
 #include "capture/calibrate/weights.hpp"
 #include "capture/cli/calibrate_parts.hpp"
 #include "capture/cli/enter_key.hpp"
+#include "data-schema/base/quantity.hpp"
 #include "data-schema/report/report.hpp"
 #include "firmware-host/open_device.hpp"
 
@@ -111,11 +112,11 @@ double gravity_uncertainty(const CalibrateForceOptions& options, const std::vect
     return schema::parse_quantity(text.substr(0, text.find('=')), Dimension::mass).has_value();
   };
   const bool matters = !options.gravity_mps2 && std::ranges::any_of(weights, is_mass);
-  return matters ? kGravityUncertainty_mps2 / kGravity_mps2 : 0;
+  return matters ? kGravityUncertainty_mps2 / schema::kStandardGravity_mps2 : 0;
 }
 
 Result<cli::Report> by_weights(const CalibrateForceOptions& options) {
-  const double gravity_mps2 = options.gravity_mps2.value_or(kGravity_mps2);
+  const double gravity_mps2 = options.gravity_mps2.value_or(schema::kStandardGravity_mps2);
   const auto weighed = weigh(options, gravity_mps2);
   TACTO_TRY(weighed);
   const auto found = scale_by_weights(weighed->weighings, gravity_uncertainty(options, options.masses));
@@ -190,7 +191,7 @@ Result<cli::Report> by_reference(const CalibrateForceOptions& options) {
 Result<cli::Report> by_releases(const CalibrateForceOptions& options) {
   std::vector<Release> releases;
   for (const std::string& text : options.releases) {
-    const auto mass = parse_mass(text, options.gravity_mps2.value_or(kGravity_mps2));
+    const auto mass = parse_mass(text, options.gravity_mps2.value_or(schema::kStandardGravity_mps2));
     TACTO_TRY(mass);
     auto take = take_of_release(*mass, options);
     TACTO_TRY(take);
@@ -241,7 +242,8 @@ cli::Action declare_force(CLI::App& app) {
   cli::add_quantity(app, "--time", options->time_s, Dimension::time,
                     "Duration of a measurement: 3s per weight, 10s per release or with a reference");
   cli::add_quantity(app, "--gravity", options->gravity_mps2, Dimension::acceleration,
-                    "Local gravity; default: 9.80665m/s^2, with 0.15 % of uncertainty");
+                    fmt::format("Local gravity; default: {}m/s^2, with 0.15 % of uncertainty",
+                                schema::kStandardGravity_mps2));
   return [options] { return run_calibrate_force(*options); };
 }
 

@@ -9,6 +9,7 @@
 #include "capture/doctor/doctor.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/base/quantity.hpp"
+#include "data-schema/base/statistics.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/files/leftover_files.hpp"
 #include "data-schema/recording/live_recording.hpp"
@@ -156,8 +157,9 @@ Check check_round_trip(firmware_host::Device& device, std::size_t questions) {
     times_s.push_back(*time_s);
   }
   if (times_s.empty()) return {"round trip", Health::skipped, "not measured", {}};
+  const double median_s = schema::upper_median(std::span(times_s));
   std::ranges::sort(times_s);
-  const double median_s = times_s[times_s.size() / 2], late_s = times_s[times_s.size() * 99 / 100];
+  const double late_s = times_s[times_s.size() * 99 / 100];
   return judged("round trip",
                 fmt::format("median {}, 99 of 100 within {}", for_people(median_s, Dimension::time),
                             for_people(late_s, Dimension::time)),

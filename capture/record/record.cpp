@@ -44,7 +44,7 @@ double disk_left_bytes(const std::string& name) {
 }
 
 // The number of frames to record; the largest number if no time is given.
-Result<std::uint64_t> frames_wanted(const RecordRequest& request, double rate_hz) {
+Result<std::uint64_t> frames_requested(const RecordRequest& request, double rate_hz) {
   if (!request.time_s) return std::numeric_limits<std::uint64_t>::max();
   const double frames = std::floor(*request.time_s * rate_hz + 0.5);
   if (!(frames >= 1 && frames < 0x1p53))
@@ -368,7 +368,7 @@ Result<Recorded> record(Device& device, const RecordRequest& request, const Reco
   auto header = calibrated_header(device, request);
   TACTO_TRY(header);
   TACTO_TRY(check_room(request, *header));
-  const auto frames = frames_wanted(request, device.capabilities().sample_rate_hz);
+  const auto frames = frames_requested(request, device.capabilities().sample_rate_hz);
   TACTO_TRY(frames);
   auto live = schema::LiveRecording::create(request.name, std::move(*header));
   TACTO_TRY(live);

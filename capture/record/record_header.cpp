@@ -49,7 +49,7 @@ schema::Result<schema::RecordingHeader> header_for(const firmware_host::Capabili
 }
 
 std::vector<std::string> stream_warnings(const firmware_host::StreamCounts& counts,
-                                         std::uint64_t frames_wanted) {
+                                         std::uint64_t frames_requested) {
   std::vector<std::string> warnings;
   if (counts.clipped > 0)
     warnings.push_back(
@@ -61,9 +61,9 @@ std::vector<std::string> stream_warnings(const firmware_host::StreamCounts& coun
     warnings.push_back(
         fmt::format("of the device's messages {} were damaged and {} are missing; their frames are gaps",
                     counts.damaged_messages, counts.missing_messages));
-  if (counts.frames < frames_wanted)
+  if (counts.frames < frames_requested)
     warnings.push_back(
-        fmt::format("the device's stream ended after {} of {} frames", counts.frames, frames_wanted));
+        fmt::format("the device's stream ended after {} of {} frames", counts.frames, frames_requested));
   return warnings;
 }
 

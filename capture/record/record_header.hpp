@@ -18,6 +18,6 @@ schema::Result<schema::RecordingHeader> header_for(const firmware_host::Capabili
 /// Warnings for the reader of a finished recording: clipping, lost frames, an early end. Empty if there are
 /// none.
 std::vector<std::string> stream_warnings(const firmware_host::StreamCounts& counts,
-                                         std::uint64_t frames_wanted);
+                                         std::uint64_t frames_requested);
 
 }  // namespace tacto::capture

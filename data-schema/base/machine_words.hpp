@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Describes the machine and the build on which something was measured.
 #pragma once
 
 #include <string>

@@ -13,8 +13,6 @@ namespace {
 
 // In each dimension from small to large: for_people picks the largest unit that leaves the value at 1 or
 // above. Some are only read: "cm" would surprise where "12 mm" is expected.
-constexpr double kStandardGravity = 9.80665;  // m/s^2, by definition (3rd CGPM 1901; ISO 80000-3)
-
 constexpr Unit kUnits[] = {
     {"nm", Dimension::length, 1e-9},
     {"um", Dimension::length, 1e-6},
@@ -42,8 +40,8 @@ constexpr Unit kUnits[] = {
     {"m/s", Dimension::speed, 1, "_mps"},
     {"mm/s^2", Dimension::acceleration, 1e-3},
     {"m/s^2", Dimension::acceleration, 1, "_mps2"},
-    {"mg", Dimension::acceleration, 1e-3 * kStandardGravity, "", true},
-    {"g", Dimension::acceleration, kStandardGravity, "", true},
+    {"mg", Dimension::acceleration, 1e-3 * kStandardGravity_mps2, "", true},
+    {"g", Dimension::acceleration, kStandardGravity_mps2, "", true},
     {"uN", Dimension::force, 1e-6},
     {"mN", Dimension::force, 1e-3, "_mn"},
     {"N", Dimension::force, 1, "_n"},

@@ -27,6 +27,9 @@ enum class Dimension {
   share,              ///< 1, of a whole: for errors
 };
 
+/// By definition (3rd CGPM 1901; ISO 80000-3).
+inline constexpr double kStandardGravity_mps2 = 9.80665;
+
 /// A unit and its worth in the SI unit of its dimension: "mm" is {length, 1e-3}.
 struct Unit {
   std::string_view symbol;

@@ -64,7 +64,8 @@ bool is_one_line(const std::string& text) {
 
 Result<void> check_members(const ControlRequest& request) {
   if (request.verb == ControlVerb::hello && request.version.empty())
-    return bad_member("version", "hello contains no version", R"(add "version":"1.0")");
+    return bad_member("version", "hello contains no version",
+                      fmt::format(R"(add "version":"{}")", kControlVersion));
   if (request.verb == ControlVerb::load && request.file.empty())
     return bad_member("file", "load contains no file", "add the file name of a texture or scene");
   if (request.verb == ControlVerb::set && (request.number.empty() || !request.value))

@@ -4,6 +4,7 @@
 #include <exception>
 #include <stdexcept>
 
+#include "data-schema/base/format_version.hpp"
 #include "data-schema/experiment/journal.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/json/json_document.hpp"
@@ -89,7 +90,7 @@ struct EntryWriter {
   Json& body;
 
   void operator()(const RunPlanned& plan) const {
-    body["event"] = "plan", body["kind"] = "trials", body["version"] = "1.0";
+    body["event"] = "plan", body["kind"] = "trials", body["version"] = kFormatVersion;
     for (const auto& [name, member] : kPlanTexts) put_text(body, name, plan.*member);
   }
   void operator()(const AttemptBegun& begun) const {
@@ -159,6 +160,14 @@ std::optional<JournalEntry> entry_in(std::string_view line, std::size_t number) 
   return std::nullopt;
 }
 
+// Another major version may have other events: it is refused before its lines are read.
+Result<void> check_journal_version(std::string_view text, const std::string& where) {
+  const auto plan = parse_json(checked_body(text.substr(0, text.find('\n'))), {});
+  if (!plan || !plan->is_object()) return {};
+  TACTO_TRY(newer_version(text_or(*plan, "version"), where, where + ": line 1"));
+  return {};
+}
+
 }  // namespace
 
 std::string journal_line(const JournalEntry& entry, std::size_t number) {
@@ -171,6 +180,7 @@ std::string journal_line(const JournalEntry& entry, std::size_t number) {
 }
 
 Result<Journal> parse_journal(std::string_view text, const std::string& where) {
+  TACTO_TRY(check_journal_version(text, where));
   Journal journal;
   std::string_view rest = text;
   for (auto end = rest.find('\n'); end != std::string_view::npos; end = rest.find('\n')) {

@@ -49,7 +49,7 @@ Result<EventFile> EventFile::create(const std::string& path) {
   const int opened = open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
   if (opened < 0) return unwritable_log(path, errno);
   EventFile file(path, opened);
-  flock(opened, LOCK_EX | LOCK_NB);  // nobody else has the lock: the file is new
+  flock(opened, LOCK_EX | LOCK_NB);  // no other process has the lock: the file is new
   // On a file system that cannot reserve room, a full disk may leave a recording that has to be recovered.
   [[maybe_unused]] const int kept = fallocate(opened, FALLOC_FL_KEEP_SIZE, 0, kRoom);
   return file;

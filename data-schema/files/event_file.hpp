@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The file of events of a recording in progress: appended to, locked, with reserved room. Internal to this
-// folder.
+// The file of events of a recording or an experiment in progress: appended to, locked, with reserved room.
 #pragma once
 
 #include <string>

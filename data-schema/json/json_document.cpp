@@ -27,7 +27,9 @@ Result<std::string> kind_in(const Json& body, const std::string& where, std::str
   const bool named = body.is_object() && body.contains("kind") && body["kind"].is_string();
   if (!named)
     return fail(ErrorKind::malformed, "JSON without a `kind`: not a file of tactograph", where,
-                expected.empty() ? "" : fmt::format(R"(add "kind": "{}", "version": "1.0")", expected));
+                expected.empty()
+                    ? ""
+                    : fmt::format(R"(add "kind": "{}", "version": "{}")", expected, kFormatVersion));
   return body["kind"].get<std::string>();
 }
 

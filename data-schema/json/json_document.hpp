@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON documents of tactograph: the only place that uses the JSON and JSON Schema libraries. Internal to this
-// folder: its other headers show no JSON. Nothing here throws.
+// Reads JSON documents of tactograph, checks them against their schema, and writes them. Internal to
+// data-schema, because it shows JSON. Nothing here throws.
 #pragma once
 
 #include <nlohmann/json.hpp>

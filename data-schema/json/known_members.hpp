@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Members that a schema does not name: refused where they steer something, warned of and kept elsewhere.
 // Names that begin with `x_` are free for laboratories: they are kept everywhere, without a warning. Internal
-// to this folder.
+// to data-schema.
 #pragma once
 
 #include "data-schema/json/json_document.hpp"

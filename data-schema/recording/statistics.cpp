@@ -18,7 +18,7 @@ void add_frames(std::vector<Statistics>& statistics, std::span<const Channel> ch
                 std::span<const double> frames) {
   for (std::size_t c = 0; c < channels.size(); ++c)
     for (std::size_t i = c; i < frames.size(); i += channels.size())
-      statistics[c].add(frames[i] * channels[c].scale + channels[c].offset);
+      statistics[c].add(channels[c].physical(frames[i]));
 }
 
 }  // namespace

@@ -53,6 +53,8 @@ struct SessionSamples {
 struct SessionSensor {
   std::string channel, source, calibrated;
   double rate_hz = 0, scale = 1, offset = 0;
+
+  double physical(double code) const { return code * scale + offset; }
 };
 
 /// Ticks that are not in the file, and why.

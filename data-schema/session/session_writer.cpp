@@ -56,7 +56,7 @@ Result<SessionWriter> SessionWriter::create(const std::string& path, const Sessi
   if (opened < 0) return unwritable_session(path, errno);
   SessionWriter writer(path, opened);
   writer.folders_ = std::move(folders);
-  flock(opened, LOCK_EX | LOCK_NB);  // nobody else has the lock: the file is new
+  flock(opened, LOCK_EX | LOCK_NB);  // no other process has the lock: the file is new
   if (const auto begun = writer.append(sealed_block(BlockType::header, *text), kFreeOfTicks); !begun) {
     unlink(path.c_str());
     return forward_error(begun);

@@ -26,8 +26,8 @@ struct BandPoint {
 struct TextureSource {
   std::string recording;         ///< file name of the recording's sidecar
   std::string recording_sha256;  ///< of its WAV
-  double from_s = 0, to_s = 0;   ///< the stretch of the recording
-  int stroke = 0;                ///< 1-based; 0 if a stretch was selected by time
+  double from_s = 0, to_s = 0;   ///< the section of the recording
+  int stroke = 0;                ///< 1-based; 0 if a section was selected by time
   std::string method;            ///< "hermite"
   std::string filter;            ///< "fourier", "butterworth", "none"
   std::string edges;             ///< "treated", "none"
@@ -44,7 +44,7 @@ struct TextureSource {
   bool finger_up = false;                               ///< by that force
   /// Of a band-pass along position, if that is the filter; then the band in Hz is all that was recorded.
   std::optional<double> low_per_m = std::nullopt, high_per_m = std::nullopt;
-  int interpolated_frames = 0;  ///< missing frames of the stretch that were filled
+  int interpolated_frames = 0;  ///< missing frames of the section that were filled
 };
 
 /// One of the strokes that were averaged.

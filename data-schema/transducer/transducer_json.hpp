@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The transducer's members as JSON, for its own file and for the recordings that embed it. Internal to this
-// folder.
+// The transducer's members as JSON, for its own file and for recordings and sessions that embed it. Internal
+// to data-schema.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The length of a WAV in its header and in the file: libsndfile silently reads what is there. Internal to
-// this folder.
+// The length of a WAV in its header and in the file: libsndfile silently reads what is there.
 #pragma once
 
 #include <cstdint>

@@ -113,16 +113,16 @@ bool Client::described() const {
 
 Result<void> Client::check_version() const {
   const wire::Welcome& device = description_.welcome;
-  const bool newer = device.major > wire::kProtocolMajor;
-  if (!newer && device.major >= wire::kOldestMajor) return {};
+  if (device.major == wire::kProtocolMajor) return {};
   return fail(ErrorKind::unsupported_version,
               fmt::format("'{}' (serial {}, firmware {}) uses version {}.{} of the protocol; {} uses {}.{}",
                           device.name, device.serial, device.firmware, device.major, device.minor, kCreator,
                           wire::kProtocolMajor, wire::kProtocolMinor),
               where_,
-              newer ? "update tactograph"
-                    : "make the firmware again with ./bootstrap firmware and flash it "
-                      "(firmware-host/boards/README.md)");
+              device.major > wire::kProtocolMajor
+                  ? "update tactograph"
+                  : "make the firmware again with ./bootstrap firmware and flash it "
+                    "(firmware-host/boards/README.md)");
 }
 
 Result<std::uint32_t> Client::send(const Encoder& encode) {

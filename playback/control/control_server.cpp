@@ -26,14 +26,17 @@ constexpr std::size_t kMostEvents = 1000;  // between two serve(); usual are ten
 const schema::Error kTooLong{ErrorKind::malformed,
                              fmt::format("a line has more than {} bytes", schema::kMostControlLine),
                              "request", "end each request with a newline"};
+std::string hello_text(std::string_view more = {}) {
+  return fmt::format(R"(send {{"request":"hello","version":"{}"{}}})", schema::kControlVersion, more);
+}
+
 const schema::Error kNotGreeted{ErrorKind::usage, "the first request must be hello", "request",
-                                R"(send {"request":"hello","version":"1.0"} first)"};
+                                hello_text() + " first"};
 const schema::Error kSilent{ErrorKind::usage, "no hello came within 5 s of connecting", "request",
-                            R"(send {"request":"hello","version":"1.0"} first)"};
-const schema::Error kUnknown{ErrorKind::usage, "by TCP the first request must be hello with the token",
-                             "request",
-                             R"(send {"request":"hello","version":"1.0","token":"..."}: the token is the )"
-                             "first line of the file that tcp_token_file names"};
+                            hello_text() + " first"};
+const schema::Error kUnknown{
+    ErrorKind::usage, "by TCP the first request must be hello with the token", "request",
+    hello_text(R"(,"token":"...")") + ": the token is the first line of the file that tcp_token_file names"};
 const schema::Error kOnlyWatches{ErrorKind::usage, "a connection that watches accepts no requests", "request",
                                  "open another connection"};
 

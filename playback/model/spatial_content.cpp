@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "data-schema/base/raised_cosine.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::playback {
@@ -20,7 +21,7 @@ std::vector<double> energies(const schema::SpaceSignal& texture, std::size_t len
   std::vector<double> windowed(length, 0.0);
   for (std::size_t i = 0; i < texture.values.size(); ++i)
     windowed[i] = (texture.values[i] - mean) *
-                  (0.5 - 0.5 * std::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / n));
+                  schema::rising_cosine(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / n);
   spatial::RealFft fft(length);
   std::vector<std::complex<double>> bins(fft.bins());
   fft.forward(windowed, bins);

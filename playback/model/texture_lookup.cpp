@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "data-schema/base/raised_cosine.hpp"
 #include "spatial/dsp/resample/hermite.hpp"
 
 namespace tacto::playback {
@@ -45,7 +46,7 @@ double TextureLookup::interpolated(double grid_position) const {
 
 double TextureLookup::fade(double distance_to_end_m) const {
   if (distance_to_end_m >= fade_m_) return 1;
-  return 0.5 - 0.5 * std::cos(std::numbers::pi * distance_to_end_m / fade_m_);
+  return schema::rising_cosine(std::numbers::pi * distance_to_end_m / fade_m_);
 }
 
 }  // namespace tacto::playback

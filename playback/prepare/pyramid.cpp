@@ -6,6 +6,7 @@
 #include <complex>
 #include <numbers>
 
+#include "data-schema/base/raised_cosine.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::playback {
@@ -90,7 +91,7 @@ core::ProfileScale scale_of_levels(const LevelGrid& grid, const PyramidShape& sh
 
 double passed(double per_m, double pass_per_m) {
   const double beside = (per_m / pass_per_m - 1) / (kStopOverPass - 1);
-  return 0.5 + 0.5 * std::cos(std::numbers::pi * std::clamp(beside, 0.0, 1.0));
+  return schema::falling_cosine(std::numbers::pi * std::clamp(beside, 0.0, 1.0));
 }
 
 std::vector<double> level_of(std::span<const std::complex<double>> spectrum, std::size_t length,

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "data-schema/base/raised_cosine.hpp"
 #include "playback/model/texture_lookup.hpp"
 
 namespace tacto::playback {
@@ -90,7 +91,7 @@ schema::SpaceSignal looped(schema::SpaceSignal signal, double seam_m) {
   const std::size_t seam = samples_of_seam(signal, seam_m), left = values.size() - seam;
   for (std::size_t i = 0; i < seam; ++i) {
     const double u = static_cast<double>(i) / static_cast<double>(seam);
-    const double weight = 0.5 - 0.5 * std::cos(std::numbers::pi * u);
+    const double weight = schema::rising_cosine(std::numbers::pi * u);
     values[i] = weight * values[i] + (1 - weight) * values[left + i];
   }
   values.resize(left);

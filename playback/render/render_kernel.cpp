@@ -109,7 +109,7 @@ Result<void> check_read(const Prepared& prepared, const FingerPath& path, const 
 
 }  // namespace
 
-// Beyond that count the kernel's output is zero (core/profile.cpp).
+// Beyond that count the kernel's output is zero (core/kernel/profile.cpp).
 Result<void> check_counts(const FingerPath& path, const RenderOptions& o) {
   constexpr double kFarthestCount = 1 << 29;
   const double farthest_m = farthest_of(path);

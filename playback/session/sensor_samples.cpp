@@ -18,7 +18,7 @@ void SensorSamples::take(const schema::SessionSamples& samples) {
     const SensorFrame frame{
         samples.first_frame + i,
         1e-9 * static_cast<double>(samples.time_ns) + static_cast<double>(i) / sensor.rate_hz,
-        samples.codes[i] * sensor.scale + sensor.offset};
+        sensor.physical(samples.codes[i])};
     const bool grows =
         frames_.empty() || (frame.number > frames_.back().number && frame.time_s > frames_.back().time_s);
     sound_ = sound_ && grows;

@@ -144,11 +144,11 @@ std::string note_of_none(const StrokeFinder& strokes, bool lost) {
       schema::length_for_people(schema::kShortestStroke_m));
 }
 
-std::string note_of_unwanted(std::uint64_t unwanted, std::uint64_t all) {
+std::string note_of_no_target(std::uint64_t without_target, std::uint64_t all) {
   return fmt::format(
       "in {} of {} strokes the target is zero (no texture there, or textures that cancel each other): they "
       "have no target RMS and no error",
-      unwanted, all);
+      without_target, all);
 }
 
 std::string note_of_unmeasured(std::uint64_t unmeasured, std::uint64_t all) {
@@ -199,10 +199,10 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
   const std::uint64_t end = overview->lost_at.value_or(UINT64_MAX);
   if (end == 0) return report;
   LimitTally whole;
-  std::uint64_t unwanted = 0, unmeasured = 0;
+  std::uint64_t without_target = 0, unmeasured = 0;
   SpeedOfStrokes speed;
   BlockJudge judge(*overview, blocks, [&](const StrokeSums& sums) {
-    unwanted += target_is_zero(sums);
+    without_target += target_is_zero(sums);
     unmeasured += !sums.measured_known;
     speed.add(sums);
     keep_stroke(stroke_of(sums), listener, report);
@@ -218,7 +218,7 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
   report.notes.insert(report.notes.end(), notes.begin(), notes.end());
   if (report.stroke_count == 0)
     report.notes.push_back(note_of_none(judge.strokes(), overview->lost_at.has_value()));
-  if (unwanted > 0) report.notes.push_back(note_of_unwanted(unwanted, report.stroke_count));
+  if (without_target > 0) report.notes.push_back(note_of_no_target(without_target, report.stroke_count));
   if (overview->header.sensor && unmeasured > 0)
     report.notes.push_back(note_of_unmeasured(unmeasured, report.stroke_count));
   if (*unknown) report.notes.push_back(schema::message(**unknown));

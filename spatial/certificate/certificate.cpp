@@ -187,7 +187,7 @@ Result<void> check_ratio(const std::vector<StrokeLines>& strokes, double ratio) 
   for (const StrokeLines& stroke : strokes) {
     if (!(stroke.space.high() > stroke.space.low()))
       return schema::fail(ErrorKind::unsuitable, "its valid band is too narrow for a spectrum", stroke.name,
-                          "make it from a stretch with a steadier speed");
+                          "make it from a section with a steadier speed");
     const double needed = 1 / (1 - stroke.space.resolution() / stroke.space.high());
     if (needed < least) {
       least = needed;

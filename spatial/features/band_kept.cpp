@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "data-schema/base/raised_cosine.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 #include "spatial/features/steady_part.hpp"
 
@@ -31,7 +32,7 @@ std::vector<PowerAt> reassigned_powers(const schema::SpaceSignal& signal) {
   std::vector<double> windowed(count), sloped(count);
   for (std::size_t n = 0; n < count; ++n) {
     const double value = signal.values[n] - mean, angle = turn * static_cast<double>(n);
-    windowed[n] = value * (0.5 - 0.5 * std::cos(angle));
+    windowed[n] = value * schema::rising_cosine(angle);
     sloped[n] = value * 0.5 * std::sin(angle) / length_m;  // h' / (2 pi)
   }
   std::vector<std::complex<double>> under_window(fft.bins()), under_slope(fft.bins());

@@ -130,7 +130,7 @@ Result<Description> describe(const Texture& texture, const DescriptionOptions& o
   if (!(description.low_per_m < description.high_per_m))
     return schema::fail(ErrorKind::unsuitable,
                         "no frequency band is valid along the whole part at steady speed", "texture",
-                        "make it from a stretch with a steadier speed, or use a longer --window");
+                        "make it from a section with a steadier speed, or use a longer --window");
   add_spectrum(description, WelchSpectrum(part.texture.signal.values, texture.signal.pitch_m, *window));
   return description;
 }

@@ -9,7 +9,7 @@ namespace tacto::spatial {
 /// Largest factor, up or down, between the speed and its median along the texture.
 inline constexpr double kSteadyFactor = 1.25;
 
-/// The longest stretch of a texture at steady speed, and its position.
+/// The longest section of a texture at steady speed, and its position.
 struct SteadyPart {
   double from_m = 0, to_m = 0;
   schema::Texture texture;  ///< samples and band from from_m on (now position 0); other members unchanged

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stroke or stretch that is to become a texture.
+// A stroke or section that is to become a texture.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace tacto::spatial {
 
 struct StrokeJob {
   Stroke stroke;
-  int number = 0;    ///< 0 for a stretch
+  int number = 0;    ///< 0 for a section
   std::string stem;  ///< of the texture
 };
 

@@ -26,7 +26,7 @@ struct PositionFacts {
   double resolution_m() const { return std::max(quantum_m, 2.4 * noise_m); }
 };
 
-/// Estimates quantum and noise from stretches of positions, in any order.
+/// Estimates quantum and noise from sections of positions, in any order.
 class PositionSteps {
  public:
   explicit PositionSteps(double sample_rate_hz);

@@ -21,7 +21,7 @@ std::vector<double> smoothed_speed(std::span<const double> position_m, double sa
 /// resolutions at that speed if that is longer, at most 0.5 s. In samples, at least 2.
 std::size_t speed_window(double resolution_m, double speed_mps, double sample_rate_hz);
 
-/// Calls visit(frame, speed_mps, position_m) for the frames `within` a stretch without gaps, in order; the
+/// Calls visit(frame, speed_mps, position_m) for the frames `within` a section without gaps, in order; the
 /// speeds are those of smoothed_speed() over the whole stretch. Memory: a chunk and a window. Errors: of
 /// reading.
 template <class Visit>

@@ -22,7 +22,7 @@ constexpr double kReboundShare = 0.05;  // of the distance before or after: a re
 
 using Strokes = std::vector<Stroke>;
 
-// A stretch without gaps, searched with one window.
+// A section without gaps, searched with one window.
 class Search {
  public:
   Search(const ReadFrames& read, FrameRange stretch, double sample_rate_hz, const PositionFacts& facts,
@@ -149,7 +149,7 @@ schema::Result<Strokes> Search::strokes() const {
   return found;
 }
 
-// The parts of a stretch between its strokes, a pause away from them.
+// The parts of a section between its strokes, a pause away from them.
 std::vector<FrameRange> between(FrameRange stretch, const Strokes& strokes, std::size_t pause) {
   std::vector<FrameRange> rest;
   std::size_t begin = stretch.begin;

@@ -27,7 +27,7 @@ struct Stroke {
   double advance_m() const { return direction * (to_m - from_m); }
 };
 
-/// The stretches of a record between its gaps. `gaps` are sorted by frame, as in recordings.
+/// The sections of a record between its gaps. `gaps` are sorted by frame, as in recordings.
 std::vector<FrameRange> pieces_between_gaps(std::size_t frames, std::span<const schema::Gap> gaps);
 
 /// Strokes by time, by the rule of stroke_rule.hpp; the only place where it is applied to a recording. A
@@ -46,7 +46,7 @@ struct FoundStrokes {
 schema::Result<FoundStrokes> find_strokes(const ReadFrames& read, std::span<const FrameRange> pieces,
                                           double sample_rate_hz, const PositionFacts& facts);
 
-/// The largest movement back within a stretch, against its direction: 0 for a monotone one. m.
+/// The largest movement back within a section, against its direction: 0 for a monotone one. m.
 double backward_travel(std::span<const double> position_m, int direction);
 
 }  // namespace tacto::spatial

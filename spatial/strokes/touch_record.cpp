@@ -19,7 +19,7 @@ using schema::ErrorKind;
 
 constexpr std::size_t kShortFrames = 1000000;
 
-// The largest movement back in a stretch that still counts as one direction: a few counts, or the finger's
+// The largest movement back in a section that still counts as one direction: a few counts, or the finger's
 // elastic rebound.
 constexpr double kBackwardQuanta = 4;
 constexpr double kBackwardSigmas = 10;  // noise between the largest and the smallest of 1e6 values

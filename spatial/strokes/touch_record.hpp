@@ -21,7 +21,7 @@
 
 namespace tacto::spatial {
 
-/// Reads stretches of the position. A short record (1e6 frames, 8 MB) is held in memory; of a longer one only
+/// Reads sections of the position. A short record (1e6 frames, 8 MB) is held in memory; of a longer one only
 /// what was requested. The source must outlive it.
 class PositionTrack {
  public:
@@ -80,7 +80,7 @@ class TouchRecord {
   const std::vector<PositionJump>& jumps() const { return jumps_; }
   /// "the position jumps by 1 m from sample 3999 to 4000, at 0.4 s ..."
   schema::Error refusal(const PositionJump& jump) const;
-  /// The stretches between gaps that were not filled.
+  /// The sections between gaps that were not filled.
   const std::vector<FrameRange>& pieces() const { return pieces_; }
   /// Short gaps that were filled (bridge_short_gaps). Frames here are numbered with the filled ones.
   const std::vector<FrameRange>& filled() const { return filled_; }

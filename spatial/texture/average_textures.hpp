@@ -27,7 +27,7 @@ class TextureAverager {
   std::vector<double> mean() const;
   double first() const { return static_cast<double>(first_); }
 
-  /// Mean and standard deviation (over n - 1) of the longest stretch that at least half of the strokes, and
+  /// Mean and standard deviation (over n - 1) of the longest section that at least half of the strokes, and
   /// 2, cover. The valid band is the one common to all strokes there. Errors: unsuitable, for fewer than 2
   /// strokes, or if no 2 of them overlap.
   schema::Result<schema::Texture> finish(const std::string& align) const;

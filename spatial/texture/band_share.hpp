@@ -17,7 +17,7 @@ struct BandShare {
   double inside = 0;  ///< in their middle half, without the steps of the force at start and stop
 };
 
-/// Without an equaliser. Each stretch between two gaps is filtered once. Errors: unsuitable, if frames are
+/// Without an equaliser. Each section between two gaps is filtered once. Errors: unsuitable, if frames are
 /// missing inside a stroke; of check(filter, sample_rate_hz); of reading.
 schema::Result<BandShare> band_share(const TouchRecord& record, const TimeFilter& filter,
                                      std::span<const Stroke> strokes);

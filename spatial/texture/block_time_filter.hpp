@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The band-pass of a stretch of any length, fed in chunks: the result of filter_in_time() in bounded memory.
+// The band-pass of a section of any length, fed in chunks: the result of filter_in_time() in bounded memory.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 namespace tacto::spatial {
 
 /// Input in chunks of any size; filtered values follow in order with a lag, and after finish() as many have
-/// been returned as were fed. The sizes of the chunks do not change a single bit. One stretch without gaps at
+/// been returned as were fed. The sizes of the chunks do not change a single bit. One section without gaps at
 /// a time; after finish() the next may begin. Lag and memory: of BlockFourierFilter and BlockZeroPhase (15 to
 /// 500 Hz at 10 kHz: 39 s and 10 MB, or 8 s and 5 MB); FilterMethod::none without an equaliser has no lag.
 /// Plain truncation (Edges::none with FilterMethod::fourier, or with an equaliser) transforms the whole
@@ -29,7 +29,7 @@ class BlockTimeFilter {
   BlockTimeFilter& operator=(BlockTimeFilter&&) noexcept;
   ~BlockTimeFilter();
 
-  /// Continues the stretch with `values` and appends to `out` what is ready. Errors: unsuitable, for a value
+  /// Continues the section with `values` and appends to `out` what is ready. Errors: unsuitable, for a value
   /// that is not a finite number, with its index in the stretch; the stretch is then discarded.
   schema::Result<void> push(std::span<const double> values, std::vector<double>& out);
   /// Ends the stretch and appends the rest of it.

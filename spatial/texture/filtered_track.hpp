@@ -12,14 +12,14 @@
 
 namespace tacto::spatial {
 
-/// Filters each stretch between two gaps as a whole and holds only the requested frames. Requests ordered by
+/// Filters each section between two gaps as a whole and holds only the requested frames. Requests ordered by
 /// time are fast; a request before the last one filters its piece again from the beginning. The source must
 /// outlive it.
 class FilteredTrack {
  public:
   FilteredTrack(TouchSource& source, double sample_rate_hz, const TimeFilter& filter, SpectralGain equaliser);
 
-  /// Filtered values of `frames`, which are inside `piece`, a stretch between two gaps; valid until the next
+  /// Filtered values of `frames`, which are inside `piece`, a section between two gaps; valid until the next
   /// call. Errors: of check(filter, sample_rate_hz); of reading.
   schema::Result<std::span<const double>> values(FrameRange piece, FrameRange frames);
 

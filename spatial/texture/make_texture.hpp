@@ -47,9 +47,9 @@ class TextureMaker {
   /// Whether a stroke lasts at least one period of the band's lowest frequency; make() refuses a shorter one.
   bool is_long_enough(const Stroke& stroke) const;
 
-  /// The texture of a stroke or stretch of record(). The whole piece between two gaps is filtered, then the
+  /// The texture of a stroke or section of record(). The whole piece between two gaps is filtered, then the
   /// stroke is resampled; strokes ordered by time are fast. Position 0 is a multiple of the pitch on the
-  /// bench. `number` is stored as the stroke's number, 0 for a stretch. `shift_m` is added to its positions
+  /// bench. `number` is stored as the stroke's number, 0 for a section. `shift_m` is added to its positions
   /// on the bench. Errors: unsuitable, for a stroke that a jump of the position cuts, for one shorter than
   /// one period of the lowest frequency, for one so slow that its whole band is above the highest frequency
   /// of the grid, and of grid_along(); of reading.

@@ -52,7 +52,7 @@ inline constexpr double kMostEqualiserGain = 10;
 /// 2011, H_s.)
 SpectralGain equaliser(const schema::Transducer& transducer);
 
-/// Filters a stretch without gaps and equalises it if there is an equaliser (inside the band; in one
+/// Filters a section without gaps and equalises it if there is an equaliser (inside the band; in one
 /// transform with FilterMethod::fourier). The result has the same number of values and unit. Errors: of
 /// check(); unsuitable, for a value that is not a finite number, with its index.
 schema::Result<std::vector<double>> filter_in_time(std::span<const double> values, double sample_rate_hz,

@@ -297,7 +297,7 @@ def bad_input_is_one_clear_error():
     # 6 periods at each of 60 frequencies from 1 mHz on, evenly by octaves, plus 0.05 s each: 28,746 s.
     endless = tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", "--low", "1mHz", code=5)[1]
     assert "takes 2.87e+04 s" in endless and "begin at" in endless, endless
-    assert "half the device's rate" in tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", "--high", "5kHz", code=5)[1]
+    assert tacto.error_of("identify", "-d", "sim:tray_sensor=on", "-o", "bad", "--high", "5kHz", code=5)["where"] == "--high"
     # Additional whole turns do no harm: values are complex.
     write_table("turns.csv", f, h)
     table = np.loadtxt("turns.csv", delimiter=",", skiprows=1)
@@ -394,7 +394,7 @@ def a_sensor_by_a_known_force():
         assert found["gain_v_per_n"]["high_of_95"] / found["gain_v_per_n"]["low_of_95"] < 1.005, found
     tacto.run("record", "-d", "sim:force=chirp,force_amplitude=0.3N,force_high=900Hz", "-o", "loud", "--time", "2s")
     _, err = tacto.run("identify", "loud", *channels, "-o", "none", code=5)
-    assert "tangential_force" in err and "use a smaller drive" in err, err
+    assert "tangential_force" in err, err
     tacto.run("identify", "tones", "--input", "net_force", "--output-channel", "tangential_force", "-o", "slow", code=5)
 
 

@@ -144,11 +144,11 @@ def check_budgets(folder):
     error = np.sqrt(np.mean((values[inside] - read) ** 2) / np.mean(read**2))
     print(f"fast against exact: {100 * error:.3f} % of the RMS, promised {chosen['guaranteed_error_percent']:.3f} %")
     assert error < 0.01
-    assert "smallest is" in tacto.run("spatial", "C", "-o", "no", "--max-error", "0.00001ppm", cwd=folder, code=5)[1]
+    assert "%" in tacto.error_of("spatial", "C", "-o", "no", "--max-error", "0.00001ppm", cwd=folder, code=5)["what"]
     assert not (folder / "no.texture.json").exists()
-    assert "no unit" in tacto.run("spatial", "C", "-o", "no", "--max-error", "0.1", cwd=folder, code=2)[1]
-    assert "--explain needs a choice" in tacto.run("spatial", "C", "-o", "no", "--explain", cwd=folder, code=2)[1]
-    assert "band with an upper limit" in tacto.run("spatial", "C", "-o", "no", "--quality", "fast", "--band", "off", cwd=folder, code=2)[1]
+    assert "'0.1'" in tacto.error_of("spatial", "C", "-o", "no", "--max-error", "0.1", cwd=folder, code=2)["what"]
+    assert "--explain" in tacto.error_of("spatial", "C", "-o", "no", "--explain", cwd=folder, code=2)["where"]
+    assert tacto.error_of("spatial", "C", "-o", "no", "--quality", "fast", "--band", "off", cwd=folder, code=2)["where"] == "--quality"
     cells = tacto.run_json("spectrogram", "C", "-o", "C.nc", "--quality", "exact", "--explain", cwd=folder)
     assert cells["resolution"] == "whole" and len(cells["chosen"][0]["tried"]) == 2
 
@@ -164,8 +164,8 @@ def check_calibration(folder):
     tacto.run("trade", "--calibrate", "-o", "here.trade.json", cwd=folder)
     tacto.run("validate", "here.trade.json", cwd=folder)
     assert "resampling" in tacto.run("info", "here.trade.json", cwd=folder)[0]
-    assert "is not a name" in tacto.run("trade", "--calibrate", "-o", "here.csv", cwd=folder, code=2)[1]
-    assert "without a texture" in tacto.run("trade", "C", "--calibrate", cwd=folder, code=2)[1]
+    assert tacto.error_of("trade", "--calibrate", "-o", "here.csv", cwd=folder, code=2)["where"] == "here.csv"
+    assert tacto.error_of("trade", "C", "--calibrate", cwd=folder, code=2)["where"] == "C"
     assert "--half" in tacto.run("trade", "--calibrate", "--half", "offline", cwd=folder, code=2)[1]
     table["machine"] = "Cray-1, f77"
     own.write_text(json.dumps(table))
@@ -174,8 +174,7 @@ def check_calibration(folder):
     for choice in table["choices"]:  # a table without errors promises nothing
         choice["errors"] = []
     own.write_text(json.dumps(table))
-    _, said = tacto.run("spatial", "C", "-o", "no", "--quality", "fast", cwd=folder, code=5)
-    assert "the table of measured choices" in said and "--calibrate" in said, said
+    assert "--calibrate" in tacto.error_of("spatial", "C", "-o", "no", "--quality", "fast", cwd=folder, code=5)["remedy"]
     for content in ("{}", '{"kind": "trade", "version'):
         own.write_text(content)
         _, said = tacto.run("spatial", "C", "-o", "no", "--quality", "fast", cwd=folder, code=4)
@@ -205,8 +204,8 @@ def check_refusals(folder):
     assert "100 to 300 Hz" in tacto.run(*realtime, "--unfit-transducer", "-o", "again.csv", cwd=folder)[1]
     tacto.run("trade", "even", "-o", "no.html", cwd=folder, code=5)
     assert not (folder / "no.html").exists()
-    assert "named twice" in tacto.run("trade", "C", "-o", "a.csv", "-o", "./a.csv", cwd=folder, code=2)[1]
-    assert "at most 10%" in tacto.run("spatial", "C", "-o", "no", "--max-error", "1000%", cwd=folder, code=2)[1]
+    assert "a.csv" in tacto.error_of("trade", "C", "-o", "a.csv", "-o", "./a.csv", cwd=folder, code=2)["where"]
+    assert tacto.error_of("spatial", "C", "-o", "no", "--max-error", "1000%", cwd=folder, code=2)["where"] == "--max-error"
 
 
 def the_trade_and_what_chooses_by_it():
@@ -217,7 +216,7 @@ def the_trade_and_what_chooses_by_it():
     check_budgets(folder)
     check_calibration(folder)
     check_refusals(folder)
-    assert "no texture is named" in tacto.run("trade", code=2)[1]
+    tacto.error_of("trade", code=2)
 
 
 if __name__ == "__main__":

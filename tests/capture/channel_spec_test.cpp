@@ -62,8 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 struct RefusedSpec {
   const char* text;
-  const char* says;  // both in the message
-  const char* names;
+  const char* quotes;  // what is wrong, as it was written
+  const char* names;   // what would fit
 };
 
 class RefusedSpecs : public testing::TestWithParam<RefusedSpec> {};
@@ -73,40 +73,36 @@ TEST_P(RefusedSpecs, SayWhatWouldFit) {
   ASSERT_FALSE(spec);
   EXPECT_EQ(spec.error().kind, schema::ErrorKind::usage);
   const std::string message = schema::message(spec.error());
-  EXPECT_NE(message.find(GetParam().says), std::string::npos) << message;
+  EXPECT_NE(message.find(GetParam().quotes), std::string::npos) << message;
   EXPECT_NE(message.find(GetParam().names), std::string::npos) << message;
   EXPECT_NE(message.find(GetParam().text), std::string::npos) << message;
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, RefusedSpecs,
-    testing::Values(RefusedSpec{"position=y*1mm", "no column 'y'", "1 'lateral_V', 2 'normal_V'"},
-                    RefusedSpec{"position=0*1mm", "no column '0'", "the columns are"},
-                    RefusedSpec{"position=10*1mm", "no column '10'", "8, 9 '3'"},
-                    RefusedSpec{"position=1x*1mm", "no column '1x'", "the columns are"},
-                    RefusedSpec{"position=*1mm", "no column ''", "the columns are"},
-                    RefusedSpec{"net_force=F*1N", "several columns have the name 'F'",
-                                "by its number: 1 'lateral_V'"},
-                    RefusedSpec{"position=1", "has no unit", "nm, um, mm, cm, m"},
-                    RefusedSpec{"position=1*0.5", "has no unit", "nm, um, mm, cm, m"},
-                    RefusedSpec{"position=1*0.5+3", "has no unit", "nm, um, mm, cm, m"},
-                    RefusedSpec{"position=1*1furlong", "'furlong' is not a known unit", "nm, um, mm, cm, m"},
-                    RefusedSpec{"position=1*1N", "'N' is a unit of another quantity", "nm, um, mm, cm, m"},
-                    RefusedSpec{"signal=1*2N", "'N' is a unit of another quantity", "1"},
-                    RefusedSpec{"position=1*0mm", "scale of 0", ""},
-                    RefusedSpec{"position=1**2mm", "is not a scale with an offset", "COLUMN*SCALE"},
-                    RefusedSpec{"position=1*nan", "is not a known unit", ""},
-                    RefusedSpec{"position=1*1e999mm", "is not a scale with an offset", ""},
-                    RefusedSpec{"position=1*1+mm", "is not a scale with an offset", ""},
-                    RefusedSpec{"position", "has no column", "QUANTITY=COLUMN"},
-                    RefusedSpec{"place=1*1mm", "'place' is not a known quantity", "tangential_force"},
-                    RefusedSpec{"a:place=1*1mm", "'place' is not a known quantity", "tangential_force"},
-                    RefusedSpec{":position=1*1mm", "empty label", ""}));
+    testing::Values(RefusedSpec{"position=y*1mm", "'y'", "1 'lateral_V', 2 'normal_V'"},
+                    RefusedSpec{"position=0*1mm", "'0'", "'lateral_V'"},
+                    RefusedSpec{"position=10*1mm", "'10'", "8, 9 '3'"},
+                    RefusedSpec{"position=1x*1mm", "'1x'", "'lateral_V'"},
+                    RefusedSpec{"position=*1mm", "''", "'lateral_V'"},
+                    RefusedSpec{"net_force=F*1N", "'F'", "1 'lateral_V'"},
+                    RefusedSpec{"position=1", "", "nm, um, mm, cm, m"},
+                    RefusedSpec{"position=1*0.5", "", "nm, um, mm, cm, m"},
+                    RefusedSpec{"position=1*0.5+3", "", "nm, um, mm, cm, m"},
+                    RefusedSpec{"position=1*1furlong", "'furlong'", "nm, um, mm, cm, m"},
+                    RefusedSpec{"position=1*1N", "'N'", "nm, um, mm, cm, m"},
+                    RefusedSpec{"signal=1*2N", "'N'", "1"}, RefusedSpec{"position=1*0mm", "0", ""},
+                    RefusedSpec{"position=1**2mm", "", "COLUMN*SCALE"},
+                    RefusedSpec{"position=1*nan", "nan", ""}, RefusedSpec{"position=1*1e999mm", "", ""},
+                    RefusedSpec{"position=1*1+mm", "", ""}, RefusedSpec{"position", "", "QUANTITY=COLUMN"},
+                    RefusedSpec{"place=1*1mm", "'place'", "tangential_force"},
+                    RefusedSpec{"a:place=1*1mm", "'place'", "tangential_force"},
+                    RefusedSpec{":position=1*1mm", "", ""}));
 
 TEST(ChannelSpec, TwoChannelsOfOneNameAreRefused) {
   const auto specs = parse_channels({"normal_force=1*1N", "normal_force=2*1N"}, kColumns);
   ASSERT_FALSE(specs);
-  EXPECT_NE(schema::message(specs.error()).find("two channels 'normal_force'"), std::string::npos);
+  EXPECT_NE(schema::message(specs.error()).find("'normal_force'"), std::string::npos);
   EXPECT_TRUE(parse_channels({"normal_force=1*1N", "left:normal_force=2*1N"}, kColumns));
 }
 
@@ -134,10 +130,10 @@ TEST(ColumnUnits, AreTakenWhereNoneIsGiven) {
 TEST(ColumnUnits, ThatAreNotKnownOrOfAnotherQuantityAreSaid) {
   const auto counts = parse_channel("position=n", kWithUnits);
   ASSERT_FALSE(counts);
-  EXPECT_NE(counts.error().what.find("'counts', is not known"), std::string::npos) << counts.error().what;
+  EXPECT_NE(counts.error().what.find("'counts'"), std::string::npos) << counts.error().what;
   const auto force = parse_channel("position=Force", kWithUnits);
   ASSERT_FALSE(force);
-  EXPECT_NE(force.error().what.find("'mN', is of another quantity"), std::string::npos) << force.error().what;
+  EXPECT_NE(force.error().what.find("'mN'"), std::string::npos) << force.error().what;
 }
 
 }  // namespace

@@ -107,13 +107,13 @@ def formants_are_listed_stored_and_drawn():
     raw = pathlib.Path("raw.csv")
     raw.write_text("time,force\n0,1\n")
     for verb in ("formants", "describe", "spectrogram"):
-        _, said = tacto.run(verb, "oak", "-o", "raw.csv", code=2)
-        assert "not overwritten" in said and raw.read_text() == "time,force\n0,1\n", said
+        assert tacto.error_of(verb, "oak", "-o", "raw.csv", code=2)["where"] == "raw.csv"
+        assert raw.read_text() == "time,force\n0,1\n", verb
     foreign = pathlib.Path("weather.nc")
     for content in (b"CDF\x01 of somebody's", b"no netCDF at all"):
         foreign.write_bytes(content)
-        _, said = tacto.run("spectrogram", "oak", "-o", "weather.nc", code=2)
-        assert "not overwritten" in said and foreign.read_bytes() == content, said
+        assert tacto.error_of("spectrogram", "oak", "-o", "weather.nc", code=2)["where"] == "weather.nc"
+        assert foreign.read_bytes() == content
     foreign.write_bytes(b"")  # not a file of tactograph
     for _ in range(2):        # --force replaces a file of the same kind
         tacto.run("spectrogram", "oak", "-o", "weather.nc", "--force")

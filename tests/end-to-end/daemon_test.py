@@ -26,6 +26,7 @@ import tacto
 
 DAEMON = os.environ.get("TACTOGRAPHD", "tactographd")
 SLOW = 4 if tacto.SANITIZED else 1
+USAGE, MALFORMED, UNSUITABLE = 1, 3, 4  # the member `fault` of an error (CONTROL.md)
 
 
 def write_texture(stem, force_n, pitch_m=10e-6):
@@ -143,7 +144,7 @@ def from_load_to_a_session_that_replays():
         watcher = Client()
         assert watcher.must(request="watch")["state"] == "idle"
         _, said = ctl("play", code=2)
-        assert "can't play in the state idle" in said and "arm first" in said, said
+        assert "idle" in said and "arm" in said, said
         assert "500" in ctl("load", "oak", "--gain", "0.5mm/N")[0]
         ctl("arm")
         time.sleep(0.2)
@@ -341,10 +342,9 @@ def a_thousand_clients():
         refused = 0
         for one in crowd:
             with contextlib.suppress(BlockingIOError, OSError):
-                refused += b"clients are connected already" in one.recv(4096)
+                refused += b'"ok":false' in one.recv(4096).replace(b" ", b"")
         assert refused > 950, refused
-        _, said = tacto.run("ctl", "status", "--socket", "control", code=5)  # the message of the daemon
-        assert "clients are connected already" in said, said
+        tacto.run("ctl", "status", "--socket", "control", code=5)  # the error of the daemon
         assert "armed" in tacto.run("ctl", "stop", "--socket", "control")[0]
         client.must(request="play")
         for one in crowd:
@@ -363,7 +363,7 @@ def permissions():
             os.chmod(".", 0o755)
             done = subprocess.run(["setpriv", "--reuid", "65534", "--clear-groups", tacto.COMMAND, "ctl", "status", "--socket",
                                    "control"], capture_output=True, text=True)
-            assert done.returncode == 3 and "this user may not connect" in done.stderr, done
+            assert done.returncode == 3 and "control" in done.stderr, done
     prepare_files(socket_group="no-such-group")
     second = subprocess.run([DAEMON, "--config", "tactographd.json"], capture_output=True, text=True, timeout=20)
     assert second.returncode == 2 and "no-such-group" in second.stderr, second
@@ -393,7 +393,7 @@ def full_disk_for_the_log():
         told = [e for e in watcher.rest_of_events() if e["event"] == "recorder"]
         # The first event may come before a tick is lost: the failure is known, and the buffer is not yet full.
         counts = [event["lost_ticks"] for event in told]
-        assert told and all("cannot be written" in event["why"] for event in told), told
+        assert told and all(event["why"] for event in told), told
         assert counts == sorted(counts) and counts[-1] > 0, told
         said = [process.stderr.readline() for _ in range(5)]
         assert any("ticks are not in the session" in line for line in said), said
@@ -550,7 +550,7 @@ def a_texture_changed_in_mid_play():
     after = next(i + 1 for i, s in enumerate(described["strokes"]) if s["from_s"] > (changed + 500) / 2000 and s["to_s"] < again / 2000)
     found = tacto.run_json("compare", session, "cork", "--stroke-a", str(after))
     assert abs(found["gain"] - 1) < 0.1, found
-    assert "is not the texture that the session played" in tacto.run("compare", session, "oak", "--stroke-a", str(after), code=5)[1]
+    tacto.error_of("compare", session, "oak", "--stroke-a", str(after), code=5)
     assert len(told) == 2 and told[0].endswith("cork.texture.json") and "over 0.1 s: " in told[0], told
     ticks = ticks_of(session)
     drive = ticks["drive_v"]
@@ -581,7 +581,8 @@ def a_path_that_ends_where_it_began_is_a_loop():
         assert terminal_shows(5, 20, "ctl", "top", "--time", "0.2s", "--socket", "control"), "a small terminal"
         for ignored in (["arm", "--gain", "1mm/N"], ["play", "--at", "3mm"], ["gain", "50%", "--inverse", "gain"], ["stop", "--save"],
                         ["status", "--time", "1s"], ["top", "--time", "-1s"]):
-            assert "does not accept" in tacto.run("ctl", *ignored, "--socket", "control", code=2)[1], ignored
+            error = tacto.error_of("ctl", *ignored, "--socket", "control", code=2)
+            assert error["where"] == "command line" and f"'{ignored[0]}'" in error["what"], (ignored, error)
         client = Client()
         session = begin(client)
         time.sleep(3.6)
@@ -614,7 +615,7 @@ def what_was_chosen_is_told():
         for misplaced in ({"request": "arm", "playback": {"energy_rms_v": 0.1}}, {"request": "gain", "gain": 1, "playback": {}},
                           {"request": "load", "file": "s", "gain": 0.5}, {"request": "play", "gain": 0.01}, {"request": "status", "save": True}):
             refused = client.ask(**misplaced)
-            assert not refused["ok"] and "does not accept" in refused["error"]["what"] and "send it with" in refused["error"]["remedy"], refused
+            assert not refused["ok"] and refused["error"]["fault"] == MALFORMED and refused["error"]["where"].split("#/")[-1] in misplaced, refused
         session = client.must(request="arm")["session"]
         client.must(request="play")
         time.sleep(0.7)
@@ -658,7 +659,7 @@ def a_promise_in_the_configuration():
     prepare_files(quality="balanced", max_tick_ns=1)
     with daemon():
         answer = Client().ask(request="load", file="oak")
-        assert not answer["ok"] and "the fastest needs" in answer["error"]["what"], answer
+        assert not answer["ok"] and answer["error"]["fault"] == UNSUITABLE, answer
     prepare_files(quality="balanced", max_error=0.01)
     refused = subprocess.run([DAEMON, "--config", "tactographd.json"], capture_output=True, text=True, timeout=20)
     assert refused.returncode == 4, refused
@@ -677,7 +678,7 @@ def a_load_holds_up_nobody():
         assert other.must(request="stop")["state"] == "armed"
         for request in ({"request": "load", "file": "oak"}, {"request": "arm"}):
             answer = other.ask(**request)
-            assert not answer["ok"] and "is being prepared" in answer["error"]["what"], answer
+            assert not answer["ok"] and answer["error"]["fault"] == USAGE, answer
         assert not select.select([client.socket], [], [], 0)[0], "the load was answered before"
         process.send_signal(signal.SIGTERM)
         process.wait(timeout=1 * SLOW)
@@ -759,9 +760,9 @@ def by_tcp_with_a_token():
         # `client` has half of 8; two keep a place for `stop`.
         silent = [Client(greet=False, port=port) for _ in range(5)]
         assert Client().must(request="status")["state"] == "playing"
-        said = [json.loads(one.lines.readline())["error"]["what"] for one in silent]
-        assert all("no hello came" in what or "connected already" in what for what in said), said
-        assert "no hello came" in said[0] and client.wait_for("playing"), "who says nothing goes after 5 s"
+        said = [json.loads(one.lines.readline())["error"]["fault"] for one in silent]
+        assert set(said) <= {USAGE, UNSUITABLE} and said[0] == USAGE, said  # no hello came; too many clients
+        assert client.wait_for("playing"), "who says nothing goes after 5 s"
         client.must(request="disarm")
         addresses = subprocess.run(["ss", "-Hltn", f"sport = :{port}"], capture_output=True, text=True) if shutil.which("ss") else None
         assert addresses is None or f"127.0.0.1:{port}" in addresses.stdout and "0.0.0.0:%d" % port not in addresses.stdout, addresses
@@ -899,7 +900,7 @@ def play_that_is_watched():
                 expect_a_soft_fall(status["session"], why)
         session = begin(client)
         play = subprocess.run(command, capture_output=True, text=True, timeout=20)
-        assert play.returncode == 2 and "can't arm in the state playing" in play.stderr, play
+        assert play.returncode == 2 and "playing" in play.stderr, play
         assert client.must(request="status")["session"] == session
         client.must(request="disarm")
 

@@ -22,8 +22,8 @@ def refused_then_forced(outputs, *command):
     """Runs the same command twice: the second is refused before it changes anything, and replaces with --force."""
     tacto.run(*command)
     before = {name: pathlib.Path(name).read_bytes() for name in outputs}
-    _, said = tacto.run(*command, code=USAGE)
-    assert "exists already" in said and "--force" in said, said
+    error = tacto.error_of(*command, code=USAGE)
+    assert error["where"] in before and "--force" in error["remedy"], error
     assert before == {name: pathlib.Path(name).read_bytes() for name in outputs}, command
     for name in outputs:
         os.utime(name, (0, 0))
@@ -86,11 +86,10 @@ def recordings_are_never_replaced():
             assert "belongs to a recording or texture" in said, said
         assert pathlib.Path(name).read_bytes() == before
     for verb in ("describe", "formants"):
-        _, said = tacto.run(verb, "oak", "--force", "-o", "rec.json", code=USAGE)
-        assert "is a recording" in said, said
+        assert tacto.error_of(verb, "oak", "--force", "-o", "rec.json", code=USAGE)["where"] == "rec.json"
     pathlib.Path("notes.json").write_text("{torn")
-    _, said = tacto.run("describe", "oak", "--force", "-o", "notes.json", code=USAGE)
-    assert "not overwritten" in said and pathlib.Path("notes.json").read_text() == "{torn", said
+    assert tacto.error_of("describe", "oak", "--force", "-o", "notes.json", code=USAGE)["where"] == "notes.json"
+    assert pathlib.Path("notes.json").read_text() == "{torn"
 
 
 def missing_folders_are_made_and_none_is_left_empty():

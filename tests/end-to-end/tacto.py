@@ -42,6 +42,13 @@ def run_json(*arguments, code=0, cwd=None):
     return json.loads(run(*arguments, "--json", code=code, cwd=cwd)[0])
 
 
+def error_of(*arguments, code, cwd=None):
+    """Runs `tactograph ARGUMENTS --json`, checks the exit code, returns the error: what, where, remedy, exit_code."""
+    error = json.loads(run(*arguments, "--json", code=code, cwd=cwd)[1].strip().splitlines()[-1])
+    assert error["exit_code"] == code, error
+    return error
+
+
 def play_on_host(*arguments, name):
     """`play ... --loop host -o NAME` on an emulated device in real time; returns its JSON, or nothing if this machine
     is too slow.

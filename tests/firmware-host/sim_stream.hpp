@@ -20,8 +20,7 @@ struct SimStream {
     const std::size_t channels = capabilities.channels.size();
     const auto& channel = capabilities.channels[index];
     std::vector<double> values;
-    for (std::size_t i = index; i < codes.size(); i += channels)
-      values.push_back(codes[i] * channel.scale + channel.offset);
+    for (std::size_t i = index; i < codes.size(); i += channels) values.push_back(channel.physical(codes[i]));
     return values;
   }
 };

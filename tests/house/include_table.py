@@ -68,7 +68,7 @@ MAY_INCLUDE = {
         "job picture spectrogram texture transform}",
     "spatial/dsp/filter": "data-schema/base spatial/{dsp/fourier dsp/resample}",
     "spatial/dsp/fourier": "data-schema/files",
-    "spatial/dsp/resample": "spatial/dsp/fourier",
+    "spatial/dsp/resample": "data-schema/base spatial/dsp/fourier",
     "spatial/dsp/spectrum": "data-schema/base spatial/{dsp/filter dsp/fourier dsp/resample}",
     "spatial/features":
         "data-schema/{base spectrogram texture} spatial/{dsp/filter dsp/fourier numbers spectrogram texture}",

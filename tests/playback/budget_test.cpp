@@ -113,7 +113,7 @@ TEST_F(Budgets, RefuseWithTheBestThereIs) {
   EXPECT_NE(refusal({{{}, 0.5}, {}}), "");
   EXPECT_NE(refusal({{{}, 1e-3}, -1}), "");
   options_.most_samples = 100;
-  EXPECT_NE(refusal({{{}, 1e-2}, {}}).find("the memory holds 100"), std::string::npos);
+  EXPECT_NE(refusal({{{}, 1e-2}, {}}).find(" 100"), std::string::npos);
 }
 
 // The error that a refusal suggests is possible.

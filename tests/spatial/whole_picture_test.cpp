@@ -44,7 +44,7 @@ std::string words_of(const std::string& svg) {
 
 TEST(WholePicture, LongTitlesAndBadgesWrap) {
   const std::string title =
-      "The middle of the stretch that is compared, of a texture with a name that is far too long";
+      "The middle of the section that is compared, of a texture with a name that is far too long";
   const LineFigure figure = one_curve(title, kBywhat);
   for (const auto& svg : {to_svg(figure), to_page_svg(figure)}) {
     ASSERT_TRUE(svg);

@@ -67,7 +67,7 @@ class ExactForce {
   std::map<std::size_t, double> known_;
 };
 
-// The exact texture of one stroke, a stretch of grid points at a time.
+// The exact texture of one stroke, a section of grid points at a time.
 class ExactTexture {
  public:
   ExactTexture(const TextureMaker& maker, const Stroke& stroke, ExactForce& force)

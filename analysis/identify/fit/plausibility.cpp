@@ -9,6 +9,7 @@
 #include "analysis/identify/fit/starting_values.hpp"
 #include "analysis/identify/measure/angles.hpp"
 #include "analysis/identify/measure/hold.hpp"
+#include "data-schema/base/decibels.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -173,7 +174,8 @@ Result<void> check_levels(const ResponseFit& fit, const schema::Transducer& base
   const double unit_si = fit.data.table_unit_si;
   if (!fit.misfit.found || !(unit_si > 0)) return {};
   BodeData levels = changed(fit.data, [&](auto h) {
-    return std::polar(unit_si * std::pow(10, std::min(std::abs(h) / unit_si, kLoudest) / 20), std::arg(h));
+    return std::polar(unit_si * schema::amplitude_of_db(std::min(std::abs(h) / unit_si, kLoudest)),
+                      std::arg(h));
   });
   levels.noise.clear();
   levels.noise_from_residuals = false;

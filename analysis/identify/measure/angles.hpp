@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Angles: radians per turn, degrees per radian, and the unwrapped phase of a curve.
 #pragma once
 
 #include <complex>

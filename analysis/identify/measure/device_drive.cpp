@@ -131,7 +131,7 @@ class Run {
     const std::size_t frames = client_.samples().take(codes_);
     const schema::Channel& tray = about_.channels[channel_];
     for (std::size_t i = 0; i < frames; ++i)
-      displacement_m_.push_back(codes_[i * channels + channel_] * tray.scale + tray.offset);
+      displacement_m_.push_back(tray.physical(codes_[i * channels + channel_]));
     if (!first_frame_s_ && client_.last_arrival())
       first_frame_s_ = client_.last_arrival()->device_s -
                        static_cast<double>(client_.last_arrival()->frame) / about_.sample_rate_hz;

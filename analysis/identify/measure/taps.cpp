@@ -9,6 +9,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "data-schema/base/statistics.hpp"
+
 namespace tacto::analysis {
 namespace {
 
@@ -51,7 +53,7 @@ Spread spread_of(const std::vector<double>& values) {
 }
 
 double rms_of(const VectorXd& x) {
-  return x.norm() / std::sqrt(static_cast<double>(x.size()));
+  return schema::rms_of({x.data(), static_cast<std::size_t>(x.size())});
 }
 
 // The ringing of a tap without its baseline, at a quarter of the rate.

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "data-schema/base/raised_cosine.hpp"
 #include "data-schema/base/statistics.hpp"
 #include "firmware-host/sim/physics/spline_noise.hpp"
 #include "playback/model/hysteresis_inverse.hpp"
@@ -119,7 +120,7 @@ std::vector<double> between_ends(const std::vector<double>& values, const Prepar
   std::vector<double> inner(values.begin() + skipped, values.end() - skipped);
   const auto n = static_cast<double>(inner.size());
   for (std::size_t i = 0; i < inner.size(); ++i)
-    inner[i] *= 1 - std::cos(2 * std::numbers::pi * static_cast<double>(i) / n);
+    inner[i] *= 2 * schema::rising_cosine(2 * std::numbers::pi * static_cast<double>(i) / n);
   return inner;
 }
 

@@ -8,7 +8,6 @@ namespace tacto::wire {
 
 inline constexpr uint8_t kProtocolMajor = 1;
 inline constexpr uint8_t kProtocolMinor = 0;
-inline constexpr uint8_t kOldestMajor = 1;  ///< the oldest that this side supports
 
 inline constexpr uint8_t kSync0 = 0xA5, kSync1 = 0x54;
 inline constexpr size_t kHeaderSize = 12, kCheckSize = 4;

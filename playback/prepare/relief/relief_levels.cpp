@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "data-schema/base/raised_cosine.hpp"
 #include "firmware-host/core/scene/relief.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
 #include "playback/prepare/relief/relief_coefficients.hpp"
@@ -98,7 +99,7 @@ std::size_t coefficients_of(const std::vector<LevelPlan>& plans) {
 }
 
 double passed(double part) {
-  return 0.5 + 0.5 * std::cos(std::numbers::pi * std::clamp((part - kPassed) / (1 - kPassed), 0.0, 1.0));
+  return schema::falling_cosine(std::numbers::pi * std::clamp((part - kPassed) / (1 - kPassed), 0.0, 1.0));
 }
 
 // Of the B-spline in the middle of its three coefficients, for cosine k.

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "data-schema/base/raised_cosine.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::playback {
@@ -19,7 +20,7 @@ constexpr double kReadingMargin = 2.2;
 constexpr std::size_t kMostReadings = std::size_t{1} << 24;
 
 double rising(double u) {
-  return 0.5 - 0.5 * std::cos(std::numbers::pi * u);
+  return schema::rising_cosine(std::numbers::pi * u);
 }
 
 double mean_of(std::span<const double> values) {

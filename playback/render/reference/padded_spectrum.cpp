@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "data-schema/base/raised_cosine.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::playback {
@@ -41,7 +42,7 @@ void keep_band(PaddedSpectrum& spectrum, const spatial::Band& band) {
     const double frequency_hz = spectrum.frequency_hz(k);
     const double beside = std::max((band.low_hz - frequency_hz) / (kLowSkirt * band.low_hz),
                                    (frequency_hz - band.high_hz) / (kHighSkirt * band.high_hz));
-    spectrum.bins[k] *= 0.5 + 0.5 * std::cos(std::numbers::pi * std::clamp(beside, 0.0, 1.0));
+    spectrum.bins[k] *= schema::falling_cosine(std::numbers::pi * std::clamp(beside, 0.0, 1.0));
   }
 }
 

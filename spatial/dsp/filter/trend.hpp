@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The least-squares straight line of a stretch of samples, and their largest distance from the mean.
+// The least-squares straight line of a section of samples, and their largest distance from the mean.
 #pragma once
 
 #include <span>

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "data-schema/base/decibels.hpp"
 #include "spatial/dsp/fourier/simd_clones.hpp"
 
 namespace tacto::spatial {
@@ -101,7 +102,7 @@ constexpr double kLeastRate = 2.5;
 
 HalfBand::HalfBand(double passed, double error) {
   assert(passed > 0 && passed < 0.25 && error > 0);
-  const double attenuation_db = -20 * std::log10(error), shape = kaiser_shape(attenuation_db);
+  const double attenuation_db = -schema::amplitude_db(error), shape = kaiser_shape(attenuation_db);
   const double taps = kaiser_taps(attenuation_db, 0.5 - 2 * passed);
   const auto count = static_cast<std::size_t>(std::ceil((taps + 1) / 4));
   const double reach = 2 * static_cast<double>(count);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "data-schema/base/raised_cosine.hpp"
+
 namespace tacto::spatial {
 
 std::vector<double> blackman(std::size_t length) {
@@ -19,7 +21,7 @@ std::vector<double> hann(std::size_t length) {
   std::vector<double> window(length);
   for (std::size_t n = 0; n < length; ++n)
     window[n] =
-        0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(length));
+        schema::rising_cosine(2 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(length));
   return window;
 }
 
