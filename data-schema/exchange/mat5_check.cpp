@@ -27,12 +27,12 @@ enum Type : std::uint32_t { kInt32 = 5, kUint32 = 6, kMatrix = 14, kCompressed =
 enum Class : std::uint32_t { kCell = 1, kStruct, kObject, kChar, kSparse, kDouble, kUint64 = 15 };
 
 // The bytes of a number of a storage type; 0 for one that holds no numbers.
-std::uint64_t bytes_of(std::uint32_t type) {
+std::uint64_t number_bytes(std::uint32_t type) {
   constexpr std::array<std::uint8_t, 14> kBytes = {0, 1, 1, 2, 2, 4, 4, 4, 0, 8, 0, 0, 8, 8};
   return type < kBytes.size() ? kBytes[type] : 0;
 }
 
-std::uint64_t padded(std::uint64_t bytes) {
+std::uint64_t padded_to_8(std::uint64_t bytes) {
   return (bytes + 7) / 8 * 8;
 }
 
@@ -181,14 +181,14 @@ class Check {
       return tag;
     }
     tag.bytes = word(raw.data() + 4);
-    if (padded(tag.bytes) > left)
+    if (padded_to_8(tag.bytes) > left)
       return broken(fmt::format("has an element of {} bytes in an array with {} left", tag.bytes, left));
     return tag;
   }
   Result<void> skip(Bytes& bytes, const Tag& tag, std::uint64_t& left) {
     if (tag.is_small) return {};
-    if (!bytes.skip(padded(tag.bytes))) return broken("has an array that ends early");
-    left -= padded(tag.bytes);
+    if (!bytes.skip(padded_to_8(tag.bytes))) return broken("has an array that ends early");
+    left -= padded_to_8(tag.bytes);
     return {};
   }
   Result<Tag> skipped(Bytes& bytes, std::uint64_t& left) {
@@ -208,7 +208,7 @@ class Check {
     std::array<unsigned char, kMost> raw = {};
     std::copy_n(element->small.begin(), element->small.size(), raw.begin());
     if (!element->is_small) {
-      const std::uint64_t all = padded(element->bytes);
+      const std::uint64_t all = padded_to_8(element->bytes);
       if (!bytes.take(std::span(raw).first(all))) return broken("has an array that ends early");
       left -= all;
     }
@@ -219,7 +219,7 @@ class Check {
   Result<void> numbers(Bytes& bytes, std::uint64_t& left, std::uint64_t count) {
     const auto element = skipped(bytes, left);
     TACTO_TRY(element);
-    const std::uint64_t each = bytes_of(element->type);
+    const std::uint64_t each = number_bytes(element->type);
     if (each == 0 || element->bytes % each != 0 || element->bytes / each != count)
       return broken(fmt::format("has an array of {} numbers in {} bytes of type {}", count, element->bytes,
                                 element->type));
@@ -232,9 +232,9 @@ class Check {
       TACTO_TRY(element);
       if (element->type != kMatrix || element->is_small) return broken("has a part that is no array");
       TACTO_TRY(matrix(bytes, element->bytes, depth + 1));
-      const std::uint64_t pad = padded(element->bytes) - element->bytes;
+      const std::uint64_t pad = padded_to_8(element->bytes) - element->bytes;
       if (!bytes.skip(pad)) return broken("has an array that ends early");
-      left -= padded(element->bytes);
+      left -= padded_to_8(element->bytes);
     }
     return {};
   }
@@ -290,14 +290,14 @@ class Check {
   bool swapped_ = false;
 };
 
-struct CloseFile {
+struct CloseMat5 {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
 }  // namespace
 
 Result<void> check_mat5(const std::string& path) {
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rbe"));
+  const std::unique_ptr<std::FILE, CloseMat5> file(std::fopen(path.c_str(), "rbe"));
   if (!file || fseeko(file.get(), 0, SEEK_END) != 0)
     return fail(ErrorKind::not_found, "cannot be read", path);
   const off_t size = ftello(file.get());

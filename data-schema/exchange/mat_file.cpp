@@ -125,7 +125,7 @@ std::uint64_t count_of(const matvar_t& array) {
   return count;
 }
 
-std::string size_of(const matvar_t& array) {
+std::string size_words(const matvar_t& array) {
   return dims_of(array).empty() ? "0x0" : fmt::format("{}", fmt::join(dims_of(array), "x"));
 }
 
@@ -273,7 +273,7 @@ Result<MatContents> mat_contents(const std::string& path) {
     ++variables;
     if (next->name == nullptr) continue;
     for_each_array(**functions, *next, next->name, [&](const std::string& name, const matvar_t& array) {
-      contents.arrays.push_back({name, class_of(array), size_of(array), refusal_of(array)});
+      contents.arrays.push_back({name, class_of(array), size_words(array), refusal_of(array)});
       if (contents.arrays.back().refusal.empty()) add_columns(contents, name, array);
     });
   }
@@ -340,11 +340,11 @@ struct MatWriter::State {
   }
   template <class Number>
   Result<void> put(const std::string& name, std::span<const Number> values, std::size_t columns) {
-    constexpr bool kDouble = sizeof(Number) == sizeof(double);
+    constexpr bool kIsDouble = sizeof(Number) == sizeof(double);
     std::size_t dims[2] = {values.size() / columns, columns};
     // matio does not change the numbers; MAT_F_DONT_COPY_DATA leaves them the caller's.
-    return write(functions->variable(free_name(name).c_str(), kDouble ? MAT_C_DOUBLE : MAT_C_SINGLE,
-                                     kDouble ? MAT_T_DOUBLE : MAT_T_SINGLE, 2, dims,
+    return write(functions->variable(free_name(name).c_str(), kIsDouble ? MAT_C_DOUBLE : MAT_C_SINGLE,
+                                     kIsDouble ? MAT_T_DOUBLE : MAT_T_SINGLE, 2, dims,
                                      const_cast<Number*>(values.data()), MAT_F_DONT_COPY_DATA));
   }
   // A member: copied by matio, and freed with its struct.
