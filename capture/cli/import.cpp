@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 
 #include "capture/cli/verbs.hpp"
 #include "capture/import/height_map_import.hpp"
 #include "capture/import/height_profile.hpp"
+#include "capture/import/import_plan.hpp"
 #include "data-schema/height/height_map.hpp"
 #include "data-schema/report/progress.hpp"
 #include "data-schema/report/report.hpp"
@@ -34,18 +36,19 @@ double parsed_percent(const std::string& text) {
 
 void declare_data(CLI::App& app, ImportRequest& request) {
   app.add_option("FILE", request.file,
-                 "CSV table, sound file that libsndfile reads (WAV, FLAC, OGG ...), a measured profile "
+                 "CSV table, MATLAB file (version 5 or 7.3; without other options: lists what it has), sound "
+                 "file that libsndfile reads (WAV, FLAC, OGG ...), a measured profile "
                  "(XML), or a height "
                  "map (greyscale PNG with 16 bits)")
       ->required();
   app.add_option("-o,--output", request.name,
                  "Name of the recording: NAME.wav and NAME.json; of a height map: NAME.height.nc, also from "
                  "a profile if "
-                 "written in full")
-      ->required();
+                 "written in full");
   app.add_option("--channel", request.channels,
                  "A channel, QUANTITY=COLUMN*SCALE+OFFSET and a unit (default: that of the column); repeat "
-                 "for each. COLUMN: header name or number from 1; LABEL:QUANTITY for a second channel of a "
+                 "for each. COLUMN: header name or number from 1, of a MATLAB file data.force or 'acc(:,2)'; "
+                 "LABEL:QUANTITY for a second channel of a "
                  "quantity. Mono audio needs none: it is a signal")
       ->allow_extra_args(false);
   app.add_option("--skip", request.skip_lines,
@@ -191,7 +194,28 @@ schema::Result<cli::Report> run_height_map(const ImportRequest& request) {
   return report.add("next", fmt::format("tactograph info {}", cli::shell_word(path)));
 }
 
+// What a MATLAB file has; no other file is opened without an output.
+schema::Result<cli::Report> list_contents(const ImportRequest& request) {
+  const auto source = open_source(request.file);
+  if (!source && source.error().kind != schema::ErrorKind::unsuitable) return schema::forward_error(source);
+  if (!source || !source->mat || !request.channels.empty())
+    return schema::fail(schema::ErrorKind::usage, "is required", "--output", "add -o and a name");
+  std::vector<cli::Report> rows;
+  for (const schema::MatArray& array : source->mat->arrays) {
+    cli::Report row;
+    row.add("name", array.name).add("class", array.class_name).add("size", array.size);
+    rows.push_back(std::move(row.add("not_imported", array.refusal)));
+  }
+  cli::Report report;
+  report.add("source", request.file).add("format", source->format).add("arrays", rows);
+  if (source->columns.empty()) return report;
+  const std::string name = std::filesystem::path(request.file).stem().string();
+  return report.add("next", fmt::format("tactograph import {} -o {} {}", cli::shell_word(request.file),
+                                        cli::shell_word(name), example_options(*source)));
+}
+
 schema::Result<cli::Report> run_import(const ImportRequest& request) {
+  if (request.name.empty()) return list_contents(request);
   if (is_height_map_request(request)) return run_height_map(request);
   if (request.full_height_m || request.allow_8bit)
     return schema::fail(schema::ErrorKind::usage, "--height and --allow-8bit are for a PNG", request.file);
@@ -223,6 +247,7 @@ const cli::Verb kImportVerb{
     "40mm/s\n"
     "  tactograph import run7.lvm -o run7 --time-column X_Value*1s --channel acceleration=Voltage*0.5g "
     "--mask-outliers\n"
+    "  tactograph import trial.mat -o trial --rate 10kHz --channel tangential_force=data.force*1N\n"
     "  tactograph import tap.flac -o tap\n"
     "  tactograph import edm.xml -o edm\n"
     "  tactograph import profile.csv -o profile --channel position=x*1mm --channel height=z*1um\n"

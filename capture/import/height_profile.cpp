@@ -151,9 +151,9 @@ Result<HeightProfile> read_profile_table(const ImportRequest& request,
                                          const std::function<void(double)>& progress) {
   const auto source = open_source(request.file, request.skip_lines);
   TACTO_TRY(source);
-  if (!source->csv)
+  if (!source->csv && !source->mat)
     return fail(ErrorKind::unsuitable, "is not a table", request.file,
-                "a profile must be a CSV table or XML");
+                "a profile must be a CSV table, a MATLAB file or XML");
   const auto columns = columns_of(request, *source);
   TACTO_TRY(columns);
   auto table = read_table(*source, *columns, progress);

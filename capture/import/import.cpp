@@ -180,6 +180,7 @@ Import::Import(const ImportRequest& request, ImportPlan plan, Progress progress)
     plan_.source.csv->unknown_remedy =
         "unknown values are not filled in: --mask-outliers makes gaps of their rows";
   }
+  plan_.source.unknown_as_nan = request.mask_outliers;
   choose_derived();
 }
 

@@ -67,23 +67,50 @@ Result<void> check_clock(const ImportRequest& request, const Source& source) {
               "add " + clock_example(source));
 }
 
-// The first column with a unit of force, which needs no unit in the option; otherwise the first column.
+// The first column; of a MATLAB file the first of the longest ones.
+std::size_t example_column(const Source& source) {
+  if (!source.mat) return 0;
+  const auto longest = std::ranges::max_element(source.mat->columns, {}, &schema::MatColumn::rows);
+  return static_cast<std::size_t>(longest - source.mat->columns.begin());
+}
+
+// The first column with a unit of force, which needs no unit in the option; otherwise an example.
 std::string force_example(const Source& source) {
   for (std::size_t i = 0; i < source.units.size(); ++i) {
     const auto unit = schema::known_unit(source.units[i], schema::Dimension::force);
     if (unit && unit->dimension == schema::Dimension::force) return "tangential_force=" + typed(source, i);
   }
-  return fmt::format("tangential_force={}*1N", typed(source, 0));
+  return fmt::format("tangential_force={}*1N", typed(source, example_column(source)));
 }
 
 tl::unexpected<schema::Error> no_channels(const Source& source) {
-  const std::string clock = source.rate_hz           ? ""
-                            : time_column_of(source) ? clock_example(source) + " "
-                                                     : "--rate 10kHz ";
+  if (source.columns.empty())
+    return fail(ErrorKind::unsuitable, "has no array of real numbers", source.file,
+                "see what it has with 'tactograph import FILE', without other options");
   return fail(
       ErrorKind::usage,
       "the channels of the columns are not known; the columns are: " + columns_in_words(source.columns),
-      source.file, fmt::format("give them, for example {}--channel '{}'", clock, force_example(source)));
+      source.file, "give them, for example " + example_options(source));
+}
+
+// An option that names an array of a MATLAB file that has no columns: the reason. `text` begins with the
+// name.
+Result<void> check_refused(const Source& source, std::string_view text) {
+  if (!source.mat) return {};
+  for (const schema::MatArray& array : source.mat->arrays) {
+    if (array.refusal.empty() || !text.starts_with(array.name)) continue;
+    const std::string_view rest = text.substr(array.name.size());
+    if (rest.empty() || std::string_view("*+-({").find(rest[0]) != std::string_view::npos)
+      return fail(ErrorKind::unsuitable, array.refusal, fmt::format("{}: {}", source.file, array.name),
+                  "import takes full arrays of real numbers: in MATLAB save such a one");
+  }
+  return {};
+}
+
+Result<void> check_refused(const ImportRequest& request, const Source& source) {
+  for (const std::string& channel : request.channels)
+    TACTO_TRY(check_refused(source, std::string_view(channel).substr(channel.find('=') + 1)));
+  return check_refused(source, request.time_column);
 }
 
 // Integer codes are scaled as in an audio editor, to -1 to 1.
@@ -94,7 +121,7 @@ ChannelSpec whole_signal(const Source& source) {
 
 Result<std::vector<ChannelSpec>> choose_channels(const ImportRequest& request, const Source& source) {
   if (!request.channels.empty()) return parse_channels(request.channels, {source.columns, source.units});
-  if (source.csv || source.columns.size() > 1) return no_channels(source);
+  if (source.csv || source.mat || source.columns.size() != 1) return no_channels(source);
   return std::vector{whole_signal(source)};
 }
 
@@ -159,6 +186,7 @@ Result<ImportPlan> plan_import(const ImportRequest& request) {
   TACTO_TRY(check_without_source(request));
   auto source = open_source(request.file, request.skip_lines);
   TACTO_TRY(source);
+  TACTO_TRY(check_refused(request, *source));
   auto channels = choose_channels(request, *source);
   TACTO_TRY(channels);
   ImportPlan plan{std::move(*source), std::move(*channels), std::nullopt};
@@ -169,6 +197,13 @@ Result<ImportPlan> plan_import(const ImportRequest& request) {
   TACTO_TRY(time);
   plan.time = *time;
   return plan;
+}
+
+std::string example_options(const Source& source) {
+  const std::string clock = source.rate_hz           ? ""
+                            : time_column_of(source) ? clock_example(source) + " "
+                                                     : "--rate 10kHz ";
+  return fmt::format("{}--channel '{}'", clock, force_example(source));
 }
 
 std::optional<std::size_t> time_column_of(const Source& source) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "capture/import/import.hpp"
@@ -22,6 +23,10 @@ struct ImportPlan {
 /// Opens the source and checks the request against it and against the output path. Errors: as import_file(),
 /// except those in the data.
 schema::Result<ImportPlan> plan_import(const ImportRequest& request);
+
+/// Options for import as an example that can be typed: "--time-column 't_s' --channel
+/// 'tangential_force=f*1N'".
+std::string example_options(const Source& source);
 
 /// The first column with a unit of time, if there is one.
 std::optional<std::size_t> time_column_of(const Source& source);

@@ -15,6 +15,8 @@
 #include <utility>
 
 #include "capture/table/input_file.hpp"
+#include "data-schema/base/column_unit.hpp"
+#include "data-schema/exchange/mat_file.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/wav/wav.hpp"
 
@@ -52,7 +54,9 @@ tl::unexpected<schema::Error> not_finite(const Source& source, std::uint64_t fra
                                          double value) {
   return fail(ErrorKind::malformed, std::isnan(value) ? "is NaN" : "is infinite",
               fmt::format("{}: sample {}, {}", source.file, frame, column_in_words(source.columns, column)),
-              "import the part without it: unknown values are not filled in");
+              source.mat && std::isnan(value)
+                  ? "unknown values are not filled in: --mask-outliers makes gaps of their rows"
+                  : "import the part without it: unknown values are not filled in");
 }
 
 // Appends the chosen columns of a piece whose first frame is `first`.
@@ -76,7 +80,8 @@ Result<Source> open_audio(const std::string& file) {
   if (!reader) {
     schema::Error error = reader.error();
     if (error.remedy.empty())
-      error.remedy = "import reads tables (CSV) and the formats of libsndfile (WAV, FLAC, OGG ...)";
+      error.remedy =
+          "import reads tables (CSV), MATLAB files and the formats of libsndfile (WAV, FLAC, OGG ...)";
     return tl::unexpected(error);
   }
   const schema::WavInfo& info = reader->info();
@@ -112,6 +117,45 @@ Result<Source> open_sound(const std::string& file, std::size_t skip) {
   return fail(ErrorKind::usage, "has no lines to skip", file, "omit --skip: this is not a table");
 }
 
+Result<Source> open_mat(const std::string& file, std::size_t skip) {
+  if (skip > 0)
+    return fail(ErrorKind::usage, "has no lines to skip", file, "omit --skip: this is a MATLAB file");
+  auto contents = schema::mat_contents(file);
+  TACTO_TRY(contents);
+  Source source{file, {}, std::nullopt, std::nullopt, 0, contents->format};
+  for (const schema::MatColumn& column : contents->columns) {
+    source.columns.push_back(column.name);
+    source.units.push_back(schema::split_unit(column.array).unit);
+  }
+  source.mat = std::move(*contents);
+  return source;
+}
+
+// Reads the selected columns whole, and passes them on in blocks of rows.
+Result<void> read_mat_source(const Source& source, std::span<const std::size_t> columns,
+                             const RowHandler& take, const std::function<void(double)>& progress) {
+  std::vector<schema::MatColumn> chosen;
+  for (const std::size_t column : columns) chosen.push_back(source.mat->columns[column]);
+  const auto values = schema::read_mat(source.file, chosen);
+  TACTO_TRY(values);
+  const std::uint64_t all = chosen[0].rows;
+  const std::uint64_t piece = std::max<std::uint64_t>(kPieceSamples / columns.size(), 1);
+  std::vector<double> rows;
+  for (std::uint64_t done = 0; done < all; done += piece) {
+    rows.clear();
+    for (std::uint64_t i = done; i < std::min(done + piece, all); ++i)
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        const double value = (*values)[k][i];
+        if (std::isinf(value) || (std::isnan(value) && !source.unknown_as_nan))
+          return not_finite(source, i, columns[k], value);
+        rows.push_back(value);
+      }
+    TACTO_TRY(take({rows, columns.size(), done}));
+    progress(static_cast<double>(std::min(done + piece, all)) / static_cast<double>(all));
+  }
+  return {};
+}
+
 // A file of another program that import does not read.
 struct ForeignFormat {
   std::string_view what;      // "a TDMS file of LabVIEW"
@@ -119,8 +163,7 @@ struct ForeignFormat {
   bool may_be_sound = false;  // libsndfile writes and reads audio in files of this kind
 };
 
-constexpr std::string_view kMatlab =
-    "in MATLAB: writematrix([t f x], 'trial.csv'), or writetable(T, 'trial.csv'); then import the CSV";
+constexpr std::string_view kMatlab = "in MATLAB load it and save it again with save('trial.mat', '-v7')";
 constexpr std::string_view kLabview =
     "in LabVIEW write a text file (.lvm or CSV); or in Python: "
     "nptdms.TdmsFile.read('trial.tdms').as_dataframe().to_csv('trial.csv'); then import that";
@@ -142,8 +185,6 @@ struct Magic {
 };
 
 constexpr Magic kMagics[] = {
-    {"MATLAB 7.3 MAT-file"sv, {"a MATLAB file (version 7.3, HDF5)", kMatlab}},
-    {"MATLAB 5.0 MAT-file"sv, {"a MATLAB file (version 5)", kMatlab, true}},
     {"\x89HDF\r\n\x1a\n"sv, {"an HDF5 or netCDF-4 file", kHdf5}},
     {"CDF\x01"sv, {"a netCDF file", kHdf5}},
     {"CDF\x02"sv, {"a netCDF file", kHdf5}},
@@ -230,9 +271,13 @@ std::optional<ForeignFormat> foreign_format(const std::string& file, std::string
   return std::nullopt;
 }
 
-// libsndfile reads the numbers of any MATLAB file as audio. Only its own files name the rate "samplerate".
+// libsndfile reads the numbers of any MATLAB file as audio. Only its own files have these two variables.
+bool is_sound_in_mat(std::string_view head) {
+  return head.find("samplerate") != std::string_view::npos && head.find("wavedata") != std::string_view::npos;
+}
+
 Result<Source> open_foreign(const std::string& file, const ForeignFormat& format, std::string_view head) {
-  if (format.may_be_sound && head.find("samplerate") != std::string_view::npos) return open_audio(file);
+  if (format.may_be_sound && is_sound_in_mat(head)) return open_audio(file);
   return fail(ErrorKind::unsuitable, fmt::format("is {}, which import does not read", format.what), file,
               std::string(format.remedy));
 }
@@ -494,13 +539,15 @@ Result<Source> open_source(const std::string& file, std::size_t skip) {
   const bool whole = *got < head.size();
   head.resize(*got);
   TACTO_TRY(refuse_own(file, head));
+  if (schema::is_mat(head) && !is_sound_in_mat(head)) return open_mat(file, skip);
+  if (schema::is_mat(head)) return open_audio(file);
   if (const auto foreign = foreign_format(file, head)) return open_foreign(file, *foreign, head);
   return is_binary(head) ? open_sound(file, skip) : open_table(file, head, whole, skip);
 }
 
 namespace {
 
-// libsndfile reads the file itself, so its bytes are read once more for the sum.
+// libsndfile and matio read the file themselves, so its bytes are read once more for the sum.
 Result<void> add_file(const std::string& file, schema::Sha256& sum) {
   auto input = InputFile::open(file);
   TACTO_TRY(input);
@@ -518,7 +565,8 @@ Result<void> add_file(const std::string& file, schema::Sha256& sum) {
 Result<void> read_source(const Source& source, std::span<const std::size_t> columns, const RowHandler& take,
                          const std::function<void(double)>& progress, schema::Sha256* sum) {
   if (source.csv) return TableStages(source, columns, sum).run(take, progress);
-  const auto read = read_audio(source, columns, take, progress);
+  const auto read = source.mat ? read_mat_source(source, columns, take, progress)
+                               : read_audio(source, columns, take, progress);
   return read && sum != nullptr ? add_file(source.file, *sum) : read;
 }
 

@@ -15,6 +15,7 @@
 #include "capture/table/csv_reader.hpp"
 #include "data-schema/base/error.hpp"
 #include "data-schema/base/sha256.hpp"
+#include "data-schema/exchange/mat_file.hpp"
 
 namespace tacto::capture {
 
@@ -22,11 +23,14 @@ namespace tacto::capture {
 struct Source {
   std::string file;
   std::vector<std::string> columns;  ///< names, empty for a column without one; audio: "ch1", "ch2" ...
-  std::optional<CsvLayout> csv;      ///< of a table; without it the file is audio
+  std::optional<CsvLayout> csv;      ///< of a table
   std::optional<double> rate_hz;     ///< of audio
   int code_bits = 0;                 ///< of audio that holds integer codes
   std::string format;                ///< for messages: "table, comma", "WAV (Microsoft), Signed 16 bit PCM"
   std::vector<std::string> units = {};  ///< of a table's columns, as it writes them; empty if it has none
+  std::optional<schema::MatContents> mat =
+      std::nullopt;             ///< of a MATLAB file; without csv and mat it is audio
+  bool unknown_as_nan = false;  ///< of a MATLAB file: NaN is passed on, not refused
 };
 
 /// Consecutive rows of a source: the numbers of the selected columns, exactly as in the file (integer audio:
@@ -46,14 +50,17 @@ struct RowBlock {
 
 using RowHandler = std::function<schema::Result<void>(const RowBlock&)>;
 
-/// Opens a file: audio if libsndfile can read it, otherwise a table that begins after `skip` lines. Errors:
-/// not_found; malformed, if it is neither; unsuitable, for files of tactograph itself and for other known
-/// kinds (foreign_format); usage, if lines are to be skipped in audio.
+/// Opens a file: a MATLAB file, audio if libsndfile can read it, otherwise a table that begins after `skip`
+/// lines. Errors: not_found; malformed, if it is none of them, or a MATLAB file that was cut; unsuitable, for
+/// files of tactograph itself and for other known kinds (foreign_format); usage, if lines are to be skipped
+/// in audio or in a MATLAB file.
 schema::Result<Source> open_source(const std::string& file, std::size_t skip = 0);
 
 /// Reads columns (0-based, without duplicates) block by block; `sum`, if given, receives the bytes of the
 /// file. `progress` receives 0 to 1. Errors: those of `take`; not_found; malformed, with line and column or
-/// sample, at the first number that is refused. Memory: one block, for a file of any length.
+/// sample, at the first number that is refused; unsuitable, for columns of a MATLAB file of different
+/// lengths. Memory: one block, for a file of any length; of a MATLAB file the variables, at most
+/// schema::kMostMatBytes.
 schema::Result<void> read_source(const Source& source, std::span<const std::size_t> columns,
                                  const RowHandler& take, const std::function<void(double)>& progress,
                                  schema::Sha256* sum = nullptr);

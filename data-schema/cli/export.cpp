@@ -9,6 +9,7 @@
 #include "data-schema/base/decibels.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/cli/describe.hpp"
+#include "data-schema/cli/export_mat.hpp"
 #include "data-schema/cli/verbs.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/exchange/hjif.hpp"
@@ -139,28 +140,32 @@ Result<cli::Report> export_hjif(const ExportOptions& o, const StoredFile& file) 
       .add("written", o.output);
 }
 
-Result<StoredFile> exportable(const std::string& name) {
+Result<StoredFile> exportable(const std::string& name, bool mat) {
   const auto files = stored_files(name);
   TACTO_TRY(files);
   for (const StoredFile& file : *files)
-    if (file.kind == FileKind::recording || file.kind == FileKind::texture) return file;
+    if (file.kind == FileKind::recording || file.kind == FileKind::texture || (mat && is_mat_kind(file.kind)))
+      return file;
   const bool session = files->front().kind == FileKind::session;
   return fail(
       ErrorKind::unsuitable,
-      fmt::format("is a {}, and only recordings and textures are exported", kind_name(files->front().kind)),
+      fmt::format(
+          "is a {}, and only recordings and textures are exported (as .mat also spectrograms and sessions)",
+          kind_name(files->front().kind)),
       files->front().path,
       session ? fmt::format("export a session with 'tactograph session {0} -o {0}.csv'", name)
               : "name a recording or a texture");
 }
 
 Result<cli::Report> run_export(const ExportOptions& o) {
-  const auto file = exportable(o.name);
+  const bool hjif = o.output.ends_with(".hjif"), mat = o.output.ends_with(".mat");
+  const auto file = exportable(o.name, mat);
   TACTO_TRY(file);
-  const bool hjif = o.output.ends_with(".hjif");
   if (!hjif && o.asked_error->count() > 0)
     return fail(ErrorKind::usage, "only a .hjif file has an error", "--max-error",
                 "add -o NAME.hjif, or leave it out");
   if (hjif) return export_hjif(o, *file);
+  if (mat) return export_mat(*file, o.output, o.existing);
   const auto write = file->kind == FileKind::recording ? export_recording : export_texture;
   if (o.output == "-") {
     TableFile table("");
@@ -168,7 +173,8 @@ Result<cli::Report> run_export(const ExportOptions& o) {
     return written ? Result<cli::Report>(cli::Report()) : written;
   }
   const std::string output = o.output.empty() ? stem_of(file->path, "") + ".csv" : o.output;
-  TACTO_TRY(cli::check_ending(output, {".csv"}, "name NAME.csv, NAME.hjif, or - for a table on stdout"));
+  TACTO_TRY(
+      cli::check_ending(output, {".csv"}, "name NAME.csv, NAME.mat, NAME.hjif, or - for a table on stdout"));
   TACTO_TRY(check_table_free(output, o.existing, is_exported));
   PendingFiles files;
   const auto temporary = files.add(output);
@@ -184,29 +190,37 @@ Result<cli::Report> run_export(const ExportOptions& o) {
 
 cli::Action declare_export(CLI::App& app) {
   auto options = std::make_shared<ExportOptions>();
-  app.add_option("FILE", options->name, "Recording or texture: stem or file name")->required();
-  app.add_option("-o,--output", options->output,
-                 "Output: NAME.csv; - for the table on stdout, without a report; of a texture also NAME.hjif "
-                 "(MPEG haptics). "
-                 "Default: the input's name as .csv");
+  app.add_option("FILE", options->name,
+                 "Recording or texture, for a .mat file also a spectrogram or session: stem or file name")
+      ->required();
+  app.add_option(
+      "-o,--output", options->output,
+      "Output: NAME.csv; NAME.mat (MATLAB, Octave); - for the table on stdout, without a report; of a "
+      "texture also NAME.hjif "
+      "(MPEG haptics). "
+      "Default: the input's name as .csv");
   options->asked_error =
       cli::add_quantity(app, "--max-error", options->max_error, Dimension::share,
                         "Of a .hjif file: RMS of its curve minus the texture, over the texture's RMS");
   cli::declare_force(app, options->existing);
-  app.footer(app.get_footer() +
-             "\nSI units; the header names quantity and unit. Of a recording: time_s and a column for each "
-             "channel; a lost sample has no row. Of a texture: position_m, its values and, of an average, "
-             "their spread. Simulated data have a last column 'simulated' of ones.\n"
-             "A .hjif file (ISO/IEC 23090-31) has one curve through keyframes, as far apart as --max-error "
-             "permits.");
+  app.footer(
+      app.get_footer() +
+      "\nSI units; the header names quantity and unit. Of a recording: time_s and a column for each "
+      "channel; a lost sample has no row. Of a texture: position_m, its values and, of an average, "
+      "their spread. Simulated data have a last column 'simulated' of ones.\n"
+      "A .hjif file (ISO/IEC 23090-31) has one curve through keyframes, as far apart as --max-error "
+      "permits.\n"
+      "A .mat file has a variable for each column, single numbers such as sample_rate_hz or pitch_m, and the "
+      "struct provenance: version 5, or 7.3 if a variable has 2 GB or more.");
   return [options] { return run_export(*options); };
 }
 
 }  // namespace
 
 const cli::Verb kExportVerb{"export",
-                            "Write a recording or a texture for other programs: CSV, or MPEG haptics",
+                            "Write a recording or a texture for other programs: CSV, MATLAB, or MPEG haptics",
                             "tactograph export oak\n  tactograph export oak-01 -o - | head\n"
+                            "  tactograph export oak -o oak.mat\n"
                             "  tactograph export oak-01 -o oak.hjif --max-error 0.5%",
                             declare_export};
 

@@ -6,7 +6,9 @@ import pathlib
 import subprocess
 
 import numpy as np
+import scipy.io
 import tacto
+import xarray
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 USAGE, NOT_FOUND, UNSUITABLE, CANNOT_WRITE = 2, 3, 5, 7
@@ -113,6 +115,44 @@ def mpeg_haptics_keep_the_error_that_was_asked_for():
     tacto.run("export", "A-01", "--max-error", "1%", code=USAGE)
 
 
+def provenance_of(mat):
+    return {name: (value[0] if value.size else "") for name, value in zip(mat["provenance"].dtype.names, mat["provenance"][0, 0])}
+
+
+def matlab_files_hold_the_physical_values():
+    tacto.run("record", "-d", "sim:surface=C,speed=50mm/s", "--time", "3s", "-o", "c")
+    told = tacto.run_json("export", "c", "-o", "c.mat")
+    header, mat = json.loads(pathlib.Path("c.json").read_text()), scipy.io.loadmat("c.mat")
+    codes, _ = tacto.soundfile.read("c.wav", dtype="int32", always_2d=True)
+    tacto.run("export", "c", "-o", "c.csv")
+    table = table_of("c.csv")
+    for i, channel in enumerate(header["channels"]):
+        values = mat[told["variables"][1 + i]][:, 0]
+        assert np.array_equal(values, table[told["variables"][1 + i]]) and values.size == codes.shape[0], channel
+        assert np.allclose(values, codes[:, i] * channel["scale"] + channel["offset"], rtol=1e-15, atol=0), channel
+    assert mat["sample_rate_hz"] == header["sample_rate_hz"] and provenance_of(mat)["sha256"] == header["sha256"]
+    assert provenance_of(mat)["simulated"] == told["simulated"] and told["simulated"]
+    tacto.run("spatial", "c", "-o", ".", "--stroke", "1")
+    tacto.run("export", "c.texture.json", "-o", "t.mat")
+    position_m, values, _ = tacto.texture("c")
+    mat = scipy.io.loadmat("t.mat")
+    assert np.array_equal(mat["tangential_force_n"][:, 0], values) and np.allclose(mat["position_m"][:, 0], position_m, rtol=1e-12, atol=0)
+    tacto.run("spectrogram", "c.texture.json", "-o", "s.nc")
+    tacto.run("export", "s.nc", "-o", "s.mat")
+    mat, cells = scipy.io.loadmat("s.mat"), xarray.open_dataset("s.nc")
+    # the file has N^2 mm and mm, the export SI: a factor of 1000 in single precision
+    assert np.allclose(mat["density"], cells["density"].values.squeeze().T * 1e-3, rtol=1e-6, atol=0)
+    assert np.allclose(mat["position_m"][:, 0], cells["position"] * 1e-3, rtol=1e-12, atol=1e-15)
+    octave = "t = load('t.mat'); c = load('c.mat'); printf('%d %d %.17g', rows(t.tangential_force_n), rows(c.time_s), t.tangential_force_n(7))"
+    out = subprocess.run(["octave-cli", "--norc", "--eval", octave], capture_output=True, text=True, check=True).stdout
+    assert out.split()[:2] == [str(values.size), str(codes.shape[0])] and float(out.split()[2]) == values[6], out
+    tacto.run("export", "c", "-o", "c.mat", code=USAGE)
+    tacto.run("export", "c", "-o", "c.mat", "--force")
+    pathlib.Path("mine.mat").write_bytes(b"MATLAB 5.0 MAT-file, mine")
+    tacto.run("export", "c", "-o", "mine.mat", "--force", code=USAGE)
+    assert pathlib.Path("mine.mat").read_bytes() == b"MATLAB 5.0 MAT-file, mine"
+
+
 def wrong_use():
     tacto.run("record", "-d", "sim:", "--time", "0.5s", "-o", "c")
     tacto.run("export", "nothing", code=NOT_FOUND)
@@ -133,5 +173,5 @@ def wrong_use():
 
 if __name__ == "__main__":
     for test in (a_recording_comes_back_whole, simulated_data_say_so_in_each_row, a_texture_and_an_average, mpeg_haptics_keep_the_error_that_was_asked_for,
-                 wrong_use):
+                 matlab_files_hold_the_physical_values, wrong_use):
         tacto.in_folder(test)

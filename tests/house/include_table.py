@@ -17,7 +17,8 @@ MAY_INCLUDE = {
     "data-schema/corpus": "data-schema/{base json}",
     "data-schema/device": "data-schema/{base json}",
     "data-schema/experiment": "data-schema/{base files json}",
-    "data-schema/exchange": "data-schema/{base texture}",
+    "data-schema/exchange": "data-schema/{base exchange/matio texture}",
+    "data-schema/exchange/matio": "",
     "data-schema/files": "data-schema/base",
     "data-schema/height": "data-schema/{base files spectrogram}",
     "data-schema/json": "data-schema/{base files}",
@@ -61,7 +62,7 @@ MAY_INCLUDE = {
     "capture/import": "capture/{calibrate record table} data-schema/{base calibration files height recording texture}",
     "capture/record":
         "capture/table data-schema/{base calibration files recording} firmware-host/link spatial/strokes",
-    "capture/table": "data-schema/{base files recording wav}",
+    "capture/table": "data-schema/{base exchange files recording wav}",
     "spatial/certificate": "data-schema/{base texture} spatial/features",
     "spatial/cli":
         "data-schema/{base cli command files kinds recording report spectrogram texture} spatial/{certificate features "

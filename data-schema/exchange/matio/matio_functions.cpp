@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The module tactograph-matio.so.
+#include "data-schema/exchange/matio/matio_functions.hpp"
+
+#include <H5Epublic.h>
+#include <H5Fpublic.h>
+#include <H5Lpublic.h>
+#include <H5Ppublic.h>
+#include <H5public.h>
+
+namespace {
+
+void say_nothing(int /*level*/, char* /*message*/) {}
+
+// MATLAB's own groups begin with '#'.
+herr_t count_link(hid_t /*group*/, const char* name, const H5L_info_t* /*info*/, void* count) {
+  *static_cast<long*>(count) += name[0] == '#' ? 0 : 1;
+  return 0;
+}
+
+long hdf5_variables(const char* path) {
+  const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) return -1;
+  long count = 0;
+  const herr_t done = H5Literate(file, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, count_link, &count);
+  H5Fclose(file);
+  return done < 0 ? -1 : count;
+}
+
+}  // namespace
+
+/// The table of functions. After the first call matio and HDF5 print nothing: their failures are returned.
+extern "C" __attribute__((visibility("default"))) const tacto::schema::MatioFunctions*
+tacto_matio_functions() {
+  static constexpr tacto::schema::MatioFunctions kFunctions = {
+      Mat_Open,
+      Mat_CreateVer,
+      Mat_Close,
+      Mat_VarReadNextInfo,
+      Mat_VarReadInfo,
+      Mat_VarReadDataAll,
+      Mat_VarCreate,
+      Mat_VarCreateStruct2,
+      Mat_VarSetStructFieldByName,
+      Mat_VarWrite,
+      Mat_VarFree,
+      Mat_VarGetNumberOfFields,
+      Mat_VarGetStructFieldnames,
+      Mat_VarGetStructFieldByIndex,
+      hdf5_variables,
+  };
+  // As in the module of netCDF: HDF5's clean-up at exit crashes after a full disk.
+  [[maybe_unused]] static const herr_t no_cleanup = H5dont_atexit();
+  [[maybe_unused]] static const herr_t no_printing = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  [[maybe_unused]] static const int no_log = Mat_LogInitFunc("tactograph", say_nothing);
+  return &kFunctions;
+}

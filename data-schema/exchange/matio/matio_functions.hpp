@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The functions of the library matio that tactograph calls. matio depends on HDF5, and loading that takes
+// longer than most commands; so they are linked to a module, which is loaded at its first use.
+#pragma once
+
+#include <matio.h>
+
+namespace tacto::schema {
+
+/// Each member but the last is a function Mat_... of matio.
+struct MatioFunctions {
+  decltype(&::Mat_Open) open;
+  decltype(&::Mat_CreateVer) create;
+  decltype(&::Mat_Close) close;
+  decltype(&::Mat_VarReadNextInfo) next_info;
+  decltype(&::Mat_VarReadInfo) info;
+  decltype(&::Mat_VarReadDataAll) read_all;
+  decltype(&::Mat_VarCreate) variable;
+  decltype(&::Mat_VarCreateStruct2) structure;
+  decltype(&::Mat_VarSetStructFieldByName) set_field;
+  decltype(&::Mat_VarWrite) write;
+  decltype(&::Mat_VarFree) free;
+  decltype(&::Mat_VarGetNumberOfFields) fields;
+  decltype(&::Mat_VarGetStructFieldnames) field_names;
+  decltype(&::Mat_VarGetStructFieldByIndex) field;
+  /// The number of variables of a file of version 7.3; -1 if HDF5 cannot open it, as after it was cut. matio
+  /// opens such a file without an error and finds no variables.
+  long (*hdf5_variables)(const char* path);
+};
+
+inline constexpr const char* kMatioModule = "tactograph-matio.so";
+inline constexpr const char* kMatioEntry = "tacto_matio_functions";
+using MatioEntry = const MatioFunctions* (*)();
+
+}  // namespace tacto::schema

@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`import` of MATLAB files that SciPy and h5py write: the numbers are the same to the bit; a file that was cut is refused."""
+import json
+import pathlib
+import random
+import shlex
+
+import h5py
+import numpy as np
+import scipy.io
+import scipy.sparse
+import tacto
+
+USAGE, NOT_FOUND, MALFORMED, UNSUITABLE = 2, 3, 4, 5
+ROWS = 2000
+
+
+def variables():
+    rng = np.random.default_rng(1)
+    return {
+        "data": {"force": rng.normal(0, 0.1, ROWS), "encoder": {"count": np.arange(ROWS, dtype=np.int16).reshape(-1, 1)}},
+        "t_s": np.arange(ROWS) / 10_000, "acc": rng.normal(size=(ROWS, 3)),
+        "wide": rng.normal(size=(2, ROWS)).astype(np.float32), "touch": rng.random(ROWS) > 0.5,
+        "ticks": np.arange(ROWS, dtype=np.int64) + 2**53 - ROWS, "beyond": np.arange(ROWS, dtype=np.int64) + 2**53,
+        "short_one": np.arange(5.0), "z": rng.normal(size=ROWS) * 1j, "sparse_one": scipy.sparse.eye(5).tocsc(),
+        "cells": np.array([1, "a"], dtype=object), "words": "text", "nothing": np.zeros((0, 3)), "one": 3.0, "cube": np.zeros((3, 3, 3)),
+    }
+
+
+def stored(name):
+    return tacto.soundfile.read(f"{name}.wav", dtype="float64", always_2d=True)[0]
+
+
+def numbers_are_those_of_scipy():
+    made = variables()
+    asked = {"tangential_force": ("data.force*1N", made["data"]["force"]), "position": ("data.encoder.count*1um", made["data"]["encoder"]["count"]),
+             "acceleration": ("acc(:,2)*1g", made["acc"][:, 1]), "displacement": ("wide(2,:)*1um", made["wide"][1]),
+             "signal": ("touch", made["touch"]), "ticks:signal": ("ticks", made["ticks"])}
+    for compressed in (False, True):
+        scipy.io.savemat("trial.mat", made, do_compression=compressed)
+        channels = [part for name, (text, _) in asked.items() for part in ("--channel", f"{name}={text}")]
+        told = tacto.run_json("import", "trial.mat", "-o", "oak", "--force", "--time-column", "t_s", *channels)
+        assert told["sample_rate_hz"] == 10_000 and told["frames"] == ROWS and told["gaps"] == 0, told
+        for k, (_, values) in enumerate(asked.values()):
+            assert np.array_equal(stored("oak")[:, k], np.ravel(values).astype(float)), (compressed, k)
+        header = json.loads(pathlib.Path("oak.json").read_text())
+        assert header["channels"][1]["scale"] == 1e-6, header["channels"][1]
+
+
+def without_options_it_lists():
+    scipy.io.savemat("trial.mat", variables())
+    told = tacto.run_json("import", "trial.mat")
+    arrays = {row["name"]: row for row in told["arrays"]}
+    assert arrays["data.encoder.count"]["class"] == "int16" and arrays["data.encoder.count"]["size"] == f"{ROWS}x1", arrays
+    assert arrays["touch"]["class"] == "logical" and arrays["z"]["not_imported"] and not arrays["acc"]["not_imported"], arrays
+    tacto.run(*shlex.split(told["next"])[1:])
+    assert pathlib.Path("trial.wav").exists(), told
+    tacto.run("import", "trial.mat", "-o", "x", code=USAGE)
+    tacto.run("import", "nothing.mat", code=NOT_FOUND)
+
+
+def each_refusal_names_its_array():
+    scipy.io.savemat("trial.mat", variables())
+    for name in ("z", "sparse_one", "cells", "words", "nothing", "one", "cube"):
+        _, said = tacto.run("import", "trial.mat", "-o", "x", "--rate", "1kHz", "--channel", f"tangential_force={name}*1N", code=UNSUITABLE)
+        assert f"trial.mat: {name}:" in said and said.count("\n") == 1, said
+    _, said = tacto.run("import", "trial.mat", "-o", "x", "--rate", "1kHz", "--channel", "signal=beyond", code=UNSUITABLE)
+    assert "sample 1" in said, said
+    lengths = ["--channel", "tangential_force=data.force*1N", "--channel", "signal=short_one"]
+    _, said = tacto.run("import", "trial.mat", "-o", "x", "--rate", "1kHz", *lengths, code=UNSUITABLE)
+    assert "short_one" in said, said
+    tacto.run("import", "trial.mat", "-o", "x", "--rate", "1kHz", "--channel", "tangential_force=acc*1N", code=USAGE)
+    assert not list(pathlib.Path(".").glob("x.*"))
+
+
+def nan_is_refused_or_becomes_a_gap():
+    force_n = np.random.default_rng(2).normal(0, 0.1, ROWS)
+    force_n[[500, 501]] = np.nan
+    scipy.io.savemat("holes.mat", {"f": force_n})
+    words = ["import", "holes.mat", "-o", "x", "--rate", "1kHz", "--channel", "tangential_force=f*1N"]
+    _, said = tacto.run(*words, code=MALFORMED)
+    assert "sample 500" in said and not pathlib.Path("x.wav").exists(), said
+    told = tacto.run_json(*words, "--mask-outliers")
+    assert (told["frames"], told["gaps"]) == (ROWS - 2, 1), told
+    assert np.array_equal(stored("x")[:, 0], np.delete(force_n, [500, 501]))
+
+
+def a_cut_file_is_never_silently_short():
+    """Between two variables a file may be cut unnoticed, as it does not state how many it has; here the last one is asked for."""
+    rng = np.random.default_rng(3)
+    for compressed in (False, True):
+        scipy.io.savemat("whole.mat", {"a": rng.normal(size=300), "s": {"f": rng.normal(size=300)}}, do_compression=compressed)
+        refuse_all_cuts("whole.mat", "s.f")
+    write_73("whole73.mat", rng.normal(size=300))
+    refuse_all_cuts("whole73.mat", "data.force")
+
+
+def refuse_all_cuts(name, column):
+    whole = pathlib.Path(name).read_bytes()
+    words = ["-o", "x", "--rate", "1kHz", "--channel", f"tangential_force={column}*1N"]
+    tacto.run("import", name, *words, "--force")
+    for length in random.Random(4).sample(range(130, len(whole)), 100):
+        pathlib.Path("cut.mat").write_bytes(whole[:length])
+        done = tacto.subprocess.run([tacto.COMMAND, "import", "cut.mat", *words, "--force"], capture_output=True, text=True)
+        assert done.returncode in (USAGE, MALFORMED) and done.stderr.count("\n") == 1, (name, length, done)
+
+
+def write_73(path, force_n):
+    """A file of version 7.3 as MATLAB writes it: HDF5 behind a block of 512 bytes, a struct as a group."""
+    with h5py.File(path, "w", userblock_size=512) as file:
+        group = file.create_group("data")
+        group.attrs["MATLAB_class"] = np.bytes_("struct")
+        for name, values in (("force", force_n.reshape(1, -1)), ("count", np.arange(force_n.size, dtype=np.int32).reshape(1, -1))):
+            group[name] = values
+            group[name].attrs["MATLAB_class"] = np.bytes_({"f": "double", "i": "int32"}[values.dtype.kind])
+    with open(path, "r+b") as file:
+        file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM")
+
+
+def version_7_3():
+    force_n = np.random.default_rng(5).normal(0, 0.1, ROWS)
+    write_73("new.mat", force_n)
+    tacto.run("import", "new.mat", "-o", "new", "--rate", "10kHz", "--channel", "tangential_force=data.force*1N", "--channel", "position=data.count*1um")
+    assert np.array_equal(stored("new"), np.column_stack([force_n, np.arange(ROWS)]))
+
+
+if __name__ == "__main__":
+    for test in (numbers_are_those_of_scipy, without_options_it_lists, each_refusal_names_its_array, nan_is_refused_or_becomes_a_gap,
+                 a_cut_file_is_never_silently_short, version_7_3):
+        tacto.in_folder(test)
