@@ -18,8 +18,6 @@
 namespace tacto::schema {
 namespace {
 
-using Json = nlohmann::json;
-
 struct Outcome {
   int exit_code;
   std::string out, err;
@@ -61,11 +59,11 @@ class InfoValidate : public testing::Test {
     ASSERT_TRUE(write_texture(oak_, texture));
   }
 
-  Json json(std::vector<std::string> arguments) {
+  nlohmann::json json(std::vector<std::string> arguments) {
     arguments.push_back("--json");
     const Outcome outcome = run(std::move(arguments));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    return Json::parse(outcome.out);
+    return nlohmann::json::parse(outcome.out);
   }
 
   tests::TemporaryFolder folder_;
@@ -73,7 +71,7 @@ class InfoValidate : public testing::Test {
 };
 
 TEST_F(InfoValidate, DescribesARecordingInPhysicalUnits) {
-  const Json info = json({"info", oak_});
+  const nlohmann::json info = json({"info", oak_});
   EXPECT_EQ(info["kind"], "recording");
   EXPECT_EQ(info["frames"], 4);
   EXPECT_EQ(info["gaps"], 1);
@@ -82,7 +80,7 @@ TEST_F(InfoValidate, DescribesARecordingInPhysicalUnits) {
   EXPECT_EQ(info["simulated"], "a test");
   EXPECT_EQ(info["warnings"][0], "the finger slipped");
   EXPECT_EQ(info["also"][0], oak_ + ".texture.json");
-  const Json& channel = info["channels"][0];  // 1, -1, -3, -1 N
+  const nlohmann::json& channel = info["channels"][0];  // 1, -1, -3, -1 N
   EXPECT_EQ(channel["min"], -3);
   EXPECT_EQ(channel["max"], 1);
   EXPECT_EQ(channel["mean"], -1);
@@ -91,7 +89,7 @@ TEST_F(InfoValidate, DescribesARecordingInPhysicalUnits) {
 }
 
 TEST_F(InfoValidate, DescribesATexture) {
-  const Json info = json({"info", oak_ + ".texture.wav"});
+  const nlohmann::json info = json({"info", oak_ + ".texture.wav"});
   EXPECT_EQ(info["kind"], "texture");
   EXPECT_EQ(info["pitch_m"], 2e-6);
   EXPECT_DOUBLE_EQ(info["length_m"].get<double>(), 8e-6);
@@ -104,7 +102,7 @@ TEST_F(InfoValidate, DescribesATexture) {
 }
 
 TEST_F(InfoValidate, DescribesATransducer) {
-  const Json info = json({"info", "wiertlewski2011"});
+  const nlohmann::json info = json({"info", "wiertlewski2011"});
   EXPECT_NEAR(info["resonance_hz"].get<double>(), 547.7, 0.05);
   EXPECT_NEAR(info["actuator_gain_at_0hz_m_per_v"].get<double>(), 20e-6, 1e-17);
   EXPECT_NEAR(info["sensor_gain_at_100hz_v_per_n"].get<double>(), 26, 1e-11);
@@ -122,7 +120,7 @@ TEST_F(InfoValidate, DescribesASpectrogram) {
   s.pitch_m = 1e-6;
   s.unit = "N";
   ASSERT_TRUE(write_spectrogram_nc(oak_ + ".nc", std::span(&s, 1)));
-  const Json info = json({"info", oak_ + ".nc"});
+  const nlohmann::json info = json({"info", oak_ + ".nc"});
   EXPECT_EQ(info["kind"], "spectrogram");
   EXPECT_DOUBLE_EQ(info["peak_position_m"].get<double>(), 6e-3);
   EXPECT_EQ(info["peak_frequency_per_m"], 0);
@@ -130,7 +128,7 @@ TEST_F(InfoValidate, DescribesASpectrogram) {
 }
 
 TEST_F(InfoValidate, DescribesSeveral) {
-  const Json info = json({"info", oak_ + ".json", oak_ + ".texture.json", "wiertlewski2011"});
+  const nlohmann::json info = json({"info", oak_ + ".json", oak_ + ".texture.json", "wiertlewski2011"});
   ASSERT_EQ(info["files"].size(), 3u);
   EXPECT_EQ(info["files"][1]["kind"], "texture");
   const Outcome people = run({"info", oak_ + ".json", "wiertlewski2011"});
@@ -168,7 +166,7 @@ TEST_F(InfoValidate, WarnsOfANewerMinorVersion) {
 }
 
 TEST_F(InfoValidate, ValidatesAllUnderAStem) {
-  const Json report = json({"validate", oak_});
+  const nlohmann::json report = json({"validate", oak_});
   EXPECT_EQ(report["valid"], true);
   EXPECT_EQ(report["files"].size(), 2u);
   EXPECT_NE(run({"validate", oak_}).out.find("valid  yes"), std::string::npos);
@@ -182,10 +180,10 @@ TEST_F(InfoValidate, ListsFaultsAndEndsAsMalformed) {
   ASSERT_TRUE(pending.commit());
   const Outcome outcome = run({"validate", "--json", oak_});
   EXPECT_EQ(outcome.exit_code, exit_code(ErrorKind::malformed));
-  const Json report = Json::parse(outcome.out);
+  const nlohmann::json report = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(report["valid"], false);
   std::string places;
-  for (const Json& fault : report["faults"]) places += fault["where"].get<std::string>() + "\n";
+  for (const nlohmann::json& fault : report["faults"]) places += fault["where"].get<std::string>() + "\n";
   EXPECT_NE(places.find("oak.json#/sample_rate_hz"), std::string::npos) << places;
   EXPECT_NE(places.find("oak.texture.wav"), std::string::npos) << places;
 }
@@ -198,7 +196,7 @@ TEST_F(InfoValidate, ChecksEachFileOfAFolder) {
   Transducer transducer = read_transducer("wiertlewski2011").value();
   ASSERT_TRUE(write_transducer(folder_ / "sub/bench", transducer));
   ASSERT_TRUE(pending.commit());
-  const Json report = json({"validate", folder_ / ""});
+  const nlohmann::json report = json({"validate", folder_ / ""});
   EXPECT_EQ(report["valid"], true) << report;
   EXPECT_EQ(report["checked"], 3);
   EXPECT_EQ(report["invalid"], 0);
@@ -210,11 +208,11 @@ TEST_F(InfoValidate, ChecksEachFileOfAFolder) {
   std::filesystem::resize_file(oak_ + ".wav", 10);
   const Outcome outcome = run({"validate", "--json", folder_ / ""});
   EXPECT_NE(outcome.exit_code, 0);
-  const Json faulty = Json::parse(outcome.out);
+  const nlohmann::json faulty = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(faulty["checked"], 5);
   EXPECT_EQ(faulty["invalid"], 3) << faulty;
   std::string invalid;
-  for (const Json& file : faulty["files"])
+  for (const nlohmann::json& file : faulty["files"])
     if (!file["valid"]) invalid += file["file"].get<std::string>() + "\n";
   EXPECT_EQ(invalid, (folder_ / "oak.json") + "\n" + (folder_ / "open") + "\n" +
                          (folder_ / "sub/torn.texture.json") + "\n");

@@ -18,7 +18,6 @@
 namespace tacto::schema {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using tests::TemporaryFolder;
 
 Channel force_channel() {
@@ -80,10 +79,10 @@ Recording write_simple(const std::string& name) {
   return write(name, full_header(SampleFormat::float64), kSamples);
 }
 
-void edit(const std::string& path, const std::string& pointer, const Json& value) {
-  Json document = Json::parse(read_file(path).value());
+void edit(const std::string& path, const std::string& pointer, const nlohmann::ordered_json& value) {
+  nlohmann::ordered_json document = nlohmann::ordered_json::parse(read_file(path).value());
   document["data"].erase("numbers_sha256");  // the fault to be found is another one
-  document[Json::json_pointer(pointer)] = value;
+  document[nlohmann::ordered_json::json_pointer(pointer)] = value;
   std::ofstream(path) << document.dump(2);
 }
 
@@ -272,10 +271,11 @@ TEST(Recording, SaysWhatIsLeftOfATruncatedWav) {
 TEST(Recording, RefusesSidecarsThatContradictTheWav) {
   const TemporaryFolder folder;
   write_simple(folder / "oak");
-  const Json sound = Json::parse(read_file(folder / "oak.json").value());
-  const std::pair<const char*, Json> lies[] = {{"/sample_rate_hz", 9000},
-                                               {"/data/format", "pcm32"},
-                                               {"/channels", Json::array({sound["channels"][0]})}};
+  const nlohmann::ordered_json sound = nlohmann::ordered_json::parse(read_file(folder / "oak.json").value());
+  const std::pair<const char*, nlohmann::ordered_json> lies[] = {
+      {"/sample_rate_hz", 9000},
+      {"/data/format", "pcm32"},
+      {"/channels", nlohmann::ordered_json::array({sound["channels"][0]})}};
   for (const auto& [pointer, lie] : lies) {
     std::ofstream(folder / "oak.json") << sound;
     edit(folder / "oak.json", pointer, lie);
@@ -287,12 +287,12 @@ TEST(Recording, RefusesBySchemaAndBeyond) {
   const TemporaryFolder folder;
   write_simple(folder / "oak");
   const std::string path = folder / "oak.json";
-  const Json sound = Json::parse(read_file(path).value());
-  const std::pair<const char*, Json> breaches[] = {{"/channels/1/unit", "kg"},
-                                                   {"/channels/1/unit", "N"},
-                                                   {"/channels/1/name", "tangential_force"},
-                                                   {"/transducer/mass_kg", -1},
-                                                   {"/data/sha256", "abc"}};
+  const nlohmann::ordered_json sound = nlohmann::ordered_json::parse(read_file(path).value());
+  const std::pair<const char*, nlohmann::ordered_json> breaches[] = {{"/channels/1/unit", "kg"},
+                                                                     {"/channels/1/unit", "N"},
+                                                                     {"/channels/1/name", "tangential_force"},
+                                                                     {"/transducer/mass_kg", -1},
+                                                                     {"/data/sha256", "abc"}};
   for (const auto& [pointer, value] : breaches) {
     std::ofstream(path) << sound;
     edit(path, pointer, value);
@@ -313,7 +313,8 @@ TEST(Recording, FromTheFutureIsRefusedByMajorAndKeptByMinor) {
   ASSERT_TRUE(newer) << message(newer.error());
   EXPECT_EQ(newer->header.newer_version, "1.3");
   write(folder / "copy", newer->header, kSamples);
-  EXPECT_EQ(Json::parse(read_file(folder / "copy.json").value())["aroma"], Json({{"note", "resin"}}));
+  EXPECT_EQ(nlohmann::ordered_json::parse(read_file(folder / "copy.json").value())["aroma"],
+            nlohmann::ordered_json({{"note", "resin"}}));
 }
 
 TEST(Recording, SaysWhatElseTheNameStandsFor) {

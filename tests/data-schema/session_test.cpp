@@ -212,7 +212,7 @@ TEST_F(Session, AKilledWriterLosesNothingThatWasSynced) {
   if (child == 0) {
     auto writer = SessionWriter::create(path_, made_header());
     const bool done = writer && writer->add(made_ticks(0, 5000)) && writer->sync();
-    [[maybe_unused]] const auto told = write(ready[1], done ? "y" : "n", 1);
+    [[maybe_unused]] const auto told = ::write(ready[1], done ? "y" : "n", 1);
     for (;;) pause();
   }
   char word = 0;

@@ -13,9 +13,10 @@
 namespace tacto::firmware_host {
 namespace {
 
+using Complex = std::complex<double>;
+
 // x(t) of m x'' + b x' + k x = f + g t, by its two roots and the particular solution (f - b g / k + g t) / k.
 PlaceAndSpeed closed_form(const LinearMotion& motion, PlaceAndSpeed start, double t) {
-  using Complex = std::complex<double>;
   const auto [m, b, k, f, g] = motion;
   const Complex root = std::sqrt(Complex(b * b / (4 * m * m) - k / m));
   const Complex r1 = -b / (2 * m) + root, r2 = -b / (2 * m) - root;

@@ -7,7 +7,7 @@
 #include "playback/player/play.hpp"
 #include "playback/session/session_replay.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
-#include "tests/firmware-host/tty/pty_board.hpp"
+#include "tests/firmware-host/pty_board.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {

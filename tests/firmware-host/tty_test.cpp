@@ -18,7 +18,7 @@
 #include "firmware-host/tty/tty_transport.hpp"
 #include "firmware-host/tty/usb_serial_ports.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
-#include "tests/firmware-host/tty/pty_board.hpp"
+#include "tests/firmware-host/pty_board.hpp"
 
 namespace tacto::firmware_host {
 namespace {
