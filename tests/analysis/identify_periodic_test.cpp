@@ -14,7 +14,7 @@ namespace tacto::analysis {
 namespace {
 
 constexpr double kPeriodicNoiseM = 20e-9;  // the emulated vibrometer's
-const int kPeriodicPlants = draws(8, 3), kNoises = draws(10, 2);
+const int kPeriodicPlants = draws(8, 3), kPeriodicNoises = draws(10, 2);
 constexpr double kSecondModeHz = 850;
 
 using PeriodicSignal = PeriodicDrive (*)(const ExcitationPlan&);
@@ -77,7 +77,7 @@ class IdentifyPeriodic : public testing::TestWithParam<std::pair<const char*, Pe
 
 TEST_P(IdentifyPeriodic, FindsATrayThatIsTheModel) {
   std::mt19937_64 random(31);
-  const Told told = told_of(driven_plants(signal(), {}, random), kNoises / 2, random);
+  const Told told = told_of(driven_plants(signal(), {}, random), kPeriodicNoises / 2, random);
   EXPECT_LE(told.flagged, 1);  // three tests, each wrong in 5 of 10,000: 2 of 40 in one run of 600
 }
 
@@ -85,7 +85,7 @@ TEST_P(IdentifyPeriodic, FlagsAHysteresisThatNobodyModelled) {
   std::mt19937_64 random(32);
   const auto plants =
       driven_plants(signal(), {.second_mode = {}, .finger_load = {}, .hysteresis = 0.16}, random);
-  const Told told = told_of(plants, kNoises, random);
+  const Told told = told_of(plants, kPeriodicNoises, random);
   EXPECT_GE(told.flagged, 0.95 * told.draws);
   EXPECT_EQ(told.modes, 0);
   EXPECT_GT(told.least_r_squared, 0.98);  // R^2 alone would not detect the misfit
@@ -98,7 +98,7 @@ TEST_P(IdentifyPeriodic, ChoosesASecondModeThatIsThere) {
                                      .finger_load = {},
                                      .hysteresis = 0},
                                     random);
-  const Told told = told_of(plants, kNoises / 2, random);
+  const Told told = told_of(plants, kPeriodicNoises / 2, random);
   EXPECT_EQ(told.modes, told.draws);
   EXPECT_EQ(told.flagged, 0);
   for (const PeriodicDraw& drawn : plants) {

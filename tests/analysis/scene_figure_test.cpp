@@ -21,7 +21,7 @@ using spatial::Point;
 using spatial::samples::decode_png;
 using spatial::samples::DecodedPng;
 
-constexpr double kRateHz = 1000;
+constexpr double kFigureRateHz = 1000;
 
 // The limits are so high that none is active; the encoder's step is far below a pixel.
 schema::Device fine_device() {
@@ -55,8 +55,8 @@ ScenePicture picture_of(std::vector<Patch> patches) {
   ScenePicture picture;
   picture.name = "bench";
   picture.scene.patches = std::move(patches);
-  picture.rate_hz = kRateHz;
-  auto prepared = playback::prepare_scene(picture.scene, "bench.scene.json", fine_device(), kRateHz);
+  picture.rate_hz = kFigureRateHz;
+  auto prepared = playback::prepare_scene(picture.scene, "bench.scene.json", fine_device(), kFigureRateHz);
   EXPECT_TRUE(prepared) << message(prepared.error());
   picture.prepared = std::move(*prepared);
   return picture;
@@ -115,10 +115,10 @@ TEST(ReliefRaster, HasTheForcesOfTheKernel) {
   const ScenePicture picture = picture_of({bench, plain, more});
   constexpr double kPixel = 2e-5;  // the harmonics of the grooves are below 3/8 of a cycle in a pixel
   const PixelGrid grid{-0.0151, 0.0149, kPixel, 1500, 1500};
-  const ReliefRaster raster = relief_raster(picture.prepared, kRateHz, grid);
+  const ReliefRaster raster = relief_raster(picture.prepared, kFigureRateHz, grid);
 
   const schema::Device device = fine_device();
-  const auto setup = playback::force_setup_of(device, kRateHz);
+  const auto setup = playback::force_setup_of(device, kFigureRateHz);
   const core::SceneView view = picture.prepared.view();
   std::vector<float> live(view.live_words());
   double worst_n = 0, largest_n = 0;
@@ -146,7 +146,7 @@ TEST(ReliefRaster, LeavesOutGroovesThatAreFinerThanItsPixels) {
   for (const double direction_deg : {0.0, 45.0, 90.0, 135.0}) {
     const ScenePicture picture = picture_of({square_patch(
         "fine", 0, 0, 0.02, {grooved(schema::GrooveProfile::sine, 0.0019, 1e-4, 2, direction_deg, 0)})});
-    const ReliefRaster raster = relief_raster(picture.prepared, kRateHz, {-0.01, 0.01, 0.001, 20, 20});
+    const ReliefRaster raster = relief_raster(picture.prepared, kFigureRateHz, {-0.01, 0.01, 0.001, 20, 20});
     for (std::size_t at = 0; at < raster.acts.size(); ++at)
       EXPECT_TRUE(raster.acts[at] == kActsRelief && raster.force_x_n[at] == 0 && raster.force_y_n[at] == 0);
   }

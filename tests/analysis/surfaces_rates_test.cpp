@@ -172,7 +172,7 @@ Change raised(double low_per_m, double high_per_m, double level_db) {
 }
 
 double shown_rate(const std::string& what, std::size_t strokes, double percent) {
-  measured(fmt::format("surfaces_rates.{}_{}_strokes_percent", key_part(what), strokes), percent);
+  tacto::measured(fmt::format("surfaces_rates.{}_{}_strokes_percent", key_part(what), strokes), percent);
   return percent;
 }
 

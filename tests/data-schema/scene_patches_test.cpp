@@ -149,11 +149,11 @@ struct OfOthers {
   void operator()(const L& /*layer*/) const {}
 };
 template <class Value, class... Handlers>
-concept CanVisit = requires(Value value, Handlers... handlers) { value.visit(handlers...); };
+concept CanVisitLayer = requires(Value value, Handlers... handlers) { value.visit(handlers...); };
 
 TEST(ScenePatches, ALayerCanBeReadOnlyByHandlingEveryKind) {
-  static_assert(!CanVisit<const ForceLayer, OfHeightMaps>);
-  static_assert(CanVisit<const ForceLayer, OfHeightMaps, OfOthers>);
+  static_assert(!CanVisitLayer<const ForceLayer, OfHeightMaps>);
+  static_assert(CanVisitLayer<const ForceLayer, OfHeightMaps, OfOthers>);
   static_assert(!std::is_convertible_v<ForceLayer, HeightMapLayer>);
 }
 

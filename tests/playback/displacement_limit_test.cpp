@@ -14,7 +14,7 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kLimitRateHz = 5e3, kForceN = 0.02, kGainMPerN = 5e-4;
+constexpr double kLimitRateHz = 5e3, kForceN = 0.02, kLimitedGainMPerN = 5e-4;
 
 schema::Transducer with_damping_ratio(double ratio) {
   schema::Transducer t = schema::read_transducer("wiertlewski2011").value();
@@ -31,14 +31,14 @@ double brute_force_peak(const schema::Transducer& t, const Prepared& prepared) {
     most = std::max(most, std::abs(schema::actuator_response(t, f)) * std::sin(turn) / turn);
   }
   const auto [least, largest] = std::ranges::minmax(prepared.samples);
-  return most * double{prepared.taps.front()} * double{std::max(-least, largest)} * kGainMPerN;
+  return most * double{prepared.taps.front()} * double{std::max(-least, largest)} * kLimitedGainMPerN;
 }
 
 TEST(DisplacementLimit, ReachesTheTopOfTheResonanceHoweverSharp) {
   PrepareOptions options;
   options.rate_hz = kLimitRateHz;
   options.inverse = Inverse::gain;
-  options.gain_m_per_n = kGainMPerN;
+  options.gain_m_per_n = kLimitedGainMPerN;
   for (const double ratio : {0.5, 0.096, 0.03, 0.003, 0.0005}) {
     const schema::Transducer t = with_damping_ratio(ratio);
     const auto prepared = prepare(sine_texture(0.02, 1000, kForceN), t, options);
@@ -55,14 +55,16 @@ TEST(DisplacementLimit, NamesAFactorThatFits) {
   schema::Transducer t = with_damping_ratio(0.096);
   for (const double limit_m : {3.33333e-6, 1.99999e-6, 7.77777e-6}) {
     t.displacement_limit_m = limit_m;
-    const auto refused = check_displacement(10e-6, 1, kGainMPerN, kGainMPerN, t);
+    const auto refused = check_displacement(10e-6, 1, kLimitedGainMPerN, kLimitedGainMPerN, t);
     ASSERT_FALSE(refused);
     const std::string& remedy = refused.error().remedy;
     const double factor = std::stod(remedy.substr(remedy.find("(") + 1));
-    EXPECT_TRUE(check_displacement(10e-6, factor, kGainMPerN, kGainMPerN, t)) << remedy;
-    EXPECT_TRUE(check_displacement(10e-6, -factor, kGainMPerN, kGainMPerN, t)) << remedy;
-    EXPECT_FALSE(check_displacement(10e-6, 1.001 * factor, kGainMPerN, kGainMPerN, t)) << remedy;
-    EXPECT_FALSE(check_displacement(10e-6, -1.001 * factor, kGainMPerN, kGainMPerN, t)) << remedy;
+    EXPECT_TRUE(check_displacement(10e-6, factor, kLimitedGainMPerN, kLimitedGainMPerN, t)) << remedy;
+    EXPECT_TRUE(check_displacement(10e-6, -factor, kLimitedGainMPerN, kLimitedGainMPerN, t)) << remedy;
+    EXPECT_FALSE(check_displacement(10e-6, 1.001 * factor, kLimitedGainMPerN, kLimitedGainMPerN, t))
+        << remedy;
+    EXPECT_FALSE(check_displacement(10e-6, -1.001 * factor, kLimitedGainMPerN, kLimitedGainMPerN, t))
+        << remedy;
   }
 }
 

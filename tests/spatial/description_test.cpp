@@ -24,7 +24,7 @@ schema::Texture white(std::size_t count, double pitch_m) {
   return samples::texture_of(std::move(values), pitch_m);
 }
 
-double power_of(const std::vector<ThirdOctaveBand>& bands) {
+double power_of_band(const std::vector<ThirdOctaveBand>& bands) {
   double power = 0;
   for (const auto& band : bands) power += band.rms * band.rms;
   return power;
@@ -55,7 +55,7 @@ TEST(Description, BandsSumToTheRms) {
   ASSERT_TRUE(made);
   EXPECT_DOUBLE_EQ(made->low_per_m, 410);
   EXPECT_DOUBLE_EQ(made->high_per_m, 12500);
-  EXPECT_NEAR(power_of(made->bands), made->rms * made->rms, 1e-12);
+  EXPECT_NEAR(power_of_band(made->bands), made->rms * made->rms, 1e-12);
   EXPECT_TRUE(made->bands.front().partial);
   EXPECT_TRUE(made->bands.back().partial);
   for (std::size_t i = 1; i + 1 < made->bands.size(); ++i) {

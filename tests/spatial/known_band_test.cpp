@@ -14,18 +14,18 @@ namespace {
 
 using schema::BandPoint;
 
-const std::vector<BandPoint> kBand = {
+const std::vector<BandPoint> kKnownBand = {
     {0, 100, 9000}, {10e-3, 300, 9000}, {20e-3, 300, 5000}, {40e-3, 500, 5000}};
 
 TEST(KnownBand, IsTheNarrowestAlongTheStretch) {
   // Between breakpoints the limits are linear: 200 at 5 mm, 7000 at 15 mm.
-  const auto rising = band_along(kBand, 2e-3, 5e-3);
+  const auto rising = band_along(kKnownBand, 2e-3, 5e-3);
   EXPECT_NEAR(rising.low_per_m, 200, 1e-9);
   EXPECT_NEAR(rising.high_per_m, 9000, 1e-9);
-  const auto falling = band_along(kBand, 8e-3, 15e-3);
+  const auto falling = band_along(kKnownBand, 8e-3, 15e-3);
   EXPECT_NEAR(falling.low_per_m, 300, 1e-9);
   EXPECT_NEAR(falling.high_per_m, 7000, 1e-9);
-  const auto all = band_along(kBand, -1, 1);
+  const auto all = band_along(kKnownBand, -1, 1);
   EXPECT_NEAR(all.low_per_m, 500, 1e-9);
   EXPECT_NEAR(all.high_per_m, 5000, 1e-9);
 }
@@ -38,12 +38,12 @@ TEST(KnownBand, FindsAPeakBetweenTheEnds) {
 // Compared with a test of every position of a fine grid.
 TEST(KnownBand, AgreesWithALookAtEachPosition) {
   const std::vector<double> centres = {0, 4e-3, 9.9e-3, 17e-3, 39e-3, 50e-3};
-  const auto known = known_bands(kBand, centres, 10e-3);
+  const auto known = known_bands(kKnownBand, centres, 10e-3);
   ASSERT_EQ(known.size(), centres.size());
   for (std::size_t p = 0; p < centres.size(); ++p) {
     double low = 0, high = INFINITY;
     for (int i = -1960; i <= 1960; ++i) {
-      const auto at = band_along(kBand, centres[p] + i * 1e-6, centres[p] + i * 1e-6);
+      const auto at = band_along(kKnownBand, centres[p] + i * 1e-6, centres[p] + i * 1e-6);
       low = std::max(low, at.low_per_m);
       high = std::min(high, at.high_per_m);
     }

@@ -18,14 +18,14 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kBudgetTurn = 2 * std::numbers::pi;
 
 struct BudgetLine {
   double frequency, amplitude, phase;  // 1/m, or of vibrations in time: cycles a frame
 };
 
 // A surface, a finger on it with exactly known position, and the requested error.
-struct Case {
+struct BudgetCase {
   TextureNeed need;
   double wander = 0, wander_frames = 0, asked = 0;
   std::size_t frames = 0;
@@ -37,7 +37,7 @@ struct Case {
   double sum_of(double place) const {
     double sum = 0;
     for (const BudgetLine& line : lines)
-      sum += line.amplitude * std::sin(kTurn * line.frequency * place + line.phase);
+      sum += line.amplitude * std::sin(kBudgetTurn * line.frequency * place + line.phase);
     return sum;
   }
   // By bisection; the position increases with each frame.
@@ -47,7 +47,7 @@ struct Case {
     return low;
   }
   double way_m(double frame) const {
-    const double turn = kTurn / wander_frames;
+    const double turn = kBudgetTurn / wander_frames;
     return need.slowest_mps / need.sample_rate_hz * (frame + wander * std::sin(turn * frame) / turn);
   }
 };
@@ -62,9 +62,9 @@ class Draw {
   std::mt19937_64 random_;
 };
 
-Case drawn_case(unsigned seed) {
+BudgetCase drawn_case(unsigned seed) {
   Draw draw(seed);
-  Case made;
+  BudgetCase made;
   made.need.sample_rate_hz = draw.logarithmic(2e3, 50e3);
   made.need.highest_hz = made.need.sample_rate_hz / draw.logarithmic(4, 100);
   made.need.slowest_mps = draw.logarithmic(0.01, 0.3);
@@ -80,12 +80,12 @@ Case drawn_case(unsigned seed) {
   const int lines = draw.even(0, 1) < 0.5 ? 1 : 12;
   for (int i = 0; i < lines; ++i)
     made.lines.push_back(
-        {highest * (i == 0 ? 1 : draw.even(0.02, 1)), draw.even(0.1, 1), draw.even(0, kTurn)});
+        {highest * (i == 0 ? 1 : draw.even(0.02, 1)), draw.even(0.1, 1), draw.even(0, kBudgetTurn)});
   return made;
 }
 
 // As TextureMaker does: on a finer grid if the band requires one, then decimated.
-schema::SpaceSignal texture_by(const TextureChoice& choice, const Case& from) {
+schema::SpaceSignal texture_by(const TextureChoice& choice, const BudgetCase& from) {
   MonotonePath path;
   std::vector<double> force;
   for (std::size_t i = 0; i < from.frames; ++i) {
@@ -101,7 +101,7 @@ schema::SpaceSignal texture_by(const TextureChoice& choice, const Case& from) {
 }
 
 // RMS error of playback's interpolation, re the RMS, away from the ends.
-double real_error(const TextureChoice& choice, const Case& from) {
+double real_error(const TextureChoice& choice, const BudgetCase& from) {
   const schema::SpaceSignal texture = texture_by(choice, from);
   const playback::TextureLookup lookup(texture, texture.origin_m);
   const double length_m = texture.length_m();
@@ -128,7 +128,7 @@ TEST(Budget, KeepsItsPromiseForRandomSurfacesAndFingers) {
   std::size_t kept = 0, refused = 0;
   double closest = 0;
   for (unsigned seed = 0; seed < 700; ++seed) {
-    const Case drawn = drawn_case(seed);
+    const BudgetCase drawn = drawn_case(seed);
     const auto choices = choose_texture(*table, drawn.need, budget_of(drawn.asked));
     if (!choices) {
       ++refused;

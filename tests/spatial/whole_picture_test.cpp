@@ -125,7 +125,7 @@ TEST(SvgNumbers, PathsAreRoundedAndNothingElse) {
       "<path id=\"p1.2345\" d=\"M 0 2.35 L 10 2 Z\"/><a x=\"1.23456\"/>");
 }
 
-std::vector<double> noise(std::size_t size) {
+std::vector<double> drawn_noise(std::size_t size) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
   std::vector<double> values(size);
@@ -136,7 +136,7 @@ std::vector<double> noise(std::size_t size) {
 TEST(ShownRange, NoiseAndSinesAreShownWhole) {
   std::vector<double> sine(10000);
   for (std::size_t i = 0; i < sine.size(); ++i) sine[i] = std::sin(0.01 * static_cast<double>(i));
-  for (const auto& values : {noise(1'000'000), sine}) {
+  for (const auto& values : {drawn_noise(1'000'000), sine}) {
     const ShownRange range = shown_range(values);
     EXPECT_EQ(range.beyond, 0U);
     EXPECT_EQ(range.low, *std::ranges::min_element(values));
