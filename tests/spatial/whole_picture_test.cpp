@@ -145,7 +145,7 @@ TEST(ShownRange, NoiseAndSinesAreShownWhole) {
 }
 
 TEST(ShownRange, OneSpikeDoesNotSquashTheRest) {
-  std::vector<double> values = noise(10000);
+  std::vector<double> values = drawn_noise(10000);
   values[17] = 1000;
   const ShownRange range = shown_range(values);
   EXPECT_LT(range.high, 10);
@@ -156,7 +156,7 @@ TEST(ShownRange, OneSpikeDoesNotSquashTheRest) {
 
 // A twentieth of each stroke, like the onset in a recording of a finger.
 TEST(ShownRange, OnsetsDoNotSquashTheStrokes) {
-  std::vector<double> values = noise(100'000);
+  std::vector<double> values = drawn_noise(100'000);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (i % 10'000 < 500) values[i] += 20;
   const ShownRange range = shown_range(values);
@@ -167,7 +167,7 @@ TEST(ShownRange, OnsetsDoNotSquashTheStrokes) {
 
 // Rest with one short stroke: the picture must show the stroke.
 TEST(ShownRange, AStrokeAmongRestIsShown) {
-  std::vector<double> values = noise(100'000);
+  std::vector<double> values = drawn_noise(100'000);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (i >= 5'000) values[i] *= 1e-3;
   EXPECT_EQ(shown_range(values).beyond, 0U);
