@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <set>
 #include <type_traits>
+#include <utility>
 
 #include "data-schema/base/module.hpp"
 #include "data-schema/exchange/mat5_check.hpp"
@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::string_view kMat5 = "MATLAB 5.0 MAT-file", kMat73 = "MATLAB 7.3 MAT-file";
 constexpr std::string_view kMadeBy = ", made by tactograph";
-constexpr std::size_t kMostColumns = 1024;          // of a matrix; one of more is no table of channels
-constexpr double kLargestWhole = 9007199254740992;  // 2^53
+constexpr std::size_t kMostColumns = 1024;  // of a matrix; one of more is no table of channels
+constexpr std::int64_t kLargestWhole = std::int64_t{1} << 53;
 
 Result<const MatioFunctions*> matio() {
   static const auto entry = function_in_module(kMatioModule, kMatioEntry);
@@ -53,7 +53,8 @@ std::string beginning_of(const std::string& path) {
 }
 
 tl::unexpected<Error> damaged(const std::string& where) {
-  return fail(ErrorKind::malformed, "cannot be read: the file was cut or is damaged", where,
+  return fail(ErrorKind::malformed,
+              "cannot be read: it was cut, is damaged, or was not written as MATLAB does", where,
               "copy it again, or save it again in MATLAB");
 }
 
@@ -191,7 +192,7 @@ Result<void> gather(const matvar_t& array, const MatColumn& column, const std::s
   for (std::uint64_t i = 0; i < column.rows; ++i) {
     const Number number = numbers[column.first + i * column.step];
     if constexpr (std::is_integral_v<Number> && sizeof(Number) == 8)
-      if (std::abs(static_cast<double>(number)) > kLargestWhole)
+      if (std::cmp_greater(number, kLargestWhole) || std::cmp_less(number, -kLargestWhole))
         return fail(ErrorKind::unsuitable, fmt::format("{} is beyond 2^53 and has no exact double", number),
                     fmt::format("{}: {}, sample {}", where, column.name, i),
                     "in MATLAB subtract an offset before saving");

@@ -106,14 +106,22 @@ def refuse_all_cuts(name, column):
         assert done.returncode in (USAGE, MALFORMED) and done.stderr.count("\n") == 1, (name, length, done)
 
 
+def set_class(item, name):
+    """MATLAB's attribute: text of a type that ends with zero, without the zero."""
+    kind = h5py.h5t.C_S1.copy()
+    kind.set_size(len(name))
+    text = h5py.h5a.create(item.id, b"MATLAB_class", kind, h5py.h5s.create(h5py.h5s.SCALAR))
+    text.write(np.array(name.encode()), mtype=kind)
+
+
 def write_73(path, force_n):
     """A file of version 7.3 as MATLAB writes it: HDF5 behind a block of 512 bytes, a struct as a group."""
     with h5py.File(path, "w", userblock_size=512) as file:
-        group = file.create_group("data")
-        group.attrs["MATLAB_class"] = np.bytes_("struct")
-        for name, values in (("force", force_n.reshape(1, -1)), ("count", np.arange(force_n.size, dtype=np.int32).reshape(1, -1))):
-            group[name] = values
-            group[name].attrs["MATLAB_class"] = np.bytes_({"f": "double", "i": "int32"}[values.dtype.kind])
+        data = file.create_group("data")
+        set_class(data, "struct")
+        for name, kind, values in (("force", "double", force_n), ("count", "int32", np.arange(force_n.size, dtype=np.int32))):
+            data[name] = values.reshape(1, -1)
+            set_class(data[name], kind)
     with open(path, "r+b") as file:
         file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM")
 
