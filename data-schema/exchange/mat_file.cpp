@@ -65,7 +65,7 @@ Result<OpenMat> open_mat(const std::string& path) {
   if (!is_mat(head)) return fail(ErrorKind::malformed, "is no MATLAB file of version 5 or 7.3", path);
   if (head == kMat5) TACTO_TRY(check_mat5(path));
   OpenMat file(nullptr, CloseMat{*functions});
-  if (head == kMat5 || (*functions)->hdf5_variables(path.c_str()) >= 0)
+  if (head == kMat5 || (*functions)->hdf5_members(path.c_str(), "/") >= 0)
     file.reset((*functions)->open(path.c_str(), MAT_ACC_RDONLY));
   if (file == nullptr) return damaged(path);
   return file;
@@ -155,6 +155,21 @@ void for_each_array(const MatioFunctions& functions, matvar_t& array, const std:
   for (unsigned i = 0; i < functions.fields(&array); ++i)
     if (matvar_t* const field = functions.field(&array, i, 0); field != nullptr && names != nullptr)
       for_each_array(functions, *field, path + "." + names[i], visit);
+}
+
+// Whether matio found all fields of the structs of a file of version 7.3.
+Result<void> check_fields(const MatioFunctions& functions, matvar_t& array, const std::string& path,
+                          const std::string& group) {
+  if (array.class_type != MAT_C_STRUCT || count_of(array) != 1) return {};
+  const unsigned fields = functions.fields(&array);
+  char* const* const names = functions.field_names(&array);
+  // A struct without fields is no group.
+  if (std::max(functions.hdf5_members(path.c_str(), group.c_str()), 0L) != static_cast<long>(fields))
+    return damaged(fmt::format("{}: {}", path, group));
+  for (unsigned i = 0; i < fields; ++i)
+    if (matvar_t* const field = functions.field(&array, i, 0); field != nullptr)
+      TACTO_TRY(check_fields(functions, *field, path, fmt::format("{}/{}", group, names[i])));
+  return {};
 }
 
 void add_columns(MatContents& contents, const std::string& path, const matvar_t& array) {
@@ -273,12 +288,14 @@ Result<MatContents> mat_contents(const std::string& path) {
     const Variable variable(next, FreeVariable{*functions});
     ++variables;
     if (next->name == nullptr) continue;
+    if (contents.format == kMat73)
+      TACTO_TRY(check_fields(**functions, *next, path, std::string("/") + next->name));
     for_each_array(**functions, *next, next->name, [&](const std::string& name, const matvar_t& array) {
       contents.arrays.push_back({name, class_of(array), size_words(array), refusal_of(array)});
       if (contents.arrays.back().refusal.empty()) add_columns(contents, name, array);
     });
   }
-  if (contents.format == kMat73 && variables != (*functions)->hdf5_variables(path.c_str()))
+  if (contents.format == kMat73 && variables != (*functions)->hdf5_members(path.c_str(), "/"))
     return damaged(path);
   return contents;
 }
