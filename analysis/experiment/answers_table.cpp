@@ -39,8 +39,7 @@ struct Table {
 Result<capture::Source> open_answers(const std::string& file) {
   auto source = capture::open_source(file);
   TACTO_TRY(source);
-  if (!source->csv)
-    return fail(ErrorKind::unsuitable, "is no table of answers", file, "name a CSV file");
+  if (!source->csv) return fail(ErrorKind::unsuitable, "is no table of answers", file, "name a CSV file");
   if (!source->csv->header)
     return fail(ErrorKind::malformed, "has no names of columns in its first line", file,
                 "add a line such as level,correct,trials");
