@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <set>
 #include <type_traits>
+#include <utility>
 
 #include "data-schema/base/module.hpp"
 #include "data-schema/exchange/mat5_check.hpp"
@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::string_view kMat5 = "MATLAB 5.0 MAT-file", kMat73 = "MATLAB 7.3 MAT-file";
 constexpr std::string_view kMadeBy = ", made by tactograph";
-constexpr std::size_t kMostColumns = 1024;          // of a matrix; one of more is no table of channels
-constexpr double kLargestWhole = 9007199254740992;  // 2^53
+constexpr std::size_t kMostColumns = 1024;  // of a matrix; one of more is no table of channels
+constexpr std::int64_t kLargestWhole = std::int64_t{1} << 53;
 
 Result<const MatioFunctions*> matio() {
   static const auto entry = function_in_module(kMatioModule, kMatioEntry);
@@ -53,7 +53,8 @@ std::string beginning_of(const std::string& path) {
 }
 
 tl::unexpected<Error> damaged(const std::string& where) {
-  return fail(ErrorKind::malformed, "cannot be read: the file was cut or is damaged", where,
+  return fail(ErrorKind::malformed,
+              "cannot be read: it was cut, is damaged, or was not written as MATLAB does", where,
               "copy it again, or save it again in MATLAB");
 }
 
@@ -64,7 +65,7 @@ Result<OpenMat> open_mat(const std::string& path) {
   if (!is_mat(head)) return fail(ErrorKind::malformed, "is no MATLAB file of version 5 or 7.3", path);
   if (head == kMat5) TACTO_TRY(check_mat5(path));
   OpenMat file(nullptr, CloseMat{*functions});
-  if (head == kMat5 || (*functions)->hdf5_variables(path.c_str()) >= 0)
+  if (head == kMat5 || (*functions)->hdf5_members(path.c_str(), "/") >= 0)
     file.reset((*functions)->open(path.c_str(), MAT_ACC_RDONLY));
   if (file == nullptr) return damaged(path);
   return file;
@@ -156,6 +157,21 @@ void for_each_array(const MatioFunctions& functions, matvar_t& array, const std:
       for_each_array(functions, *field, path + "." + names[i], visit);
 }
 
+// Whether matio found all fields of the structs of a file of version 7.3.
+Result<void> check_fields(const MatioFunctions& functions, matvar_t& array, const std::string& path,
+                          const std::string& group) {
+  if (array.class_type != MAT_C_STRUCT || count_of(array) != 1) return {};
+  const unsigned fields = functions.fields(&array);
+  char* const* const names = functions.field_names(&array);
+  // A struct without fields is no group.
+  if (std::max(functions.hdf5_members(path.c_str(), group.c_str()), 0L) != static_cast<long>(fields))
+    return damaged(fmt::format("{}: {}", path, group));
+  for (unsigned i = 0; i < fields; ++i)
+    if (matvar_t* const field = functions.field(&array, i, 0); field != nullptr)
+      TACTO_TRY(check_fields(functions, *field, path, fmt::format("{}/{}", group, names[i])));
+  return {};
+}
+
 void add_columns(MatContents& contents, const std::string& path, const matvar_t& array) {
   const std::uint64_t rows = array.dims[0], columns = array.dims[1];
   if (rows == 1 || columns == 1) {
@@ -191,7 +207,7 @@ Result<void> gather(const matvar_t& array, const MatColumn& column, const std::s
   for (std::uint64_t i = 0; i < column.rows; ++i) {
     const Number number = numbers[column.first + i * column.step];
     if constexpr (std::is_integral_v<Number> && sizeof(Number) == 8)
-      if (std::abs(static_cast<double>(number)) > kLargestWhole)
+      if (std::cmp_greater(number, kLargestWhole) || std::cmp_less(number, -kLargestWhole))
         return fail(ErrorKind::unsuitable, fmt::format("{} is beyond 2^53 and has no exact double", number),
                     fmt::format("{}: {}, sample {}", where, column.name, i),
                     "in MATLAB subtract an offset before saving");
@@ -272,12 +288,14 @@ Result<MatContents> mat_contents(const std::string& path) {
     const Variable variable(next, FreeVariable{*functions});
     ++variables;
     if (next->name == nullptr) continue;
+    if (contents.format == kMat73)
+      TACTO_TRY(check_fields(**functions, *next, path, std::string("/") + next->name));
     for_each_array(**functions, *next, next->name, [&](const std::string& name, const matvar_t& array) {
       contents.arrays.push_back({name, class_of(array), size_words(array), refusal_of(array)});
       if (contents.arrays.back().refusal.empty()) add_columns(contents, name, array);
     });
   }
-  if (contents.format == kMat73 && variables != (*functions)->hdf5_variables(path.c_str()))
+  if (contents.format == kMat73 && variables != (*functions)->hdf5_members(path.c_str(), "/"))
     return damaged(path);
   return contents;
 }

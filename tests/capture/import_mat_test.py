@@ -106,14 +106,26 @@ def refuse_all_cuts(name, column):
         assert done.returncode in (USAGE, MALFORMED) and done.stderr.count("\n") == 1, (name, length, done)
 
 
-def write_73(path, force_n):
+def set_class(item, name):
+    """MATLAB's attribute: text of a type that ends with zero, without the zero."""
+    kind = h5py.h5t.C_S1.copy()
+    kind.set_size(len(name))
+    text = h5py.h5a.create(item.id, b"MATLAB_class", kind, h5py.h5s.create(h5py.h5s.SCALAR))
+    text.write(np.array(name.encode()), mtype=kind)
+
+
+def write_73(path, force_n, fields=True):
     """A file of version 7.3 as MATLAB writes it: HDF5 behind a block of 512 bytes, a struct as a group."""
     with h5py.File(path, "w", userblock_size=512) as file:
-        group = file.create_group("data")
-        group.attrs["MATLAB_class"] = np.bytes_("struct")
-        for name, values in (("force", force_n.reshape(1, -1)), ("count", np.arange(force_n.size, dtype=np.int32).reshape(1, -1))):
-            group[name] = values
-            group[name].attrs["MATLAB_class"] = np.bytes_({"f": "double", "i": "int32"}[values.dtype.kind])
+        data = file.create_group("data")
+        set_class(data, "struct")
+        names = np.empty(2, dtype=object)
+        names[:] = [np.array([letter.encode() for letter in name], dtype="S1") for name in ("force", "count")]
+        if fields:
+            data.attrs.create("MATLAB_fields", names, dtype=h5py.vlen_dtype(np.dtype("S1")))
+        for name, kind, values in (("force", "double", force_n), ("count", "int32", np.arange(force_n.size, dtype=np.int32))):
+            data[name] = values.reshape(1, -1)
+            set_class(data[name], kind)
     with open(path, "r+b") as file:
         file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM")
 
@@ -123,9 +135,22 @@ def version_7_3():
     write_73("new.mat", force_n)
     tacto.run("import", "new.mat", "-o", "new", "--rate", "10kHz", "--channel", "tangential_force=data.force*1N", "--channel", "position=data.count*1um")
     assert np.array_equal(stored("new"), np.column_stack([force_n, np.arange(ROWS)]))
+    write_73("strange.mat", force_n, fields=False)  # matio leaves out one of its fields
+    _, said = tacto.run("import", "strange.mat", "-o", "x", "--rate", "10kHz", "--channel", "position=data.count*1um", code=MALFORMED)
+    assert "data" in said, said
+
+
+def files_of_octave():
+    for version in ("-v6", "-v7"):  # both are version 5 of the format, the second compressed
+        octave = f"data.force = sin(1:{ROWS})'; data.count = int16(1:{ROWS}); save('{version}', 'octave.mat', 'data');"
+        tacto.subprocess.run(["octave-cli", "--norc", "--eval", octave], check=True, capture_output=True)
+        tacto.run("import", "octave.mat", "-o", "o", "--force", "--rate", "10kHz", "--channel", "tangential_force=data.force*1N", "--channel",
+                  "position=data.count*1um")
+        values = scipy.io.loadmat("octave.mat")["data"][0, 0]
+        assert np.array_equal(stored("o"), np.column_stack([values["force"].ravel(), np.arange(1, ROWS + 1)]))
 
 
 if __name__ == "__main__":
     for test in (numbers_are_those_of_scipy, without_options_it_lists, each_refusal_names_its_array, nan_is_refused_or_becomes_a_gap,
-                 a_cut_file_is_never_silently_short, version_7_3):
+                 a_cut_file_is_never_silently_short, version_7_3, files_of_octave):
         tacto.in_folder(test)

@@ -181,12 +181,12 @@ class SceneWorkload {
     WorkloadRandom heights{7};
     for (float& coefficient : block_.relief.coefficients)
       coefficient = static_cast<float>(heights()) * (1e-4F / 32768);
-    // A unit is 2^-32 of 0.5 m; 48 atoms of 3 mm within 0.06 m, 9 mm around the section.
+    // A unit is 2^-32 of 0.5 m; 24 atoms of 3 mm within 0.06 m, 9 mm around the section.
     block_.field.table = {{{0, 0, {{0, 51539, 2611340115U}, {-1, 4294898576U, 0}}},
                            {0, 0, {{0, 68719, 2052994367U}, {0, 51539, 2611340115U}}}},
                           8.589934592e9F,
                           1,
-                          48};
+                          24};
     for (core::FieldAtom& atom : block_.field.atoms) {
       atom.x = heights() * 16384, atom.y = heights() * 16384;
       atom.z = static_cast<float>(heights()) * 2400;
@@ -250,7 +250,7 @@ class SceneWorkload {
     } bodies;
     struct {
       core::FieldTable table;
-      core::FieldAtom atoms[48];
+      core::FieldAtom atoms[24];
     } field;
   } block_;
   WorkloadRandom next_{1990};

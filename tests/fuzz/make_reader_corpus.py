@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes the seeds of the readers' corpora. Usage: make_reader_corpus.py TACTOGRAPH"""
+import io
 import json
 import pathlib
 import struct
@@ -37,6 +38,16 @@ def write_wavs():
     write("wav", "rf64", b"RF64" + b"\xff" * 4 + b"WAVE" + sizes + form + data)
 
 
+def write_mats():
+    import numpy as np
+    import scipy.io
+    made = {"s": {"f": np.arange(6.0), "t": "text", "c": np.array([1, "a"], dtype=object)}, "z": np.arange(3) * 1j, "i": np.arange(4, dtype=np.int16)}
+    for name, compressed in (("plain", False), ("compressed", True)):
+        file = io.BytesIO()
+        scipy.io.savemat(file, made, do_compression=compressed)
+        write("mat", name, b"MATLAB 5.0 MAT-file".ljust(116) + file.getvalue()[116:])  # without the date
+
+
 def write_tables():
     rows = [(i / 1000, 0.1 * (i % 5), 40 * i) for i in range(40)]
     lines = "".join(f"{t},{force},{count}\n" for t, force, count in rows)
@@ -63,5 +74,6 @@ def write_sidecars(tactograph):
 
 if __name__ == "__main__":
     write_wavs()
+    write_mats()
     write_tables()
     write_sidecars(str(pathlib.Path(sys.argv[1]).resolve()))

@@ -18,11 +18,12 @@ herr_t count_link(hid_t /*group*/, const char* name, const H5L_info_t* /*info*/,
   return 0;
 }
 
-long hdf5_variables(const char* path) {
+long hdf5_members(const char* path, const char* group) {
   const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0) return -1;
   long count = 0;
-  const herr_t done = H5Literate(file, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, count_link, &count);
+  const herr_t done = H5Literate_by_name(file, group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, count_link,
+                                         &count, H5P_DEFAULT);
   H5Fclose(file);
   return done < 0 ? -1 : count;
 }
@@ -47,7 +48,7 @@ tacto_matio_functions() {
       Mat_VarGetNumberOfFields,
       Mat_VarGetStructFieldnames,
       Mat_VarGetStructFieldByIndex,
-      hdf5_variables,
+      hdf5_members,
   };
   // As in the module of netCDF: HDF5's clean-up at exit crashes after a full disk.
   [[maybe_unused]] static const herr_t no_cleanup = H5dont_atexit();

@@ -23,9 +23,10 @@ struct MatioFunctions {
   decltype(&::Mat_VarGetNumberOfFields) fields;
   decltype(&::Mat_VarGetStructFieldnames) field_names;
   decltype(&::Mat_VarGetStructFieldByIndex) field;
-  /// The number of variables of a file of version 7.3; -1 if HDF5 cannot open it, as after it was cut. matio
-  /// opens such a file without an error and finds no variables.
-  long (*hdf5_variables)(const char* path);
+  /// The number of members of a group of a file of version 7.3: variables of "/", fields of "/data". -1 if
+  /// HDF5 cannot open it, as after the file was cut. matio opens such a file without an error and finds no
+  /// variables; of a struct without the attribute MATLAB_fields it leaves fields out.
+  long (*hdf5_members)(const char* path, const char* group);
 };
 
 inline constexpr const char* kMatioModule = "tactograph-matio.so";
