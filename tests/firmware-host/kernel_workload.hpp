@@ -117,7 +117,7 @@ class TextureWorkload {
   float samples_[kTextureSamples], taps_[kTextureTaps];
 };
 
-inline constexpr uint32_t kSceneFingerprint = 2303621665;
+inline constexpr uint32_t kSceneFingerprint = 438319789;
 
 /// A scene of four overlapping patches with springs, dampers, grooves, noise, a height map, a body with
 /// friction, a lasso, a mover and a field of atoms, which move and change their order, and a hand in the
