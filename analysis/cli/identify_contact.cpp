@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 
 #include "analysis/cli/identify_options.hpp"
 #include "analysis/identify/measure/contact.hpp"
+#include "data-schema/command/verb.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -17,6 +19,20 @@ using schema::Result;
 
 constexpr double kPercent = 100;
 
+// The last fit has all inputs of the table.
+bool has_input(const std::vector<ContactFit>& fits, std::string_view input) {
+  return fits.back().inputs.find(input) != std::string::npos;
+}
+
+void warn_of_negative_mass(const ContactFit& fit) {
+  for (const ContactTerm& term : fit.terms)
+    if (term.name.starts_with("effective mass") && term.high < 0)
+      cli::warn(
+          fmt::format("with {} the effective mass is negative ({:.3g} kg, 95 %: {:.3g} to {:.3g} kg): "
+                      "has the acceleration the sign of the velocity, positive away from the surface?",
+                      fit.inputs, term.value, term.low, term.high));
+}
+
 Report fits_report(const std::vector<ContactFit>& fits, std::size_t taps) {
   Report report;
   const ContactFit& best =
@@ -27,6 +43,7 @@ Report fits_report(const std::vector<ContactFit>& fits, std::size_t taps) {
                        "(RMS, {} taps), the smallest error of {} fits",
                        best.left_out_n, taps, fits.size()));
   std::vector<Report> rows;
+  for (const ContactFit& fit : fits) warn_of_negative_mass(fit);
   for (const ContactFit& fit : fits)
     for (const ContactTerm& term : fit.terms) {
       Report row;
@@ -35,12 +52,12 @@ Report fits_report(const std::vector<ContactFit>& fits, std::size_t taps) {
       row.add("rms_n", fit.rms_n).add("left_out_rms_n", fit.left_out_n);
       rows.push_back(std::move(row));
     }
-  report.add("model",
-             "peak = constant - impact coefficient x velocity - effective mass x acceleration + grip "
-             "coefficient x grip force; velocity and acceleration before contact, positive away from the "
-             "surface");
+  std::string model = "peak = constant - impact coefficient x velocity";
+  if (has_input(fits, "acceleration")) model += " - effective mass x acceleration";
+  if (has_input(fits, "grip")) model += " + grip coefficient x grip force";
+  report.add("model", model + "; velocity and acceleration before contact, positive away from the surface");
   report.add("fits", std::move(rows));
-  if (fits.size() > 1)
+  if (has_input(fits, "acceleration"))
     report.add("mass",
                "the coefficient of the acceleration is not the mass that moves: in the paper's model of hand "
                "and surface it depends on grip and surface (0.31 to 0.54 kg where the paper's fit is 0.335 "
@@ -98,6 +115,9 @@ Result<Report> identify_contact(const IdentifyOptions& o) {
   const auto table = read_numbers(o.file);
   TACTO_TRY(table);
   if (has_peaks(table->names)) {
+    if (o.rate_hz || o.taps_fitted > 0)
+      return fail(ErrorKind::usage, "a table with a row for each tap has neither a rate nor taps to predict",
+                  o.rate_hz ? "--rate" : "--fit-on", "omit it; every tap is predicted from the others");
     const auto fits = fit_contact(*table, o.file);
     TACTO_TRY(fits);
     return fits_report(*fits, table->rows());

@@ -427,6 +427,12 @@ def taps_on_a_surface():
     assert said["double_taps"] == "7" and abs(said["shape_factor"] / (np.pi / 2) - 1) < 0.02, said
     tacto.run("identify", "force.csv", "--method", "contact", code=2)
     tacto.run("identify", "peaks.csv", "--method", "contact", "-o", "none", code=2)
+    tacto.run("identify", "peaks.csv", "--method", "contact", "--rate", "1kHz", code=2)
+    # An acceleration of the other sign gives a negative mass, with a warning; without it the model has none.
+    np.savetxt("signs.csv", np.column_stack([v, -a, peak]), delimiter=",", comments="", fmt="%.17g", header="velocity_mps,acceleration_mps2,peak_n")
+    assert "negative" in tacto.run("identify", "signs.csv", "--method", "contact")[1]
+    np.savetxt("plain.csv", np.column_stack([v, peak]), delimiter=",", comments="", fmt="%.17g", header="velocity_mps,peak_n")
+    assert "acceleration x" not in tacto.run_json("identify", "plain.csv", "--method", "contact")["model"]
     tacto.run("identify", "-d", "sim:", "--method", "contact", code=2)
 
 

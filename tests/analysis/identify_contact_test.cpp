@@ -167,6 +167,9 @@ TEST(IdentifyContact, PulsesHaveTheirClosedForm) {
     EXPECT_NEAR(pulse.impulse / impulse, 1, 1e-3);  // 0.02^2 / pi of it is outside of the edges
     // Both edges at 2 % of the peak cut some 0.02 / pi of the duration each.
     EXPECT_NEAR(pulse.duration_s, 1e-3, 0.02e-3);
+    // The edges at 2 % of the peak move the pulse's beginning and the peak's time within it: 10 % of a, not
+    // the w^2 dt / 2 = 25 /s and more of the nearest sample.
+    EXPECT_NEAR(pulse.decay_per_s, a, 0.1 * a);
     EXPECT_FALSE(pulse.is_double);
   }
 }

@@ -92,6 +92,16 @@ std::optional<double> crossing(const std::vector<double>& force, std::size_t pea
   return std::nullopt;
 }
 
+// The sample of the peak of a parabola through the largest sample and its neighbours. The sample itself would
+// be wrong by up to half a sample, which the decay multiplies by w^2.
+double peak_place(const std::vector<double>& force, std::size_t largest) {
+  const auto at = static_cast<double>(largest);
+  if (largest == 0 || largest + 1 == force.size()) return at;
+  const double before = force[largest - 1], after = force[largest + 1];
+  const double bend = before - 2 * force[largest] + after;
+  return bend < 0 ? at + (before - after) / (2 * bend) : at;
+}
+
 Result<ContactPulse> pulse_of(const Tap& tap, double rate_hz) {
   const auto broken = std::ranges::find_if_not(tap.value, [](double v) { return std::isfinite(v); });
   if (broken != tap.value.end())
@@ -131,7 +141,7 @@ Result<ContactPulse> pulse_of(const Tap& tap, double rate_hz) {
     pulse.impulse += force[i] / rate_hz;
   pulse.duration_s = (*end - *begin) / rate_hz;
   const double turn = std::numbers::pi / pulse.duration_s;  // w, rad/s
-  const double rise_s = (static_cast<double>(largest) - *begin) / rate_hz;
+  const double rise_s = (peak_place(force, largest) - *begin) / rate_hz;
   pulse.frequency_hz = turn / (2 * std::numbers::pi);
   pulse.decay_per_s = turn / std::tan(turn * rise_s);
   pulse.peak *= sign;
@@ -165,7 +175,7 @@ Result<std::vector<ContactFit>> fit_contact(const NumberTable& table, const std:
     if (!(table.at(row, *velocity) < 0))
       return fail(ErrorKind::malformed, "the velocity before contact is not negative",
                   fmt::format("{}, line {}, column velocity_mps", source, table.lines[row]),
-                  "velocity and acceleration are positive away from the surface");
+                  "velocity and acceleration are positive away from the surface: change the sign of both");
   Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(static_cast<Index>(table.rows()), 1);
   std::vector<ContactInput> inputs;
   std::vector<ContactFit> fits;
