@@ -43,6 +43,7 @@ constexpr Suffix kSuffixes[] = {
     {"_deg", "degrees"},
     {"_db", "dB"},
     {"_f", "F"},
+    {"_c", "C"},
 };
 
 std::optional<Suffix> suffix_of(std::string_view key) {
