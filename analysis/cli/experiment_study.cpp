@@ -478,7 +478,9 @@ cli::Action declare_withdraw(CLI::App& app) {
       "the "
       "study's folder,\nwhich can be made again without this participant. STUDY.withdrawn.txt keeps the code "
       "and "
-      "the date. If it is interrupted, repeat it.");
+      "the date. If it is interrupted, repeat it.\nIf one of these files or folders is a symbolic link, it "
+      "is refused "
+      "before anything is deleted.");
   return [options] { return run_withdraw(*options); };
 }
 

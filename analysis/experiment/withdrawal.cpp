@@ -88,6 +88,17 @@ void add_logged(Withdrawal& withdrawal) {
   }
 }
 
+// Without the link, the answers behind it would be left where they are hard to find.
+Result<void> check_no_links(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    std::error_code failed;
+    if (!fs::is_symlink(fs::symlink_status(file, failed))) continue;
+    return fail(ErrorKind::unsuitable, "is a symbolic link to " + schema::canonical_path(file), file,
+                "delete what it names and the link yourself, or move it here, then withdraw again");
+  }
+  return {};
+}
+
 Result<void> remove_file(const std::string& file) {
   std::error_code failed;
   fs::remove(file, failed);
@@ -100,7 +111,6 @@ Result<void> remove_file(const std::string& file) {
 void remove_folders(const std::string& run) {
   std::error_code failed;
   std::vector<fs::path> folders = {run};
-  if (fs::is_symlink(fs::symlink_status(run, failed))) return;
   for (const auto& entry : fs::recursive_directory_iterator(run, failed))
     if (entry.is_directory(failed) && !entry.is_symlink(failed)) folders.push_back(entry.path());
   std::ranges::sort(folders, std::greater());
@@ -146,6 +156,7 @@ Result<Withdrawal> plan_withdrawal(const std::string& study, const std::string& 
     return fail(ErrorKind::not_found, "no participant with this code", run,
                 "the code is that of STUDY-CODE.trials.jsonl");
   add_logged(withdrawal);
+  TACTO_TRY(check_no_links(withdrawal.files));
   std::ranges::sort(withdrawal.files);
   return withdrawal;
 }

@@ -27,11 +27,12 @@ schema::Result<void> log_outputs(const std::string& stem, const std::vector<std:
 
 /// The files of a participant: the journal, its table, all in STUDY-P07/, and the outputs of the study that
 /// were logged and exist. `study`: STEM or STEM.protocol.json. Errors: not_found: no study, or neither a file
-/// nor a record of this participant; usage: no code of a participant.
+/// nor a record of this participant; unsuitable: one of the files is a symbolic link; usage: no code of a
+/// participant.
 schema::Result<Withdrawal> plan_withdrawal(const std::string& study, const std::string& participant);
 
-/// Writes the record, then deletes the files; after an interruption it can be repeated. Links are deleted,
-/// not what they name. Errors: unsuitable, while the participant's run is going on; cannot_write.
+/// Writes the record, then deletes the files; after an interruption it can be repeated. Errors:
+/// unsuitable, while the participant's run is going on; cannot_write.
 schema::Result<void> withdraw(const Withdrawal& withdrawal);
 
 }  // namespace tacto::analysis

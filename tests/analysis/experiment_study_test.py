@@ -254,6 +254,16 @@ def a_participant_withdraws():
     outside = pathlib.Path("/tmp/" + here.resolve().name + "-outside")
     tacto.run("experiment", "analyse", "more", "--unblind", "-o", f"{outside}/page.html")
     pathlib.Path("more-P011.trials.tsv").write_text("")  # of another participant
+    # Files behind a link, as of a folder of sessions on another disk: refused before anything is deleted.
+    for name, elsewhere in (("more-P01", outside / "sessions"), ("more-P01/001-1.session", outside / "001-1.session"), ("more-P01.trials.jsonl", outside / "journal")):
+        shutil.move(name, elsewhere)
+        os.symlink(elsewhere, name)
+        before = sorted(here.rglob("*"))
+        refused = tacto.error_of("experiment", "withdraw", "more", "--participant", "P01", "--yes", code=5)
+        assert refused["where"] == name and str(elsewhere) in refused["what"], refused
+        assert sorted(here.rglob("*")) == before and elsewhere.exists()
+        os.remove(name)
+        shutil.move(elsewhere, name)
     listed = tacto.run_json("experiment", "withdraw", "more", "--participant", "P01", code=2)
     files = set(listed["to_be_deleted"])
     expected = {"more-P01.trials.jsonl", "more-P01.trials.tsv", *map(str, here.glob("more-P01/*"))}
