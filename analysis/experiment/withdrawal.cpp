@@ -117,6 +117,22 @@ void remove_folders(const std::string& run) {
   for (const fs::path& folder : folders) fs::remove(folder, failed);
 }
 
+// Folders sub-P07/beh of exports that are now empty; the folder of the export itself stays.
+void remove_subject_folders(const std::string& stem) {
+  const fs::path study_folder = folder_of_study(stem);
+  for (const std::string& line : lines_of(outputs_path(stem))) {
+    const fs::path table = placed(study_folder / line), beh = table.parent_path(),
+                   subject = beh.parent_path();
+    const std::string name = subject.filename().string();
+    if (!name.starts_with("sub-") || !table.filename().string().starts_with(name + "_task-") ||
+        !is_below(subject, study_folder))
+      continue;
+    std::error_code failed;  // of a folder with files
+    fs::remove(beh, failed);
+    fs::remove(subject, failed);
+  }
+}
+
 }  // namespace
 
 bool is_withdrawn(const std::string& stem, const std::string& participant) {
@@ -179,6 +195,7 @@ Result<void> withdraw(const Withdrawal& withdrawal) {
   }
   for (const std::string& file : withdrawal.files) TACTO_TRY(remove_file(file));
   remove_folders(run);
+  remove_subject_folders(withdrawal.stem);
   if (!schema::is_file(outputs_path(withdrawal.stem))) return {};
   return write_lines(outputs_path(withdrawal.stem), withdrawal.outside);
 }

@@ -277,9 +277,11 @@ def a_participant_withdraws():
     tacto.run("experiment", "resume", "more-P01", code=5)
     fits = tacto.run_json("experiment", "analyse", "more", "--unblind")["fits"]
     assert [fit["participant"] for fit in fits] == ["P02"]
+    os.makedirs("out/sub-P02/notes")  # not of the export
     done = tacto.run_json("experiment", "withdraw", "more.protocol.json", "--participant", "P01", "--yes")
     assert done["withdrawn"] is True and set(done["deleted"]) == files - {"more-P01.trials.tsv"}
     assert not any(map(os.path.exists, files)) and not os.path.exists("more-P01") and (outside / "page.html").exists()
+    assert sorted(map(str, pathlib.Path("out").rglob("*"))) == ["out/sub-P02", "out/sub-P02/notes"]
     assert pathlib.Path("more.withdrawn.txt").read_text().count("P01") == 1
     assert os.path.exists("more-P02.trials.jsonl") and os.path.exists("more/K1.texture.wav") and os.path.exists("more-P011.trials.tsv")
     assert tacto.run_json("experiment", "withdraw", "more", "--participant", "P01", "--yes")["deleted"] == []  # again
