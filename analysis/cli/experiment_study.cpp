@@ -359,6 +359,16 @@ Result<Report> run_withdraw(const WithdrawOptions& o) {
     report.add("outside_the_study", withdrawal->outside);
     cli::warn("files outside the study's folder are not deleted: delete them yourself");
   }
+  const Leftovers left = find_leftovers(*withdrawal);
+  if (!left.paths.empty()) {
+    report.add("not_deleted", left.paths);
+    cli::warn(
+        fmt::format("files or folders with the code {} in the study's folder are not deleted: look yourself",
+                    o.participant));
+  }
+  if (!left.complete)
+    cli::warn(fmt::format("the study's folder was not searched completely for the code {}: look yourself",
+                          o.participant));
   if (yes) return report;
   report.add("next", fmt::format("tactograph experiment withdraw {} --participant {} --yes", withdrawal->stem,
                                  o.participant));
@@ -480,7 +490,10 @@ cli::Action declare_withdraw(CLI::App& app) {
       "and "
       "the date. If it is interrupted, repeat it.\nIf one of these files or folders is a symbolic link, it "
       "is refused "
-      "before anything is deleted.");
+      "before anything is deleted. Other files and folders in the study's folder are not deleted,\nbut named "
+      "if "
+      "they have the code in their name (sub-P07, STUDY-P07), or as a word in a csv, tsv or json file of at "
+      "most 4 MB.");
   return [options] { return run_withdraw(*options); };
 }
 

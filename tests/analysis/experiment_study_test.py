@@ -270,6 +270,19 @@ def a_participant_withdraws():
     assert listed["withdrawn"] is False and expected < files and all(map(os.path.exists, files)), listed
     assert {os.path.basename(file) for file in files - expected} >= {"more.html", "trials.csv", "sub-P02_task-more_beh.tsv"} and len(files - expected) == 10, files - expected
     assert [os.path.basename(file) for file in listed["outside_the_study"]] == ["page.html"]
+    # Copies in the study's folder are named, without what is to be deleted, links, other codes and large tables.
+    assert [os.path.relpath(path) for path in listed["not_deleted"]] == ["counts.csv"], listed
+    shutil.copytree("out", "copies/1")
+    shutil.copytree("out", "copies/2", ignore=shutil.ignore_patterns("sub-*"))
+    shutil.copy("more-P01.trials.jsonl", "copies/more-P01.trials.jsonl")
+    pathlib.Path("out/sub-P01/notes.txt").write_text("")
+    pathlib.Path("copies/other.json").write_text('["P011", "xP01", "p01"]')
+    pathlib.Path("copies/large.csv").write_text("P01," * 1_000_001)
+    shutil.copytree("copies/1/sub-P01", outside / "sub-P01")
+    os.symlink(outside, "copies/link")
+    left = {f"copies/{name}" for name in ("1/sub-P01", "1/participants.tsv", "1/trials.csv", "2/participants.tsv", "2/trials.csv", "more-P01.trials.jsonl")} | {"out/sub-P01/notes.txt", "counts.csv"}
+    listed = tacto.run_json("experiment", "withdraw", "more", "--participant", "P01", code=2)
+    assert set(listed["to_be_deleted"]) == files and {os.path.relpath(path) for path in listed["not_deleted"]} == left, listed
     # As if it had been killed after the record and one file: the run counts no more, and the rest is deleted by repeating it.
     pathlib.Path("more.withdrawn.txt").write_text("2026-01-01T00:00:00Z\tP01\n")
     os.remove("more-P01.trials.tsv")
@@ -281,7 +294,8 @@ def a_participant_withdraws():
     done = tacto.run_json("experiment", "withdraw", "more.protocol.json", "--participant", "P01", "--yes")
     assert done["withdrawn"] is True and set(done["deleted"]) == files - {"more-P01.trials.tsv"}
     assert not any(map(os.path.exists, files)) and not os.path.exists("more-P01") and (outside / "page.html").exists()
-    assert sorted(map(str, pathlib.Path("out").rglob("*"))) == ["out/sub-P02", "out/sub-P02/notes"]
+    assert sorted(map(str, pathlib.Path("out").rglob("*"))) == ["out/sub-P01", "out/sub-P01/notes.txt", "out/sub-P02", "out/sub-P02/notes"]
+    assert {os.path.relpath(path) for path in done["not_deleted"]} == left - {"out/sub-P01/notes.txt"} | {"out/sub-P01"} and all(map(os.path.exists, left))
     assert pathlib.Path("more.withdrawn.txt").read_text().count("P01") == 1
     assert os.path.exists("more-P02.trials.jsonl") and os.path.exists("more/K1.texture.wav") and os.path.exists("more-P011.trials.tsv")
     assert tacto.run_json("experiment", "withdraw", "more", "--participant", "P01", "--yes")["deleted"] == []  # again
