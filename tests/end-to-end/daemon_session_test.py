@@ -218,19 +218,29 @@ def what_is_between_the_marks_of_any_client_is_proven():
             for trial in ("trial 1", "trial 2"):
                 ticks.append(client.mark(trial)["tick"])
                 play_for(client, 2.2)
-                ticks.append(client.mark("end")["tick"])
+                ended = client.mark("\u3000 end\u00a0")
+                assert ended["text"] == "end", ended
+                ticks.append(ended["tick"])
                 play_for(client, 0.5)
             client.stop()
             client.mark("at rest")
             tacto.run("ctl", "mark", "Größe 2", "--socket", "control")
-            for wrong in ({}, {"text": ""}, {"text": "two\nlines"}, {"text": "a" * 201}, {"text": "a", "file": "oak"}):
+            for point in (0, 9, 0x1F, 0x7F, 0x80, 0x85, 0x9F, 0x61C, 0x200E, 0x200F, 0x2028, 0x2029, 0x202A, 0x202E, 0x2066, 0x2069):
+                try:
+                    client.mark(f"Gr\u00f6\u20ac\U0001F600{chr(point)}")
+                    raise AssertionError(hex(point))
+                except tactograph.DaemonProblem as refused:
+                    assert refused.kind == "malformed" and f"U+{point:04X}" in str(refused) and "character 6 " in str(refused), refused
+            for wrong in ({}, {"text": ""}, {"text": " \u2003\u200b"}, {"text": "two\nlines"}, {"text": "a" * 201}, {"text": "a", "file": "oak"}):
                 try:
                     client.ask("mark", **wrong)
                     raise AssertionError(wrong)
                 except tactograph.DaemonProblem as refused:
                     assert refused.kind == "malformed", (wrong, refused)
             client.disarm()
-        tacto.run("ctl", "mark", "--socket", "control", code=2)
+        for text in ((), (" ",), ("a\u202e",), ("a" * 201,)):
+            wrong = tacto.error_of("ctl", "mark", *text, "--socket", "control", code=2)
+            assert wrong["where"] == ("TEXT" if text else "command line"), wrong
     assert ticks == sorted(ticks) and ticks[1] - ticks[0] > 2.2 * 2000 - 2, ticks
     listed = tacto.run_json("session", session)
     assert [mark["mark"] for mark in listed["marks"]] == ["trial 1", "end", "trial 2", "end", "at rest", "Größe 2"], listed["marks"]
