@@ -223,7 +223,7 @@ Result<Report> run_prove_marks(const ProveOptions& o) {
       .add("verdict",
            fmt::format("{} of {} marked intervals delivered; the session is {} to the bit", delivered,
                        proof->intervals.size(), proof->same_to_the_bit ? "the same" : "not the same"))
-      .add("proven", proof->same_to_the_bit);
+      .add("same_to_the_bit", proof->same_to_the_bit);
   report.add("marked_intervals", proof->intervals.size())
       .add("delivered", static_cast<std::size_t>(delivered));
   report.add("limits", limits_in_words(limits));
@@ -432,10 +432,13 @@ cli::Action declare_prove_run(CLI::App& app) {
       "are "
       "ticks and drive;\nthe displacement is predicted by the transducer's model, and the normal force is in "
       "no "
-      "session. Exit code 5: not proven.\n"
+      "session. Exit code 5 of a run: not proven.\n"
       "Of a session it judges each interval from a mark ('ctl mark TEXT') to the next one, or to the end of "
       "the "
-      "session;\nafter the mark 'end' there is no interval until the next mark.");
+      "session;\nafter the mark 'end' there is no interval until the next mark. Exit code 5 of a session: "
+      "its "
+      "drive, computed again, is not\nthe same to the bit. Exit code 0 says nothing about the delivery: each "
+      "interval has 'delivered' (yes, no, unknown), and why.");
   return [options] { return run_prove_run(*options); };
 }
 

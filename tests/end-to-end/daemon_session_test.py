@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """tactographd on an emulated device that does not keep real time: from load to a session that replays, a fault, and refusals.
 What depends on real time is in daemon_test.py."""
+import hashlib
 import json
 import os
 import pathlib
+import struct
 import subprocess
 import sys
 
@@ -248,7 +250,7 @@ def what_is_between_the_marks_of_any_client_is_proven():
     assert not any("trial" in event["event"] for event in listed["events"])
     assert tacto.run_json("replay", session)["same_to_the_bit"] is True
     proof = tacto.run_json("experiment", "prove", session)
-    assert proof["proven"] is True and "emulated" in proof["simulated"] and "-20 dB" in proof["limits"], proof
+    assert proof["same_to_the_bit"] is True and "proven" not in proof and "emulated" in proof["simulated"] and "-20 dB" in proof["limits"], proof
     found = {row["mark"]: row for row in proof["intervals"]}
     assert list(found) == ["trial 1", "trial 2", "at rest", "Größe 2"] and proof["marked_intervals"] == 4 and proof["delivered"] == 2, proof
     strokes = listed["strokes"]
@@ -267,6 +269,18 @@ def what_is_between_the_marks_of_any_client_is_proven():
     pathlib.Path("slow.protocol.json").write_text(json.dumps(protocol))
     slow = tacto.run_json("experiment", "prove", session, "--protocol", "slow")
     assert slow["delivered"] == 0 and "too fast" in slow["intervals"][0]["why"] and slow["intervals"][0]["delivered"] == "no"
+    assert slow["same_to_the_bit"] is True
+    # A session with another drive in one tick, and correct checksums: exit code 5, whatever was delivered.
+    whole, at = bytearray(pathlib.Path(session).read_bytes()), 0
+    while True:
+        _, kind, size, _ = struct.unpack_from("<IB3xI8s", whole, at)
+        if kind == 1 and any(whole[at + 48:at + 52]):  # ticks: the drive of the first one
+            break
+        at += 20 + size
+    whole[at + 48] ^= 1
+    whole[at + 12:at + 20] = hashlib.sha256(struct.pack("<BI", kind, size) + whole[at + 20:at + 20 + size]).digest()[:8]
+    pathlib.Path("other.session").write_bytes(whole)
+    assert tacto.run_json("experiment", "prove", "other.session", code=5)["same_to_the_bit"] is False
     # A session whose writer was killed: the open interval is not complete.
     whole = pathlib.Path(session).read_bytes()
     at = whole.index("mark: trial 2".encode())
