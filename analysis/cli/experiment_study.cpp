@@ -98,6 +98,12 @@ Result<Report> run_check_study(const CheckStudyOptions& o) {
     report->add("slowest_load", "not measured: this device does not keep time");
   else
     report->add("slowest_load_s", slowest->time_s);
+  if (slowest && study->protocol.lead_s < kUsualLeadOverLoad * slowest->time_s)
+    cli::warn(
+        fmt::format("the lead of {:g} s is less than {:g} times the slowest load, {:.3f} s, and each "
+                    "stimulus was loaded only once: "
+                    "an interval may begin late",
+                    study->protocol.lead_s, kUsualLeadOverLoad, slowest->time_s));
   return report->add("valid", true);
 }
 
@@ -391,7 +397,7 @@ cli::Action declare_check_study(CLI::App& app) {
   app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
   app.add_option("-d,--device", options->device,
                  "Check also that this device can play each stimulus, and has each of them loaded within the "
-                 "protocol's lead");
+                 "protocol's lead; a warning if the lead is below twice the slowest load");
   return [options] { return run_check_study(*options); };
 }
 

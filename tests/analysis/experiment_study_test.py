@@ -71,6 +71,15 @@ def a_lead_is_longer_than_the_slowest_load():
     path.write_text(json.dumps({**protocol, "lead_s": 60}))
     slowest = tacto.run_json("experiment", "check", "lead", "-d", "sim:paced=1")["slowest_load_s"]
     assert 0.001 < slowest < 60, slowest
+    # A warning below twice the load, with both figures. A load varies, so each verdict is by the figure of its own run.
+    for lead_s in [60] + [1.5 * slowest] * 5 + [3 * slowest] * 5:
+        path.write_text(json.dumps({**protocol, "lead_s": lead_s}))
+        done = subprocess.run([tacto.COMMAND, "experiment", "check", "lead", "-d", "sim:paced=1", "--json"], capture_output=True, text=True)
+        if done.returncode == 5:
+            continue  # a load that took longer than this lead
+        load_s = json.loads(done.stdout)["slowest_load_s"]
+        warned = f"{load_s:.3f} s" in tacto.unwrapped(done.stderr) and f"{lead_s:g} s" in tacto.unwrapped(done.stderr)
+        assert done.returncode == 0 and warned == (lead_s < 2 * load_s), (lead_s, done)
     path.write_text(json.dumps({**protocol, "lead_s": 0.001}))
     for verb in (["check", "lead"], ["run", "lead", "--participant", "P01", "--observer", OBSERVER]):
         _, said = tacto.run("experiment", *verb, "-d", "sim:paced=1", code=5)
