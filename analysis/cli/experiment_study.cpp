@@ -435,16 +435,13 @@ cli::Action declare_prove_run(CLI::App& app) {
                  "Of a session: the limits of this protocol; default: those of 'new stretch'");
   app.footer(
       "Decides again from the sessions what was delivered, and computes each session's drive again. Proven "
-      "are "
-      "ticks and drive;\nthe displacement is predicted by the transducer's model, and the normal force is in "
-      "no "
-      "session. Exit code 5 of a run: not proven.\n"
+      "are ticks and drive;\nthe displacement is predicted by the transducer's model, and the normal force "
+      "is "
+      "in no session. Exit code 5: not proven.\n"
       "Of a session it judges each interval from a mark ('ctl mark TEXT') to the next one, or to the end of "
-      "the "
-      "session;\nafter the mark 'end' there is no interval until the next mark. Exit code 5 of a session: "
-      "its "
-      "drive, computed again, is not\nthe same to the bit. Exit code 0 says nothing about the delivery: each "
-      "interval has 'delivered' (yes, no, unknown), and why.");
+      "the session;\nafter the mark 'end' there is no interval until the next mark. Exit code 5: the drive, "
+      "computed again, is not the same\nto the bit. Exit code 0 does not say that an interval was delivered: "
+      "see 'delivered' (yes, no, unknown) of each interval.");
   return [options] { return run_prove_run(*options); };
 }
 
@@ -494,15 +491,10 @@ cli::Action declare_withdraw(CLI::App& app) {
   app.add_flag("--yes", options->yes, "Delete without a question");
   app.footer(
       "Deletes journal, table and sessions of the participant, and the outputs of 'analyse' and 'export' in "
-      "the "
-      "study's folder,\nwhich can be made again without this participant. STUDY.withdrawn.txt keeps the code "
-      "and "
-      "the date. If it is interrupted, repeat it.\nIf one of these files or folders is a symbolic link, it "
-      "is refused "
-      "before anything is deleted. Other files and folders in the study's folder are not deleted,\nbut named "
-      "if "
-      "they have the code in their name (sub-P07, STUDY-P07), or as a word in a csv, tsv or json file of at "
-      "most 4 MB.");
+      "the study's folder,\nwhich can be made again without this participant. A symbolic link among them is "
+      "refused before anything is deleted.\nSTUDY.withdrawn.txt keeps the code and the date. If it is "
+      "interrupted, repeat it. What else in the study's folder has the code\nin its name (sub-P07, "
+      "STUDY-P07), or as a word in a csv, tsv or json file of at most 4 MB, is named and not deleted.");
   return [options] { return run_withdraw(*options); };
 }
 
