@@ -98,6 +98,12 @@ Result<Report> run_check_study(const CheckStudyOptions& o) {
     report->add("slowest_load", "not measured: this device does not keep time");
   else
     report->add("slowest_load_s", slowest->time_s);
+  if (slowest && study->protocol.lead_s < kUsualLeadOverLoad * slowest->time_s)
+    cli::warn(
+        fmt::format("the lead of {:g} s is less than {:g} times the slowest load, {:.3f} s, and each "
+                    "stimulus was loaded only once: "
+                    "an interval may begin late",
+                    study->protocol.lead_s, kUsualLeadOverLoad, slowest->time_s));
   return report->add("valid", true);
 }
 
@@ -223,7 +229,7 @@ Result<Report> run_prove_marks(const ProveOptions& o) {
       .add("verdict",
            fmt::format("{} of {} marked intervals delivered; the session is {} to the bit", delivered,
                        proof->intervals.size(), proof->same_to_the_bit ? "the same" : "not the same"))
-      .add("proven", proof->same_to_the_bit);
+      .add("same_to_the_bit", proof->same_to_the_bit);
   report.add("marked_intervals", proof->intervals.size())
       .add("delivered", static_cast<std::size_t>(delivered));
   report.add("limits", limits_in_words(limits));
@@ -359,6 +365,16 @@ Result<Report> run_withdraw(const WithdrawOptions& o) {
     report.add("outside_the_study", withdrawal->outside);
     cli::warn("files outside the study's folder are not deleted: delete them yourself");
   }
+  const Leftovers left = find_leftovers(*withdrawal);
+  if (!left.paths.empty()) {
+    report.add("not_deleted", left.paths);
+    cli::warn(
+        fmt::format("files or folders with the code {} in the study's folder are not deleted: look yourself",
+                    o.participant));
+  }
+  if (!left.complete)
+    cli::warn(fmt::format("the study's folder was not searched completely for the code {}: look yourself",
+                          o.participant));
   if (yes) return report;
   report.add("next", fmt::format("tactograph experiment withdraw {} --participant {} --yes", withdrawal->stem,
                                  o.participant));
@@ -381,7 +397,7 @@ cli::Action declare_check_study(CLI::App& app) {
   app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
   app.add_option("-d,--device", options->device,
                  "Check also that this device can play each stimulus, and has each of them loaded within the "
-                 "protocol's lead");
+                 "protocol's lead; a warning if the lead is below twice the slowest load");
   return [options] { return run_check_study(*options); };
 }
 
@@ -419,13 +435,13 @@ cli::Action declare_prove_run(CLI::App& app) {
                  "Of a session: the limits of this protocol; default: those of 'new stretch'");
   app.footer(
       "Decides again from the sessions what was delivered, and computes each session's drive again. Proven "
-      "are "
-      "ticks and drive;\nthe displacement is predicted by the transducer's model, and the normal force is in "
-      "no "
-      "session. Exit code 5: not proven.\n"
+      "are ticks and drive;\nthe displacement is predicted by the transducer's model, and the normal force "
+      "is "
+      "in no session. Exit code 5: not proven.\n"
       "Of a session it judges each interval from a mark ('ctl mark TEXT') to the next one, or to the end of "
-      "the "
-      "session;\nafter the mark 'end' there is no interval until the next mark.");
+      "the session;\nafter the mark 'end' there is no interval until the next mark. Exit code 5: the drive, "
+      "computed again, is not the same\nto the bit. Exit code 0 does not say that an interval was delivered: "
+      "see 'delivered' (yes, no, unknown) of each interval.");
   return [options] { return run_prove_run(*options); };
 }
 
@@ -475,10 +491,10 @@ cli::Action declare_withdraw(CLI::App& app) {
   app.add_flag("--yes", options->yes, "Delete without a question");
   app.footer(
       "Deletes journal, table and sessions of the participant, and the outputs of 'analyse' and 'export' in "
-      "the "
-      "study's folder,\nwhich can be made again without this participant. STUDY.withdrawn.txt keeps the code "
-      "and "
-      "the date. If it is interrupted, repeat it.");
+      "the study's folder,\nwhich can be made again without this participant. A symbolic link among them is "
+      "refused before anything is deleted.\nSTUDY.withdrawn.txt keeps the code and the date. If it is "
+      "interrupted, repeat it. What else in the study's folder has the code\nin its name (sub-P07, "
+      "STUDY-P07), or as a word in a csv, tsv or json file of at most 4 MB, is named and not deleted.");
   return [options] { return run_withdraw(*options); };
 }
 

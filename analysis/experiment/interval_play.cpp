@@ -117,7 +117,8 @@ Result<SlowestLoad> check_on_device(const Study& study, const std::string& devic
                   "only after {:.3f} s",
                   study.protocol.lead_s, slowest.code, slowest.time_s),
       schema::protocol_path(study.stem) + "#/lead_s",
-      fmt::format("choose twice as long, {:.1f} s", std::ceil(20 * slowest.time_s) / 10));
+      fmt::format("choose twice as long, {:.1f} s",
+                  std::ceil(10 * kUsualLeadOverLoad * slowest.time_s) / 10));
 }
 
 }  // namespace tacto::analysis

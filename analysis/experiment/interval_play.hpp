@@ -28,6 +28,9 @@ struct IntervalPlay {
 /// nothing. Errors: those of playback::play_once.
 schema::Result<std::string> play_interval(const schema::Protocol& protocol, const IntervalPlay& play);
 
+/// The lead over the slowest load that leaves a reserve: a load varies, and each is measured once.
+inline constexpr double kUsualLeadOverLoad = 2;
+
 /// The stimulus that needs the longest time until the device has it. 0 on a device that does not keep time:
 /// there no interval waits for a clock.
 struct SlowestLoad {

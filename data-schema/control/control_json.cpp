@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "data-schema/control/control.hpp"
@@ -58,8 +60,60 @@ Result<void> check_version_of(const std::string& version) {
               std::string(kRequestWhere), "use the tactograph that came with the daemon");
 }
 
-bool is_one_line(const std::string& text) {
-  return !text.empty() && std::ranges::none_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+// The code points of a text in UTF-8.
+std::u32string code_points(std::string_view utf8) {
+  std::u32string points;
+  for (const char c : utf8) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte & 0xC0U) == 0x80U && !points.empty())
+      points.back() = points.back() << 6U | (byte & 0x3FU);
+    else
+      points.push_back(byte < 0x80   ? byte
+                       : byte < 0xE0 ? byte & 0x1FU
+                       : byte < 0xF0 ? byte & 0x0FU
+                                     : byte & 0x07U);
+  }
+  return points;
+}
+
+std::size_t utf8_bytes(std::u32string_view points) {
+  std::size_t bytes = 0;
+  for (const char32_t point : points)
+    bytes += point < 0x80 ? 1U : point < 0x800 ? 2U : point < 0x10000 ? 3U : 4U;
+  return bytes;
+}
+
+bool is_within(char32_t point, char32_t first, char32_t last) {
+  return first <= point && point <= last;
+}
+
+// Separators of words (Unicode's category Zs), and U+200B and U+FEFF, which have no width.
+bool is_blank(char32_t point) {
+  return std::u32string_view(U" \u00A0\u1680\u202F\u205F\u3000\uFEFF").find(point) !=
+             std::u32string_view::npos ||
+         is_within(point, 0x2000, 0x200B);
+}
+
+// The sets C0 and C1, separators of lines and paragraphs, and the controls of the writing direction.
+bool is_control(char32_t point) {
+  return point < 0x20 || is_within(point, 0x7F, 0x9F) || point == 0x61C || is_within(point, 0x200E, 0x200F) ||
+         is_within(point, 0x2028, 0x202E) || is_within(point, 0x2066, 0x2069);
+}
+
+// The text of a mark without blanks at its ends.
+Result<std::string> mark_text(std::string_view text) {
+  const std::u32string points = code_points(text);
+  if (const auto control = std::ranges::find_if(points, is_control); control != points.end())
+    return bad_member("text",
+                      fmt::format("character {} of the text is the control character U+{:04X}",
+                                  control - points.begin() + 1, static_cast<std::uint32_t>(*control)),
+                      "leave it out: a mark is one line of characters that are shown");
+  const auto first = std::ranges::find_if_not(points, is_blank);
+  if (first == points.end())
+    return bad_member("text", "the mark has no text", R"(give one, such as "trial 1")");
+  const auto last = std::find_if_not(points.rbegin(), points.rend(), is_blank).base();
+  const std::size_t from = utf8_bytes({points.begin(), first});
+  return std::string(text.substr(from, utf8_bytes({first, last})));
 }
 
 Result<void> check_members(const ControlRequest& request) {
@@ -76,8 +130,6 @@ Result<void> check_members(const ControlRequest& request) {
   if (request.verb == ControlVerb::move && !(request.x_m && request.y_m))
     return bad_member(request.x_m ? "y_m" : "x_m", "move needs the place of the patch's centre",
                       R"(add "x_m":0.01,"y_m":0.02)");
-  if (request.verb == ControlVerb::mark && !is_one_line(request.text))
-    return bad_member("text", "mark needs a text of one line", R"(add "text":"trial 1")");
   const int gains =
       request.gain.has_value() + request.gain_m_per_n.has_value() + request.times_default.has_value();
   if (request.verb == ControlVerb::gain && gains == 0)
@@ -227,6 +279,10 @@ Result<ControlRequest> parse_control_request(std::string_view line, std::string*
   ControlRequest request = request_of(*body);
   TACTO_TRY(check_taken(*body, request.verb));
   TACTO_TRY(check_members(request));
+  if (request.verb != ControlVerb::mark) return request;
+  auto text = mark_text(request.text);
+  TACTO_TRY(text);
+  request.text = std::move(*text);
   return request;
 }
 

@@ -220,6 +220,8 @@ Result<Report> run_ctl(const CtlOptions& o) {
   }
   if (o.action == "top") TACTO_TRY(show_top_now(*connection));
   const auto answer = connection->ask(*request);
+  if (!answer && answer.error().where == "request#/text")
+    return schema::fail(schema::ErrorKind::usage, answer.error().what, "TEXT", answer.error().remedy);
   TACTO_TRY(answer);
   if (request->verb == ControlVerb::watch) return watch(*connection, o);
   add_fields(report, *answer);

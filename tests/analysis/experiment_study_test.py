@@ -71,6 +71,15 @@ def a_lead_is_longer_than_the_slowest_load():
     path.write_text(json.dumps({**protocol, "lead_s": 60}))
     slowest = tacto.run_json("experiment", "check", "lead", "-d", "sim:paced=1")["slowest_load_s"]
     assert 0.001 < slowest < 60, slowest
+    # A warning below twice the load, with both figures. A load varies, so each verdict is by the figure of its own run.
+    for lead_s in [60] + [1.5 * slowest] * 5 + [3 * slowest] * 5:
+        path.write_text(json.dumps({**protocol, "lead_s": lead_s}))
+        done = subprocess.run([tacto.COMMAND, "experiment", "check", "lead", "-d", "sim:paced=1", "--json"], capture_output=True, text=True)
+        if done.returncode == 5:
+            continue  # a load that took longer than this lead
+        load_s = json.loads(done.stdout)["slowest_load_s"]
+        warned = f"{load_s:.3f} s" in tacto.unwrapped(done.stderr) and f"{lead_s:g} s" in tacto.unwrapped(done.stderr)
+        assert done.returncode == 0 and warned == (lead_s < 2 * load_s), (lead_s, done)
     path.write_text(json.dumps({**protocol, "lead_s": 0.001}))
     for verb in (["check", "lead"], ["run", "lead", "--participant", "P01", "--observer", OBSERVER]):
         _, said = tacto.run("experiment", *verb, "-d", "sim:paced=1", code=5)
@@ -254,12 +263,35 @@ def a_participant_withdraws():
     outside = pathlib.Path("/tmp/" + here.resolve().name + "-outside")
     tacto.run("experiment", "analyse", "more", "--unblind", "-o", f"{outside}/page.html")
     pathlib.Path("more-P011.trials.tsv").write_text("")  # of another participant
+    # Files behind a link, as of a folder of sessions on another disk: refused before anything is deleted.
+    for name, elsewhere in (("more-P01", outside / "sessions"), ("more-P01/001-1.session", outside / "001-1.session"), ("more-P01.trials.jsonl", outside / "journal")):
+        shutil.move(name, elsewhere)
+        os.symlink(elsewhere, name)
+        before = sorted(here.rglob("*"))
+        refused = tacto.error_of("experiment", "withdraw", "more", "--participant", "P01", "--yes", code=5)
+        assert refused["where"] == name and str(elsewhere) in refused["what"], refused
+        assert sorted(here.rglob("*")) == before and elsewhere.exists()
+        os.remove(name)
+        shutil.move(elsewhere, name)
     listed = tacto.run_json("experiment", "withdraw", "more", "--participant", "P01", code=2)
     files = set(listed["to_be_deleted"])
     expected = {"more-P01.trials.jsonl", "more-P01.trials.tsv", *map(str, here.glob("more-P01/*"))}
     assert listed["withdrawn"] is False and expected < files and all(map(os.path.exists, files)), listed
     assert {os.path.basename(file) for file in files - expected} >= {"more.html", "trials.csv", "sub-P02_task-more_beh.tsv"} and len(files - expected) == 10, files - expected
     assert [os.path.basename(file) for file in listed["outside_the_study"]] == ["page.html"]
+    # Copies in the study's folder are named, without what is to be deleted, links, other codes and large tables.
+    assert [os.path.relpath(path) for path in listed["not_deleted"]] == ["counts.csv"], listed
+    shutil.copytree("out", "copies/1")
+    shutil.copytree("out", "copies/2", ignore=shutil.ignore_patterns("sub-*"))
+    shutil.copy("more-P01.trials.jsonl", "copies/more-P01.trials.jsonl")
+    pathlib.Path("out/sub-P01/notes.txt").write_text("")
+    pathlib.Path("copies/other.json").write_text('["P011", "xP01", "p01"]')
+    pathlib.Path("copies/large.csv").write_text("P01," * 1_000_001)
+    shutil.copytree("copies/1/sub-P01", outside / "sub-P01")
+    os.symlink(outside, "copies/link")
+    left = {f"copies/{name}" for name in ("1/sub-P01", "1/participants.tsv", "1/trials.csv", "2/participants.tsv", "2/trials.csv", "more-P01.trials.jsonl")} | {"out/sub-P01/notes.txt", "counts.csv"}
+    listed = tacto.run_json("experiment", "withdraw", "more", "--participant", "P01", code=2)
+    assert set(listed["to_be_deleted"]) == files and {os.path.relpath(path) for path in listed["not_deleted"]} == left, listed
     # As if it had been killed after the record and one file: the run counts no more, and the rest is deleted by repeating it.
     pathlib.Path("more.withdrawn.txt").write_text("2026-01-01T00:00:00Z\tP01\n")
     os.remove("more-P01.trials.tsv")
@@ -267,9 +299,12 @@ def a_participant_withdraws():
     tacto.run("experiment", "resume", "more-P01", code=5)
     fits = tacto.run_json("experiment", "analyse", "more", "--unblind")["fits"]
     assert [fit["participant"] for fit in fits] == ["P02"]
+    os.makedirs("out/sub-P02/notes")  # not of the export
     done = tacto.run_json("experiment", "withdraw", "more.protocol.json", "--participant", "P01", "--yes")
     assert done["withdrawn"] is True and set(done["deleted"]) == files - {"more-P01.trials.tsv"}
     assert not any(map(os.path.exists, files)) and not os.path.exists("more-P01") and (outside / "page.html").exists()
+    assert sorted(map(str, pathlib.Path("out").rglob("*"))) == ["out/sub-P01", "out/sub-P01/notes.txt", "out/sub-P02", "out/sub-P02/notes"]
+    assert {os.path.relpath(path) for path in done["not_deleted"]} == left - {"out/sub-P01/notes.txt"} | {"out/sub-P01"} and all(map(os.path.exists, left))
     assert pathlib.Path("more.withdrawn.txt").read_text().count("P01") == 1
     assert os.path.exists("more-P02.trials.jsonl") and os.path.exists("more/K1.texture.wav") and os.path.exists("more-P011.trials.tsv")
     assert tacto.run_json("experiment", "withdraw", "more", "--participant", "P01", "--yes")["deleted"] == []  # again

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """tactographd on an emulated device that does not keep real time: from load to a session that replays, a fault, and refusals.
 What depends on real time is in daemon_test.py."""
+import hashlib
 import json
 import os
 import pathlib
+import struct
 import subprocess
 import sys
 
@@ -218,19 +220,29 @@ def what_is_between_the_marks_of_any_client_is_proven():
             for trial in ("trial 1", "trial 2"):
                 ticks.append(client.mark(trial)["tick"])
                 play_for(client, 2.2)
-                ticks.append(client.mark("end")["tick"])
+                ended = client.mark("\u3000 end\u00a0")
+                assert ended["text"] == "end", ended
+                ticks.append(ended["tick"])
                 play_for(client, 0.5)
             client.stop()
             client.mark("at rest")
             tacto.run("ctl", "mark", "Größe 2", "--socket", "control")
-            for wrong in ({}, {"text": ""}, {"text": "two\nlines"}, {"text": "a" * 201}, {"text": "a", "file": "oak"}):
+            for point in (0, 9, 0x1F, 0x7F, 0x80, 0x85, 0x9F, 0x61C, 0x200E, 0x200F, 0x2028, 0x2029, 0x202A, 0x202E, 0x2066, 0x2069):
+                try:
+                    client.mark(f"Gr\u00f6\u20ac\U0001F600{chr(point)}")
+                    raise AssertionError(hex(point))
+                except tactograph.DaemonProblem as refused:
+                    assert refused.kind == "malformed" and f"U+{point:04X}" in str(refused) and "character 6 " in str(refused), refused
+            for wrong in ({}, {"text": ""}, {"text": " \u2003\u200b"}, {"text": "two\nlines"}, {"text": "a" * 201}, {"text": "a", "file": "oak"}):
                 try:
                     client.ask("mark", **wrong)
                     raise AssertionError(wrong)
                 except tactograph.DaemonProblem as refused:
                     assert refused.kind == "malformed", (wrong, refused)
             client.disarm()
-        tacto.run("ctl", "mark", "--socket", "control", code=2)
+        for text in ((), (" ",), ("a\u202e",), ("a" * 201,)):
+            wrong = tacto.error_of("ctl", "mark", *text, "--socket", "control", code=2)
+            assert wrong["where"] == ("TEXT" if text else "command line"), wrong
     assert ticks == sorted(ticks) and ticks[1] - ticks[0] > 2.2 * 2000 - 2, ticks
     listed = tacto.run_json("session", session)
     assert [mark["mark"] for mark in listed["marks"]] == ["trial 1", "end", "trial 2", "end", "at rest", "Größe 2"], listed["marks"]
@@ -238,7 +250,7 @@ def what_is_between_the_marks_of_any_client_is_proven():
     assert not any("trial" in event["event"] for event in listed["events"])
     assert tacto.run_json("replay", session)["same_to_the_bit"] is True
     proof = tacto.run_json("experiment", "prove", session)
-    assert proof["proven"] is True and "emulated" in proof["simulated"] and "-20 dB" in proof["limits"], proof
+    assert proof["same_to_the_bit"] is True and "proven" not in proof and "emulated" in proof["simulated"] and "-20 dB" in proof["limits"], proof
     found = {row["mark"]: row for row in proof["intervals"]}
     assert list(found) == ["trial 1", "trial 2", "at rest", "Größe 2"] and proof["marked_intervals"] == 4 and proof["delivered"] == 2, proof
     strokes = listed["strokes"]
@@ -257,6 +269,18 @@ def what_is_between_the_marks_of_any_client_is_proven():
     pathlib.Path("slow.protocol.json").write_text(json.dumps(protocol))
     slow = tacto.run_json("experiment", "prove", session, "--protocol", "slow")
     assert slow["delivered"] == 0 and "too fast" in slow["intervals"][0]["why"] and slow["intervals"][0]["delivered"] == "no"
+    assert slow["same_to_the_bit"] is True
+    # A session with another drive in one tick, and correct checksums: exit code 5, whatever was delivered.
+    whole, at = bytearray(pathlib.Path(session).read_bytes()), 0
+    while True:
+        _, kind, size, _ = struct.unpack_from("<IB3xI8s", whole, at)
+        if kind == 1 and any(whole[at + 48:at + 52]):  # ticks: the drive of the first one
+            break
+        at += 20 + size
+    whole[at + 48] ^= 1
+    whole[at + 12:at + 20] = hashlib.sha256(struct.pack("<BI", kind, size) + whole[at + 20:at + 20 + size]).digest()[:8]
+    pathlib.Path("other.session").write_bytes(whole)
+    assert tacto.run_json("experiment", "prove", "other.session", code=5)["same_to_the_bit"] is False
     # A session whose writer was killed: the open interval is not complete.
     whole = pathlib.Path(session).read_bytes()
     at = whole.index("mark: trial 2".encode())
