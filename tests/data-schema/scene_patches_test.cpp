@@ -408,6 +408,20 @@ TEST(ScenePatches, BodiesNeedAMassAndNoMoreKineticFriction) {
                  "s#/patches/0/layers/8/mass_kg", "above 0");
   expect_refused([](Body& b) { layer(b, 7)["kinetic_friction_n"] = 1.5; }, bad,
                  "s#/patches/0/layers/7/kinetic_friction_n", "above the static_friction_n of 1");
+  // Sliders may not cross, either.
+  const auto frictions = [](const Body& kinetic, const Body& at_rest) {
+    return [=](Body& b) {
+      layer(b, 7)["kinetic_friction_n"] = kinetic;
+      layer(b, 7)["static_friction_n"] = at_rest;
+    };
+  };
+  for (const auto& [kinetic, at_rest] :
+       {std::pair(slider(0.5, 0, 2), Body(1)), std::pair(Body(0.5), slider(1, 0.4, 2)),
+        std::pair(slider(0.5, 0, 0.8), slider(1, 0.7, 2))})
+    expect_refused(frictions(kinetic, at_rest), bad, "s#/patches/0/layers/7/kinetic_friction_n", "");
+  Body apart = all_kinds();
+  frictions(slider(0.5, 0, 0.7), slider(1, 0.7, 2))(apart);
+  EXPECT_TRUE(parsed(apart));
 }
 
 TEST(ScenePatches, NanIsNeitherReadNorWritten) {
@@ -543,6 +557,17 @@ TEST_F(AtomFile, ReadsColumnsInAnyOrder) {
   EXPECT_EQ(std::tie(first.x_m, first.y_m, first.z_m), std::tuple(0.1, -0.2, 0.3));
   EXPECT_EQ(std::tie(first.sigma_m, first.epsilon_j, first.charge_c), std::tuple(1e-3, 2.0, -1.6e-19));
   EXPECT_EQ(atoms->back().epsilon_j, 9);
+}
+
+// As spreadsheets and other programs write them.
+TEST_F(AtomFile, ReadsAByteOrderMarkAndPlusSigns) {
+  const auto atoms = read("\xEF\xBB\xBF" + header_ + "+1e-10,+2,-3,+4,5,+1.6e-19\n");
+  ASSERT_TRUE(atoms) << message(atoms.error());
+  const Atom& first = atoms->front();
+  EXPECT_EQ(std::tie(first.x_m, first.y_m, first.z_m), std::tuple(1e-10, 2.0, -3.0));
+  EXPECT_EQ(std::tie(first.sigma_m, first.epsilon_j, first.charge_c), std::tuple(4.0, 5.0, 1.6e-19));
+  expect_fault(header_ + "+-1,0,0,1,1,0\n", "line 2", "'+-1' is no finite number");
+  expect_fault(header_ + "+,0,0,1,1,0\n", "line 2", "'+' is no finite number");
 }
 
 TEST_F(AtomFile, FaultsAreNamedByLine) {
