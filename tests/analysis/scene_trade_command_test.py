@@ -314,9 +314,9 @@ def a_field_has_no_choice():
     field = {"type": "field", "file": "atoms.csv", "length_scale": 1e7, "force_scale": 1e8, "z_m": 0}
     write_device(4000)
     write_scene(patch(field, noise()))
-    knobs = {row["knob"] for row in trade()["choices"]}
+    knobs = {row["choice_of"] for row in trade()["choices"]}
     write_scene(patch({"type": "spring", "stiffness_n_per_m": 1}, noise()))
-    assert knobs == {row["knob"] for row in trade()["choices"]} and knobs, knobs
+    assert knobs == {row["choice_of"] for row in trade()["choices"]} and knobs, knobs
 
 
 if __name__ == "__main__":
