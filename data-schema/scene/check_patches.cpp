@@ -23,6 +23,10 @@ concept NoFurtherRule = AnyOf<L, HeightMapLayer, GroovesLayer, NoiseLayer, Textu
 Result<void> check_slider(const NamedLayerNumber& named, const std::string& where) {
   const LayerNumber& number = named.number;
   if (!number.slider) return {};
+  if (!named.changes)
+    return fail(ErrorKind::unsuitable,
+                fmt::format("{} has a slider, but it cannot change while the scene plays", named.name),
+                fmt::format("{}/{}/slider", where, named.name), "give its value alone, as a number");
   const auto& [from, to] = *number.slider;
   if (!(from < to))
     return fail(ErrorKind::unsuitable,

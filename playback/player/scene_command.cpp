@@ -122,7 +122,7 @@ Result<wire::Set> target_of(const Words& path, double value, const ForceProgram&
   const schema::ForceLayer& layer = patch.layers[*at_layer];
   Words members;
   const auto numbers = numbers_of(layer);
-  for (const auto& [name, number, whole] : numbers) members.emplace_back(name);
+  for (const auto& [name, number, changes, whole] : numbers) members.emplace_back(name);
   const auto at_member = place_of(fmt::format("member in the {} named", type_of(layer)), path[2], members);
   TACTO_TRY(at_member);
   TACTO_TRY(check_value(numbers[*at_member], value, path, *at_layer, forces));
