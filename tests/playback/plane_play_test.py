@@ -226,6 +226,13 @@ def a_scene_is_held_stable_and_replayed():
     # In a hand that carries it nothing is scaled.
     report = play("wall.scene.json", "sim:planar,hand=minsky-radial", "in_hand", "--time", "0.1s", "--hold-stable")
     assert isinstance(report["held_stable"], str), report
+    assert "not_judged" not in report, report
+    # What no method judges is named.
+    body, lasso = {"type": "body", "mass_kg": 0.3, "stiffness_n_per_m": 100, "damping_n_s_per_m": 4}, {"type": "lasso", "mass_kg": 0.1, "stiffness_n_per_m": 10, "length_m": 0.01, "damping_n_s_per_m": 0.5}
+    write_scene("moving", patch(name="a", layers=[body, spring(1)]), patch(name="b", layers=[lasso], order=1))
+    names = {"body 0 of patch 'a'", "lasso 0 of patch 'b'"}
+    assert set(play("moving.scene.json", "sim:planar", "moving", "--time", "0.1s", "--hold-stable")["not_judged"]) == names
+    assert set(run_json("render", "moving.scene.json", "--device", "sandpaper-1990", "--finger-path", "out.csv", "-o", "moving.csv", "--hold-stable")["not_judged"]) == names
     run("play", "oak", "-d", "sim:", "--hold-stable", "-o", "x", code=USAGE)
     run("render", "wall.scene.json", "--finger-path", "out.csv", "--transducer", "wiertlewski2011", "--hold-stable", "-o", "x.wav", code=USAGE)
 
