@@ -252,6 +252,8 @@ def stiffness_is_held_to_the_limit():
     moving = design_of(patch(body, spring(1), lasso, name="a"), options=("--hold-stable",))
     assert moving["not_judged"] == ["body 0 of patch 'a'", "lasso 2 of patch 'a'"], moving
     assert all(row["verdict"] == "not known" and all(name in row["because"] for name in moving["not_judged"]) for row in moving["layers"]), moving
+    apart = design_of(patch(spring(1), name="a", width_m=0.05), patch(body, lasso, name="b", x_m=0.06, width_m=0.05))
+    assert all(name in apart["verdict"] for name in ("body 0 of patch 'b'", "lasso 1 of patch 'b'")), apart
 
 
 def massies_wall():
