@@ -12,6 +12,7 @@
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "playback/cli/scene_forces.hpp"
+#include "playback/prepare/scene/acting_load.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/stability/free_limit.hpp"
 
@@ -158,7 +159,7 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   design = std::move(*designed);
   Report report = report_of(o, design);
   if (scene->patches.size() > 1) report.add("assumed", kAssumedPlaces);
-  if (o.hold_stable) playback::add_held(report, held);
+  if (o.hold_stable) playback::add_held(report, held, playback::unknown_layers(scene->patches));
   if (o.outputs.empty()) return report;
   schema::Results results;
   results.verb = "design";

@@ -2,6 +2,7 @@
 #include "analysis/design/design.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,7 @@ namespace {
 
 using schema::ErrorKind;
 
-void judge(JudgedLayer& layer, const DesignRequest& request, const std::string& unknown) {
+void judge(JudgedLayer& layer, const DesignRequest& request, const std::vector<std::string>& unknown) {
   const Holder judged = request.judged, computed = is_proof(judged) ? Holder::nothing : judged;
   const auto proved = [&](Holder holder) {
     return judged != Holder::lumped && layer.loop.carries(holder, layer.total);
@@ -35,7 +36,7 @@ void judge(JudgedLayer& layer, const DesignRequest& request, const std::string& 
     layer.because = "proved for " + holder_name(Holder::slower, request);
   } else if (!layer.loop.carries(computed, layer.total)) {
     layer.verdict = Stability::unstable;
-    if (!unknown.empty()) layer.because += fmt::format("; without the layer of type {}", unknown);
+    if (!unknown.empty()) layer.because += fmt::format("; without {}", fmt::join(unknown, ", "));
     return;
   } else if (is_proof(judged)) {
     layer.verdict = Stability::not_known;
@@ -43,7 +44,7 @@ void judge(JudgedLayer& layer, const DesignRequest& request, const std::string& 
   }
   if (unknown.empty()) return;
   layer.verdict = Stability::not_known;
-  layer.because = fmt::format("no method computes the stability with a layer of type {}", unknown);
+  layer.because = fmt::format("no method computes the stability with {}", fmt::join(unknown, ", "));
 }
 
 // The layers that act together at a place, on the axis and at the end of the sliders nearest to the limit.

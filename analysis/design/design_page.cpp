@@ -2,6 +2,7 @@
 #include "analysis/design/design_page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -84,12 +85,10 @@ std::string margin_words(const JudgedLayer& layer, const DesignRequest& request)
 
 // The answer in one sentence.
 std::string design_verdict(const Design& design) {
-  const auto unknown = std::ranges::find_if(design.layers, [](const JudgedLayer& layer) {
-    return layer.verdict == Stability::not_known && layer.own.is_nothing();
-  });
-  const std::string rest = unknown == design.layers.end()
-                               ? ""
-                               : fmt::format("; not known: {}, {}", layer_name(*unknown), unknown->because);
+  std::vector<std::string> unknown;
+  for (const JudgedLayer& each : design.layers)
+    if (each.verdict == Stability::not_known && each.own.is_nothing()) unknown.push_back(layer_name(each));
+  const std::string rest = unknown.empty() ? "" : fmt::format("; not known: {}", fmt::join(unknown, ", "));
   if (!design.first) return "no spring or damper is within reach" + rest;
   const JudgedLayer& layer = design.layers[*design.first];
   const std::string where = fmt::format("{} along {}", layer_name(layer), layer.loop.axis.name);

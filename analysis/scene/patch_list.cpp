@@ -48,7 +48,7 @@ std::string layer_words(const schema::ForceLayer& layer) {
       [](const auto& /*other*/) {});
   if (const std::string file = schema::file_of(layer); !file.empty()) words += ", " + file;
   const char* before = ": ";
-  for (const auto& [name, number, whole] : schema::numbers_of(layer)) {
+  for (const auto& [name, number, changes, whole] : schema::numbers_of(layer)) {
     words += fmt::format("{}{} {}", before, name_words(name), value_words(name, number.value));
     before = ", ";
   }
@@ -70,7 +70,7 @@ class ListPainter {
     paragraph(place_words(patch), kGreyWords, beside > width_ / 2 ? kIndent : beside);
     for (const schema::ForceLayer& layer : patch.layers) {
       paragraph(layer_words(layer), kLayerWords, kIndent);
-      for (const auto& [name, number, whole] : schema::numbers_of(layer))
+      for (const auto& [name, number, changes, whole] : schema::numbers_of(layer))
         if (number.slider) slider(name, number.value, *number.slider);
     }
   }

@@ -33,7 +33,7 @@ std::uint8_t acts_of(const schema::ForceLayer& layer) {
 
 double direction_rad(const schema::Patch& patch, const schema::ForceLayer& layer) {
   double degrees = patch.angle_deg;
-  for (const auto& [name, number, whole] : schema::numbers_of(layer))
+  for (const auto& [name, number, changes, whole] : schema::numbers_of(layer))
     if (name == "direction_deg") degrees += number.value;
   return degrees * std::numbers::pi / 180;
 }

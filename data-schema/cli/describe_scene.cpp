@@ -28,7 +28,7 @@ cli::Report row_of(const ForceLayer& layer) {
       if (!of.filter_m) row.add("filter", "auto");
     }
   });
-  for (const auto& [name, number, whole] : numbers_of(layer)) {
+  for (const auto& [name, number, changes, whole] : numbers_of(layer)) {
     if (whole)
       row.add(std::string(name), static_cast<std::uint64_t>(number.value));  // with all its digits
     else
@@ -53,7 +53,7 @@ std::vector<cli::Report> slider_rows(const Scene& scene) {
   std::vector<cli::Report> rows;
   for (const Patch& patch : scene.patches)
     for (std::size_t i = 0; i < patch.layers.size(); ++i)
-      for (const auto& [name, number, whole] : numbers_of(patch.layers[i]))
+      for (const auto& [name, number, changes, whole] : numbers_of(patch.layers[i]))
         if (number.slider)
           rows.push_back(cli::Report()
                              .add("patch", patch.name)

@@ -26,6 +26,8 @@ constexpr AtomColumn kAtomColumns[] = {{"x_m", &Atom::x_m},
                                        {"epsilon_j", &Atom::epsilon_j},
                                        {"charge_c", &Atom::charge_c}};
 
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8; spreadsheets write it
+
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
   if (first == text.npos) return {};
@@ -43,6 +45,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 }
 
 std::optional<double> finite_number(std::string_view cell) {
+  if (cell.size() > 1 && cell[0] == '+' && cell[1] != '-') cell.remove_prefix(1);  // from_chars() refuses it
   double value = 0;
   const auto [end, failed] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   const bool whole = failed == std::errc() && end == cell.data() + cell.size();
@@ -55,6 +58,7 @@ class AtomReader {
   explicit AtomReader(const std::string& path) : path_(path) {}
 
   Result<std::vector<Atom>> read(std::string_view text) {
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     for (std::size_t at = 0; at < text.size();) {
       const std::size_t end = std::min(text.find('\n', at), text.size());
       ++line_;

@@ -23,6 +23,10 @@ concept NoFurtherRule = AnyOf<L, HeightMapLayer, GroovesLayer, NoiseLayer, Textu
 Result<void> check_slider(const NamedLayerNumber& named, const std::string& where) {
   const LayerNumber& number = named.number;
   if (!number.slider) return {};
+  if (!named.changes)
+    return fail(ErrorKind::unsuitable,
+                fmt::format("{} has a slider, but it cannot change while the scene plays", named.name),
+                fmt::format("{}/{}/slider", where, named.name), "give its value alone, as a number");
   const auto& [from, to] = *number.slider;
   if (!(from < to))
     return fail(ErrorKind::unsuitable,
@@ -46,12 +50,20 @@ Result<void> check_own_mass(const LayerNumber& mass_kg, const std::string& where
 
 Result<void> check_body(const BodyLayer& body, const std::string& where) {
   TACTO_TRY(check_own_mass(body.mass_kg, where));
-  const double kinetic_n = body.kinetic_friction_n.value, static_n = body.static_friction_n.value;
+  const double kinetic_n = largest_value(body.kinetic_friction_n),
+               static_n = least_value(body.static_friction_n);
   if (kinetic_n <= static_n) return {};
+  const bool by_slider = body.kinetic_friction_n.slider || body.static_friction_n.slider;
   return fail(
       ErrorKind::unsuitable,
-      fmt::format("kinetic_friction_n is {:g}, above the static_friction_n of {:g}", kinetic_n, static_n),
-      where + "/kinetic_friction_n", "at most the static friction");
+      by_slider
+          ? fmt::format("kinetic_friction_n can become {:g}, and static_friction_n {:g}", kinetic_n, static_n)
+          : fmt::format("kinetic_friction_n is {:g}, above the static_friction_n of {:g}", kinetic_n,
+                        static_n),
+      where + "/kinetic_friction_n",
+      by_slider
+          ? "let the slider of the kinetic friction end at most where that of the static friction begins"
+          : "at most the static friction");
 }
 
 Result<void> check_force_layer(const ForceLayer& layer, const std::string& where) {

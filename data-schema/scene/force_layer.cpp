@@ -37,9 +37,9 @@ std::vector<NamedLayerNumber> numbers_of(const ForceLayer& layer) {
   std::vector<NamedLayerNumber> numbers;
   layer.visit([&]<class L>(const L& of) {
     for (const auto& member : LayerMembers<L>::kNumbers)
-      numbers.push_back({member.name, of.*member.number, member.whole});
+      numbers.push_back({member.name, of.*member.number, member.changes, member.whole});
     if constexpr (IsGrooves<L>)
-      if (of.filter_m) numbers.push_back({"filter_m", *of.filter_m});
+      if (of.filter_m) numbers.push_back({"filter_m", *of.filter_m, kFixed});
   });
   return numbers;
 }

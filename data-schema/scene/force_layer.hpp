@@ -176,7 +176,8 @@ std::vector<std::string> force_layer_types();
 struct NamedLayerNumber {
   std::string_view name;
   LayerNumber number;
-  bool whole = false;  ///< a whole number
+  bool changes = true;  ///< may have a slider: it can change while the scene plays
+  bool whole = false;   ///< a whole number
 };
 
 /// The numbers of a layer, in the order of the file. `filter_m` is absent where it is "auto".

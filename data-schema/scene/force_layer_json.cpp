@@ -78,7 +78,7 @@ Result<ForceLayer> layer_of_kind(const Json& body, UnknownMembers unknown, const
   if constexpr (NamesFile<L>) layer.file = text_or(body, "file");
   if constexpr (IsGrooves<L>) read_shape(layer, body);
   if constexpr (MayBeAdaptive<L>) layer.adaptive = body.value("adaptive", false);
-  for (const auto& [name, number, whole] : LayerMembers<L>::kNumbers)
+  for (const auto& [name, number, changes, whole] : LayerMembers<L>::kNumbers)
     if (const auto at = body.find(std::string(name)); at != body.end())
       layer.*number = layer_number_from(*at);
   layer.extra_json = unknown_parts(rule, body);
@@ -115,7 +115,7 @@ Json force_layer_body(const ForceLayer& layer) {
   layer.visit([&]<class L>(const L& of) {
     if constexpr (NamesFile<L>) body["file"] = of.file;
     if constexpr (IsGrooves<L>) body["profile"] = to_string(of.profile);
-    for (const auto& [name, number, whole] : LayerMembers<L>::kNumbers)
+    for (const auto& [name, number, changes, whole] : LayerMembers<L>::kNumbers)
       body[std::string(name)] = layer_number_body(of.*number, whole);
     if constexpr (IsGrooves<L>)
       body["filter_m"] = of.filter_m ? layer_number_body(*of.filter_m) : Json(kAuto);

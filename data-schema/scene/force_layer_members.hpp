@@ -13,10 +13,11 @@ template <class L>
 struct LayerMember {
   std::string_view name;
   LayerNumber L::*number;
-  bool whole = false;  ///< a whole number
+  bool changes = true;  ///< may have a slider: it can change while the scene plays
+  bool whole = false;   ///< a whole number
 };
 
-inline constexpr bool kWhole = true;
+inline constexpr bool kFixed = false, kWhole = true;
 
 /// Its type in the file, and its numbers (but filter_m of grooves, which may be a word).
 template <class L>
@@ -31,27 +32,30 @@ struct LayerMembers<HeightMapLayer> {
 template <>
 struct LayerMembers<GroovesLayer> {
   static constexpr std::string_view kType = "grooves";
-  static constexpr LayerMember<GroovesLayer> kNumbers[] = {{"period_m", &GroovesLayer::period_m},
-                                                           {"depth_m", &GroovesLayer::depth_m},
-                                                           {"kappa_n", &GroovesLayer::kappa_n},
-                                                           {"direction_deg", &GroovesLayer::direction_deg},
-                                                           {"filter_margin", &GroovesLayer::filter_margin}};
+  static constexpr LayerMember<GroovesLayer> kNumbers[] = {
+      {"period_m", &GroovesLayer::period_m, kFixed},
+      {"depth_m", &GroovesLayer::depth_m},
+      {"kappa_n", &GroovesLayer::kappa_n},
+      {"direction_deg", &GroovesLayer::direction_deg, kFixed},
+      {"filter_margin", &GroovesLayer::filter_margin, kFixed}};
 };
 
 template <>
 struct LayerMembers<NoiseLayer> {
   static constexpr std::string_view kType = "noise";
-  static constexpr LayerMember<NoiseLayer> kNumbers[] = {
-      {"period_m", &NoiseLayer::period_m},   {"octaves", &NoiseLayer::octaves, kWhole},
-      {"roughness", &NoiseLayer::roughness}, {"seed", &NoiseLayer::seed, kWhole},
-      {"depth_m", &NoiseLayer::depth_m},     {"kappa_n", &NoiseLayer::kappa_n}};
+  static constexpr LayerMember<NoiseLayer> kNumbers[] = {{"period_m", &NoiseLayer::period_m, kFixed},
+                                                         {"octaves", &NoiseLayer::octaves, kFixed, kWhole},
+                                                         {"roughness", &NoiseLayer::roughness, kFixed},
+                                                         {"seed", &NoiseLayer::seed, kFixed, kWhole},
+                                                         {"depth_m", &NoiseLayer::depth_m},
+                                                         {"kappa_n", &NoiseLayer::kappa_n}};
 };
 
 template <>
 struct LayerMembers<TextureForceLayer> {
   static constexpr std::string_view kType = "texture";
   static constexpr LayerMember<TextureForceLayer> kNumbers[] = {
-      {"direction_deg", &TextureForceLayer::direction_deg}, {"gain", &TextureForceLayer::gain}};
+      {"direction_deg", &TextureForceLayer::direction_deg, kFixed}, {"gain", &TextureForceLayer::gain}};
 };
 
 template <>
@@ -80,7 +84,7 @@ template <>
 struct LayerMembers<BodyLayer> {
   static constexpr std::string_view kType = "body";
   static constexpr LayerMember<BodyLayer> kNumbers[] = {
-      {"mass_kg", &BodyLayer::mass_kg},
+      {"mass_kg", &BodyLayer::mass_kg, kFixed},
       {"stiffness_n_per_m", &BodyLayer::stiffness_n_per_m},
       {"damping_n_s_per_m", &BodyLayer::damping_n_s_per_m},
       {"static_friction_n", &BodyLayer::static_friction_n},
@@ -91,10 +95,10 @@ template <>
 struct LayerMembers<LassoLayer> {
   static constexpr std::string_view kType = "lasso";
   static constexpr LayerMember<LassoLayer> kNumbers[] = {
-      {"mass_kg", &LassoLayer::mass_kg},
+      {"mass_kg", &LassoLayer::mass_kg, kFixed},
       {"stiffness_n_per_m", &LassoLayer::stiffness_n_per_m},
       {"length_m", &LassoLayer::length_m},
-      {"damping_n_s_per_m", &LassoLayer::damping_n_s_per_m}};
+      {"damping_n_s_per_m", &LassoLayer::damping_n_s_per_m, kFixed}};
 };
 
 template <>
@@ -103,7 +107,7 @@ struct LayerMembers<MoverLayer> {
   static constexpr LayerMember<MoverLayer> kNumbers[] = {
       {"speed_mps", &MoverLayer::speed_mps},
       {"damping_n_s_per_m", &MoverLayer::damping_n_s_per_m},
-      {"direction_deg", &MoverLayer::direction_deg}};
+      {"direction_deg", &MoverLayer::direction_deg, kFixed}};
 };
 
 template <>
@@ -115,11 +119,12 @@ struct LayerMembers<ForceMapLayer> {
 template <>
 struct LayerMembers<FieldLayer> {
   static constexpr std::string_view kType = "field";
-  static constexpr LayerMember<FieldLayer> kNumbers[] = {{"length_scale", &FieldLayer::length_scale},
-                                                         {"force_scale", &FieldLayer::force_scale},
-                                                         {"z_m", &FieldLayer::z_m},
-                                                         {"core", &FieldLayer::core},
-                                                         {"probe_charge_c", &FieldLayer::probe_charge_c}};
+  static constexpr LayerMember<FieldLayer> kNumbers[] = {
+      {"length_scale", &FieldLayer::length_scale, kFixed},
+      {"force_scale", &FieldLayer::force_scale},
+      {"z_m", &FieldLayer::z_m},
+      {"core", &FieldLayer::core, kFixed},
+      {"probe_charge_c", &FieldLayer::probe_charge_c, kFixed}};
 };
 
 template <class L>

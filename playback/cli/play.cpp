@@ -177,7 +177,7 @@ Result<Report> run_play_forces(const PlayVerbOptions& asked) {
       .add("slew_limited_ticks", ticks.slew_limited())
       .add("rms_limited_ticks", ticks.energy_limited())
       .add("force_peak_n", ticks.force_peak_n());
-  if (asked.hold_stable) add_held(report, outcome->held);
+  if (asked.hold_stable) add_held(report, outcome->held, outcome->not_judged);
   cli::warn_grouped(outcome->notes);
   return add_end(std::move(report), *outcome);
 }

@@ -17,6 +17,7 @@
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/player/placed_textures.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
+#include "playback/prepare/scene/acting_load.hpp"
 #include "playback/prepare/scene/body_motion.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/plane_render.hpp"
@@ -211,11 +212,11 @@ Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::si
   };
   layer.visit(
       [&](const schema::SpringLayer& spring) {
-        at_limit("force_limit_at_displacement_m", spring.stiffness_n_per_m.value);
+        at_limit("force_limit_at_displacement_m", largest_value(spring.stiffness_n_per_m));
       },
       [&](const schema::DamperLayer& damper) {
         if (damper.added) row.add("added_damping_n_s_per_m", damper.damping_n_s_per_m.value);
-        at_limit("force_limit_at_speed_mps", damper.damping_n_s_per_m.value);
+        at_limit("force_limit_at_speed_mps", largest_value(damper.damping_n_s_per_m));
       },
       [&](const schema::GroovesLayer& grooves) { add_grooves(row, grooves, double{on.setup.rate_hz}); },
       [&](const schema::HeightMapLayer& map) {
@@ -227,14 +228,14 @@ Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::si
       [&](const schema::FieldLayer& field) { row.add("atoms", on.scene.reliefs.of(field).size()); },
       [&](const schema::NoiseLayer& noise) { add_noise(row, noise, double{on.setup.rate_hz}); },
       [&](const schema::BodyLayer& body) {
-        at_limit("force_limit_at_displacement_m", body.stiffness_n_per_m.value);
+        at_limit("force_limit_at_displacement_m", largest_value(body.stiffness_n_per_m));
         row.add("stiffest_coupling_n_per_m", stiffest_coupling_n_per_m(layer, on.scene.steps.tick_s));
       },
       [&](const schema::LassoLayer& /*lasso*/) {
         row.add("stiffest_coupling_n_per_m", stiffest_coupling_n_per_m(layer, on.scene.steps.tick_s));
       },
       [&](const schema::MoverLayer& mover) {
-        at_limit("force_limit_at_speed_mps", mover.damping_n_s_per_m.value);
+        at_limit("force_limit_at_speed_mps", largest_value(mover.damping_n_s_per_m));
       },
       [](const auto& /*other*/) {});
   return row;
@@ -288,9 +289,11 @@ void declare_hold_stable(CLI::App& app, bool& hold_stable) {
                   kStableMargin));
 }
 
-void add_held(Report& report, const std::vector<HeldLayer>& held) {
+void add_held(Report& report, const std::vector<HeldLayer>& held, const std::vector<std::string>& unknown) {
+  if (!unknown.empty()) report.add("not_judged", unknown);
   if (held.empty()) {
-    report.add("held_stable", "no layer is beyond the limit");
+    report.add("held_stable", unknown.empty() ? "no layer is beyond the limit"
+                                              : "no layer that was judged is beyond the limit");
     return;
   }
   std::vector<Report> rows;
@@ -330,7 +333,7 @@ Result<Report> render_forces(const ForceRendering& asked) {
   TACTO_TRY(files.write(asked.output, table_of(*rendering)));
   TACTO_TRY(files.commit(asked.existing));
   Report report = report_of(asked, on->device, *rendering);
-  if (asked.hold_stable) add_held(report, on->held);
+  if (asked.hold_stable) add_held(report, on->held, unknown_layers(on->scene.patches));
   return report;
 }
 

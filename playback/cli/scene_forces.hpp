@@ -21,8 +21,9 @@ void declare_hand(CLI::App& app, std::string& hand);
 /// --hold-stable
 void declare_hold_stable(CLI::App& app, bool& hold_stable);
 
-/// The layers whose stiffness was scaled, and by which margin.
-void add_held(cli::Report& report, const std::vector<HeldLayer>& held);
+/// The layers whose stiffness was scaled, by which margin, and those that were not judged.
+void add_held(cli::Report& report, const std::vector<HeldLayer>& held,
+              const std::vector<std::string>& unknown);
 
 /// Errors: usage, if an option was given that is not among `names`: the others are those of a tray.
 schema::Result<void> check_force_options(const CLI::App& app, std::initializer_list<std::string_view> names);

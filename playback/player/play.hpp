@@ -55,7 +55,8 @@ struct PlayOutcome {
   std::optional<schema::PlaybackGain> kept_gain;  ///< the gain stored with the texture, if that was used
   std::optional<LimitTally> limits;               ///< of the session; none: unknown, `notes` say why
   std::optional<HostLoopFigures> looped;
-  std::vector<HeldLayer> held;  ///< of forces with hold_stable
+  std::vector<HeldLayer> held;               ///< of forces with hold_stable
+  std::vector<std::string> not_judged = {};  ///< layers of forces whose stiffness is not computed
 };
 
 /// Emulated devices play as fast as possible, or paced; `stop_asked` ends the playback early, by a ramp. A

@@ -122,7 +122,7 @@ Result<wire::Set> target_of(const Words& path, double value, const ForceProgram&
   const schema::ForceLayer& layer = patch.layers[*at_layer];
   Words members;
   const auto numbers = numbers_of(layer);
-  for (const auto& [name, number, whole] : numbers) members.emplace_back(name);
+  for (const auto& [name, number, changes, whole] : numbers) members.emplace_back(name);
   const auto at_member = place_of(fmt::format("member in the {} named", type_of(layer)), path[2], members);
   TACTO_TRY(at_member);
   TACTO_TRY(check_value(numbers[*at_member], value, path, *at_layer, forces));
@@ -139,9 +139,21 @@ Result<wire::Set> target_of(const Words& path, double value, const ForceProgram&
 
 // Up to the first comma, and after it.
 struct ScriptLine {
-  std::string where;
-  std::string_view time, command;
+  std::string where, time, command;
 };
+
+// A cell in quotes as in RFC 4180, where a quote in it is doubled; any other cell as it is.
+std::string cell_in(std::string_view text) {
+  const std::string_view cell = schema::without_blanks(text);
+  if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return std::string(cell);
+  std::string inside;
+  for (std::size_t i = 1; i + 1 < cell.size(); ++i) {
+    inside += cell[i];
+    if (cell[i] != '"') continue;
+    if (i + 2 >= cell.size() || cell[++i] != '"') return std::string(cell);
+  }
+  return std::string(schema::without_blanks(inside));
+}
 
 // Without the empty ones.
 std::vector<ScriptLine> lines_of_script(std::string_view text, const std::string& file) {
@@ -151,8 +163,8 @@ std::vector<ScriptLine> lines_of_script(std::string_view text, const std::string
     text.remove_prefix(std::min(line.size() + 1, text.size()));
     const std::size_t comma = std::min(line.find(','), line.size());
     if (schema::without_blanks(line).empty()) continue;
-    lines.push_back({fmt::format("{}, line {}", file, number), schema::without_blanks(line.substr(0, comma)),
-                     schema::without_blanks(line.substr(std::min(comma + 1, line.size())))});
+    lines.push_back({fmt::format("{}, line {}", file, number), cell_in(line.substr(0, comma)),
+                     cell_in(line.substr(std::min(comma + 1, line.size())))});
   }
   return lines;
 }

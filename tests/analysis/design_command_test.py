@@ -244,7 +244,16 @@ def stiffness_is_held_to_the_limit():
     close(held["held_stable"][0]["from_n_per_m"], 1.2 * limit, 1e-9)
     close(held["held_stable"][0]["to_n_per_m"], limit / held["held_margin"], 1e-9)
     close(held["layers"][6]["margin"], held["held_margin"], 1e-9)
-    assert held["held_margin"] == 1.2 and isinstance(design_of(patches[0], options=("--hold-stable",))["held_stable"], str)
+    stable = design_of(patches[0], options=("--hold-stable",))
+    assert held["held_margin"] == 1.2 and isinstance(stable["held_stable"], str) and "not_judged" not in stable
+    # What no method judges is named, each layer.
+    body = {"type": "body", "mass_kg": 0.3, "stiffness_n_per_m": 1, "damping_n_s_per_m": 1}
+    lasso = {"type": "lasso", "mass_kg": 0.1, "stiffness_n_per_m": 1, "length_m": 0.01, "damping_n_s_per_m": 0.5}
+    moving = design_of(patch(body, spring(1), lasso, name="a"), options=("--hold-stable",))
+    assert moving["not_judged"] == ["body 0 of patch 'a'", "lasso 2 of patch 'a'"], moving
+    assert all(row["verdict"] == "not known" and all(name in row["because"] for name in moving["not_judged"]) for row in moving["layers"]), moving
+    apart = design_of(patch(spring(1), name="a", width_m=0.05), patch(body, lasso, name="b", x_m=0.06, width_m=0.05))
+    assert all(name in apart["verdict"] for name in ("body 0 of patch 'b'", "lasso 1 of patch 'b'")), apart
 
 
 def massies_wall():

@@ -308,8 +308,19 @@ def wrong_uses_are_refused():
     refused(UNSUITABLE, scene="tray")
 
 
+def a_field_has_no_choice():
+    """Beside it the rows are those of the other layers."""
+    pathlib.Path("atoms.csv").write_text("x_m,y_m,z_m,sigma_m,epsilon_j,charge_c\n0,0,0,3e-10,1e-21,0\n")
+    field = {"type": "field", "file": "atoms.csv", "length_scale": 1e7, "force_scale": 1e8, "z_m": 0}
+    write_device(4000)
+    write_scene(patch(field, noise()))
+    knobs = {row["choice_of"] for row in trade()["choices"]}
+    write_scene(patch({"type": "spring", "stiffness_n_per_m": 1}, noise()))
+    assert knobs == {row["choice_of"] for row in trade()["choices"]} and knobs, knobs
+
+
 if __name__ == "__main__":
-    for test in (errors_of_grooves_are_those_of_the_series, a_lower_rate_holds_its_force, the_chosen_scene_keeps_the_error,
+    for test in (a_field_has_no_choice, errors_of_grooves_are_those_of_the_series, a_lower_rate_holds_its_force, the_chosen_scene_keeps_the_error,
                  a_softer_layer_keeps_its_added_damper, rates_at_which_the_scene_cannot_be_played_are_rows,
                  unstable_choices_are_never_the_best, what_was_assumed_is_named, a_path_beside_all_patches_is_warned_of, files_are_written_and_valid,
                  wrong_uses_are_refused):

@@ -104,7 +104,7 @@ TEST(ScenePatches, EveryKindIsReadWithItsNumbersAndDefaults) {
     EXPECT_EQ(type_of(patch.layers[i]), kLayers[i]["type"].get<std::string>());
     EXPECT_EQ(type_of(patch.layers[i]), force_layer_types()[i]);
     EXPECT_EQ(file_of(patch.layers[i]), kLayers[i].value("file", ""));
-    for (const auto& [name, number, whole] : numbers_of(patch.layers[i])) {
+    for (const auto& [name, number, changes, whole] : numbers_of(patch.layers[i])) {
       EXPECT_FALSE(number.slider);
       if (kLayers[i].contains(std::string(name)))
         EXPECT_EQ(number.value, kLayers[i][std::string(name)].get<double>()) << name;
@@ -168,7 +168,6 @@ TEST(ScenePatches, WhatIsWrittenReadsBackAndIsWrittenTheSame) {
   first["order"] = 2;
   first["combine"] = "add";
   layer(body, 1)["filter_m"] = 1e-4;
-  layer(body, 2)["octaves"] = slider(4, 1, 8);
   layer(body, 2)["depth_m"] = slider(1e-3 / 3, 0, 1e-2 / 3);
   body["patches"].push_back(
       patch_body("second", Body::array({{{"type", "damper"}, {"damping_n_s_per_m", slider(1, 0, 20)}}})));
@@ -177,7 +176,7 @@ TEST(ScenePatches, WhatIsWrittenReadsBackAndIsWrittenTheSame) {
   const Body once = written(*scene);
   EXPECT_EQ(once["version"], "1.0");
   // With the defaults; nothing that was in the file is lost.
-  EXPECT_EQ(once["patches"][0]["layers"][2]["octaves"], slider(4, 1, 8));
+  EXPECT_EQ(once["patches"][0]["layers"][2]["depth_m"], slider(1e-3 / 3, 0, 1e-2 / 3));
   for (std::size_t i = 0; i < kLayers.size(); ++i)
     for (const auto& [name, value] : body["patches"][0]["layers"][i].items())
       EXPECT_EQ(once["patches"][0]["layers"][i][name], value) << i << " " << name;
@@ -195,8 +194,8 @@ TEST(ScenePatches, AutoIsAWordAndAFilterANumber) {
   Body body = all_kinds();
   layer(body, 1)["filter_m"] = "auto";
   EXPECT_EQ(written(*parsed(body))["patches"][0]["layers"][1]["filter_m"], "auto");
-  layer(body, 1)["filter_m"] = slider(1e-4, 0, 1e-3);
-  EXPECT_EQ(written(*parsed(body))["patches"][0]["layers"][1]["filter_m"], slider(1e-4, 0, 1e-3));
+  layer(body, 1)["filter_m"] = 1e-4;
+  EXPECT_EQ(written(*parsed(body))["patches"][0]["layers"][1]["filter_m"], 1e-4);
   expect_refused([](Body& b) { layer(b, 1)["filter_m"] = "automatic"; }, ErrorKind::malformed,
                  "s#/patches/0/layers/1/filter_m", "automatic");
 }
@@ -223,26 +222,41 @@ TEST(ScenePatches, AdaptiveIsAMemberOfLayersWithAStiffness) {
                  "s#/patches/0/layers/4/adaptive", "");
 }
 
-TEST(ScenePatches, EveryNumberMayHaveASlider) {
-  Body body = all_kinds();
-  std::size_t numbers = 0;
-  for (Body& each : body["patches"][0]["layers"])
-    for (auto& [name, value] : each.items()) {
+// Each number of each layer once with a slider, among those that the file has here.
+TEST(ScenePatches, OnlyNumbersThatCanChangeMayHaveASlider) {
+  const std::set<std::string> fixed = {"1/period_m",      "2/period_m", "2/octaves", "2/seed",
+                                       "3/direction_deg", "7/mass_kg",  "8/mass_kg", "11/length_scale"};
+  std::set<std::string> refused;
+  std::size_t accepted = 0;
+  for (std::size_t i = 0; i < kLayers.size(); ++i)
+    for (const auto& [name, value] : kLayers[i].items()) {
       if (!value.is_number()) continue;
-      value = slider(value, value, value.get<double>() + (value.is_number_integer() ? 1 : 1e-3));
-      ++numbers;
+      Body body = all_kinds();
+      layer(body, i)[name] =
+          slider(value, value, value.get<double>() + (value.is_number_integer() ? 1 : 1e-3));
+      if (name == "static_friction_n") layer(body, i)["kinetic_friction_n"] = 0;
+      const auto scene = parsed(body);
+      if (scene) {
+        ++accepted;
+        continue;
+      }
+      EXPECT_EQ(scene.error().kind, ErrorKind::unsuitable) << message(scene.error());
+      EXPECT_EQ(scene.error().where, fmt::format("s#/patches/0/layers/{}/{}/slider", i, name));
+      refused.insert(fmt::format("{}/{}", i, name));
     }
-  for (const char* whole : {"octaves", "seed"}) {
-    Body& number = layer(body, 2)[whole];
-    number["slider"]["to"] = number["value"].get<int>() + 1;
-  }
-  const auto scene = parsed(body);
-  ASSERT_TRUE(scene) << message(scene.error());
-  std::size_t with_slider = 0;
-  for (const ForceLayer& each : scene->patches[0].layers)
-    for (const auto& [name, number, whole] : numbers_of(each)) with_slider += number.slider.has_value();
-  EXPECT_EQ(with_slider, numbers);
-  EXPECT_EQ(numbers, 26U);
+  EXPECT_EQ(refused, fixed);
+  EXPECT_EQ(accepted + refused.size(), 26U);
+  const auto refused_slider = [](std::size_t at, const std::string& name, const Body& value) {
+    expect_refused([&](Body& b) { layer(b, at)[name] = value; }, ErrorKind::unsuitable,
+                   fmt::format("s#/patches/0/layers/{}/{}/slider", at, name), "");
+  };
+  refused_slider(1, "filter_m", slider(1e-4, 0, 1e-3));
+  refused_slider(1, "filter_margin", slider(2, 1.5, 3));
+  refused_slider(2, "roughness", slider(0.5, 0.4, 0.6));
+  refused_slider(8, "damping_n_s_per_m", slider(0.5, 0.4, 0.6));
+  refused_slider(9, "direction_deg", slider(0, 0, 90));
+  refused_slider(11, "core", slider(1, 0.9, 1.1));
+  refused_slider(11, "probe_charge_c", slider(0, -1e-19, 1e-19));
 }
 
 TEST(ScenePatches, ASceneOfATrayIsWrittenAsItWasRead) {
@@ -377,8 +391,6 @@ TEST(ScenePatches, AValueOutsideItsSliderIsRefused) {
   expect_refused(with(1, 2, 10), bad, at + "/value", "outside its slider from 2 to 10");
   expect_refused(with(5, 10, 0), bad, at + "/slider", "give the lower end first");
   expect_refused(with(5, 5, 5), bad, at + "/slider", "from 5 to 5");
-  expect_refused([](Body& b) { layer(b, 1)["filter_m"] = slider(0.5, 0, 0.1); }, bad,
-                 "s#/patches/0/layers/1/filter_m/value", "filter_m is 0.5");
 }
 
 TEST(ScenePatches, NamesOfPatchesAreDifferent) {
@@ -404,10 +416,24 @@ TEST(ScenePatches, BodiesNeedAMassAndNoMoreKineticFriction) {
   const auto bad = ErrorKind::unsuitable;
   expect_refused([](Body& b) { layer(b, 7)["mass_kg"] = 0; }, bad, "s#/patches/0/layers/7/mass_kg",
                  "above 0");
-  expect_refused([](Body& b) { layer(b, 8)["mass_kg"] = slider(1, 0, 2); }, bad,
-                 "s#/patches/0/layers/8/mass_kg", "above 0");
+  expect_refused([](Body& b) { layer(b, 8)["mass_kg"] = 0; }, bad, "s#/patches/0/layers/8/mass_kg",
+                 "above 0");
   expect_refused([](Body& b) { layer(b, 7)["kinetic_friction_n"] = 1.5; }, bad,
                  "s#/patches/0/layers/7/kinetic_friction_n", "above the static_friction_n of 1");
+  // Sliders may not cross, either.
+  const auto frictions = [](const Body& kinetic, const Body& at_rest) {
+    return [=](Body& b) {
+      layer(b, 7)["kinetic_friction_n"] = kinetic;
+      layer(b, 7)["static_friction_n"] = at_rest;
+    };
+  };
+  for (const auto& [kinetic, at_rest] :
+       {std::pair(slider(0.5, 0, 2), Body(1)), std::pair(Body(0.5), slider(1, 0.4, 2)),
+        std::pair(slider(0.5, 0, 0.8), slider(1, 0.7, 2))})
+    expect_refused(frictions(kinetic, at_rest), bad, "s#/patches/0/layers/7/kinetic_friction_n", "");
+  Body apart = all_kinds();
+  frictions(slider(0.5, 0, 0.7), slider(1, 0.7, 2))(apart);
+  EXPECT_TRUE(parsed(apart));
 }
 
 TEST(ScenePatches, NanIsNeitherReadNorWritten) {
@@ -470,7 +496,7 @@ TEST(ScenePatches, SchemaAndTypesHaveTheSameMembers) {
   const auto scene = parsed(all_kinds());
   ASSERT_TRUE(scene);
   for (const ForceLayer& each : scene->patches[0].layers)
-    for (const auto& [name, number, whole] : numbers_of(each)) known.emplace(name);
+    for (const auto& [name, number, changes, whole] : numbers_of(each)) known.emplace(name);
   std::set<std::string> in_schema;
   const auto file = std::ranges::find(embedded_files(), "scene.schema.json", &EmbeddedFile::name);
   const Body layer_rule = Body::parse(file->content)["definitions"]["force_layer"];
@@ -543,6 +569,17 @@ TEST_F(AtomFile, ReadsColumnsInAnyOrder) {
   EXPECT_EQ(std::tie(first.x_m, first.y_m, first.z_m), std::tuple(0.1, -0.2, 0.3));
   EXPECT_EQ(std::tie(first.sigma_m, first.epsilon_j, first.charge_c), std::tuple(1e-3, 2.0, -1.6e-19));
   EXPECT_EQ(atoms->back().epsilon_j, 9);
+}
+
+// As spreadsheets and other programs write them.
+TEST_F(AtomFile, ReadsAByteOrderMarkAndPlusSigns) {
+  const auto atoms = read("\xEF\xBB\xBF" + header_ + "+1e-10,+2,-3,+4,5,+1.6e-19\n");
+  ASSERT_TRUE(atoms) << message(atoms.error());
+  const Atom& first = atoms->front();
+  EXPECT_EQ(std::tie(first.x_m, first.y_m, first.z_m), std::tuple(1e-10, 2.0, -3.0));
+  EXPECT_EQ(std::tie(first.sigma_m, first.epsilon_j, first.charge_c), std::tuple(4.0, 5.0, 1.6e-19));
+  expect_fault(header_ + "+-1,0,0,1,1,0\n", "line 2", "'+-1' is no finite number");
+  expect_fault(header_ + "+,0,0,1,1,0\n", "line 2", "'+' is no finite number");
 }
 
 TEST_F(AtomFile, FaultsAreNamedByLine) {

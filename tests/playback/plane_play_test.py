@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`play`, `session` and `replay` of a scene of springs and dampers on sim:planar: the same forces as `render`, and again to the bit."""
+import csv
 import hashlib
 import pathlib
 import struct
@@ -225,6 +226,13 @@ def a_scene_is_held_stable_and_replayed():
     # In a hand that carries it nothing is scaled.
     report = play("wall.scene.json", "sim:planar,hand=minsky-radial", "in_hand", "--time", "0.1s", "--hold-stable")
     assert isinstance(report["held_stable"], str), report
+    assert "not_judged" not in report, report
+    # What no method judges is named.
+    body, lasso = {"type": "body", "mass_kg": 0.3, "stiffness_n_per_m": 100, "damping_n_s_per_m": 4}, {"type": "lasso", "mass_kg": 0.1, "stiffness_n_per_m": 10, "length_m": 0.01, "damping_n_s_per_m": 0.5}
+    write_scene("moving", patch(name="a", layers=[body, spring(1)]), patch(name="b", layers=[lasso], order=1))
+    names = {"body 0 of patch 'a'", "lasso 0 of patch 'b'"}
+    assert set(play("moving.scene.json", "sim:planar", "moving", "--time", "0.1s", "--hold-stable")["not_judged"]) == names
+    assert set(run_json("render", "moving.scene.json", "--device", "sandpaper-1990", "--finger-path", "out.csv", "-o", "moving.csv", "--hold-stable")["not_judged"]) == names
     run("play", "oak", "-d", "sim:", "--hold-stable", "-o", "x", code=USAGE)
     run("render", "wall.scene.json", "--finger-path", "out.csv", "--transducer", "wiertlewski2011", "--hold-stable", "-o", "x.wav", code=USAGE)
 
@@ -393,6 +401,11 @@ def a_wrong_script_plays_nothing():
     assert "--script" in said, said
     pathlib.Path("script.csv").write_text("time_ms,command\r\n500, set bench.1.stiffness_n_per_m 100\r\n")
     play("bench.scene.json", "sim:planar", "done", "--time", "1s", "--script", "script.csv")
+    with open("quoted.csv", "w", newline="") as file:
+        csv.writer(file, quoting=csv.QUOTE_ALL).writerows([("time_s", "command"), (0.1, "move bench -5mm,-3mm"), (0.2, "raise bench")])
+    play("bench.scene.json", "sim:planar", "quoted", "--time", "0.5s", "--script", "quoted.csv")
+    quoted = [event["event"] for event in run_json("session", "quoted")["events"]]
+    assert "raise bench" in quoted and any(event.startswith("move bench -0.005 m,-0.003 m") for event in quoted), quoted
     assert "set bench.1.stiffness_n_per_m 100 over 0.01 s" in [event["event"] for event in run_json("session", "done")["events"]]
     pathlib.Path("script.csv").write_text("time_s,command\n0.1,move bench 0mm,0mm\n0.2,move bench 500mm,0mm\n")
     warned = play("bench.scene.json", "sim:planar", "far", "--time", "0.5s", "--script", "script.csv")["warnings"]

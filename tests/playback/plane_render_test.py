@@ -257,6 +257,13 @@ def explain_lists_what_is_built():
     assert two["rate_hz"] == 250 and "left_out" not in two and two["layers"][1]["force_limit_at_speed_mps"] == 5, two
     assert two["block_bytes"] == one["block_bytes"] + two["layers"][1]["bytes"], (one, two)
     assert run_json("explain", "two.scene.json", "--device", "sandpaper-1990", "--device-memory", "10")["fits"] is False
+    # With a slider at its upper end.
+    twice = lambda value: {"value": value, "slider": {"from": value, "to": 2 * value}}
+    body = {"type": "body", "mass_kg": 0.3, "stiffness_n_per_m": twice(10), "damping_n_s_per_m": 4}
+    mover = {"type": "mover", "speed_mps": 0.1, "damping_n_s_per_m": twice(4)}
+    write_scene("slid", patch(layers=[body, mover, {**spring(0), "stiffness_n_per_m": twice(10)}, {**damper(0), "damping_n_s_per_m": twice(4)}]))
+    slid = run_json("explain", "slid.scene.json", "--device", "sandpaper-1990")["layers"]
+    assert [slid[i]["force_limit_at_displacement_m"] for i in (0, 2)] == [1, 1] and [slid[i]["force_limit_at_speed_mps"] for i in (1, 3)] == [2.5, 2.5], slid
 
 
 def a_device_of_one_axis_moves_on_a_line():

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -12,6 +14,7 @@
 #include "data-schema/files/files.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/prepare/scene/field_section.hpp"
+#include "playback/prepare/scene/field_stiffness.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/reference/exact_scene.hpp"
 
@@ -128,6 +131,93 @@ TEST(SceneField, ItsLargestStiffnessIsThatOfTheBorderOfTheCore) {
   EXPECT_NEAR(stiffness(kZero), 57.146, 1e-3);
   layer.force_scale = {kForceScale, schema::SliderRange{0, 2 * kForceScale}};  // the upper end counts
   EXPECT_NEAR(stiffness(1), 2 * 456, 1e-3);
+}
+
+// The largest eigenvalue, absolute, of -dF/dplace at a place, by central differences of the force in double
+// precision, outside of the borders of the cores.
+double numerical_stiffness(const FieldSection& section, double x_m, double y_m, double z_m) {
+  constexpr double kStep_m = 1e-8;
+  const auto force = [&](double x, double y) {
+    double along_x = 0, along_y = 0;
+    for (const SectionAtom& atom : section.atoms) {
+      const double dx = x - atom.x_m, dy = y - atom.y_m, dz = z_m - atom.z_m,
+                   r = std::max(std::sqrt(dx * dx + dy * dy + dz * dz) / atom.sigma_m, section.core);
+      const double g = atom.lennard_jones_n_per_m * (2 * std::pow(r, -14) - std::pow(r, -8)) +
+                       atom.coulomb_n_per_m * std::pow(r, -3);
+      along_x += g * dx, along_y += g * dy;
+    }
+    return std::pair(along_x, along_y);
+  };
+  const auto right = force(x_m + kStep_m, y_m), left = force(x_m - kStep_m, y_m),
+             up = force(x_m, y_m + kStep_m), down = force(x_m, y_m - kStep_m);
+  const double xx = (right.first - left.first) / (2 * kStep_m),
+               yy = (up.second - down.second) / (2 * kStep_m),
+               xy = (right.second - left.second + up.first - down.first) / (4 * kStep_m);
+  return std::abs(xx + yy) / 2 + std::hypot((xx - yy) / 2, xy);
+}
+
+// The largest of random places in the section, half of them at the border of a core.
+double sampled_stiffness(const FieldSection& section, const schema::LayerNumber& z_m, double half_m,
+                         std::mt19937_64& random) {
+  std::uniform_real_distribution<double> part(-1, 1);
+  const double middle_m = (least_value(z_m) + largest_value(z_m)) / 2,
+               range_m = largest_value(z_m) - middle_m;
+  double most = 0;
+  for (int i = 0; i < 20000; ++i) {
+    double x_m = half_m * part(random), y_m = half_m * part(random),
+           at_z_m = middle_m + range_m * part(random);
+    if (i % 2 == 0) {
+      const SectionAtom& atom = section.atoms[static_cast<std::size_t>(i / 2) % section.atoms.size()];
+      at_z_m = std::clamp(atom.z_m, least_value(z_m), largest_value(z_m));
+      const double core_m = section.core * atom.sigma_m, dz = at_z_m - atom.z_m,
+                   in_plane_m = std::sqrt(std::max(core_m * core_m - dz * dz, 0.0)) + 2e-8,
+                   angle = std::numbers::pi * part(random);
+      x_m = atom.x_m + in_plane_m * std::cos(angle), y_m = atom.y_m + in_plane_m * std::sin(angle);
+    }
+    if (std::abs(x_m) > half_m || std::abs(y_m) > half_m) continue;
+    most = std::max(most, numerical_stiffness(section, x_m, y_m, at_z_m));
+  }
+  return most;
+}
+
+TEST(SceneField, ItsStiffnessIsABoundOfAllPlacesAndSections) {
+  std::mt19937_64 random(31);
+  std::uniform_real_distribution<double> part(-1, 1);
+  double loosest = 0;
+  for (int run = 0; run < 24; ++run) {
+    const double core = std::array{0.9, 1.0, 1.12}[static_cast<std::size_t>(run) % 3];
+    const int count = 1 + run * 29 / 23;
+    FieldSection section{{}, core, 0};
+    for (int i = 0; i < count; ++i)
+      section.atoms.push_back({0.012 * part(random), 0.012 * part(random), 0.005 * part(random),
+                               0.003 * (1 + 0.3 * part(random)), 1 + 0.5 * part(random),
+                               run % 4 == 3 ? part(random) : 0});
+    schema::LayerNumber z_m{0.001};
+    if (run % 2 == 1) z_m.slider = schema::SliderRange{-0.004, 0.004};
+    schema::Patch patch;
+    patch.width_m = patch.height_m = 0.03;
+    const double bound = stiffest_n_per_m(section, z_m, patch),
+                 sampled = sampled_stiffness(section, z_m, 0.015, random);
+    // Central differences over 2e-8 m of lengths of 2 mm: 1e-8 of it by the third derivative, and rounding.
+    EXPECT_GE(bound, sampled * (1 - 1e-6)) << run;
+    loosest = std::max(loosest, bound / sampled);
+  }
+  EXPECT_LT(loosest, 2) << "of the places that were sampled";
+}
+
+// Its stiffest ring is at the place where d^2 has the part z^2, between places of a grid: 28277 N/m by
+// NumPy on a grid of 10 um.
+TEST(SceneField, ARingAroundAnAtomIsNotMissed) {
+  schema::FieldLayer layer = field("ring", {kOne, {1e-9, 0.5e-9, -2e-10, 3.2e-10, 5e-22, 0}});
+  layer.length_scale = {2e6};
+  layer.force_scale = {1.6e12};
+  layer.z_m = {0.000672};
+  layer.core = {0.9};
+  const auto scene = try_prepare(patch_of(layer), unlimited_device(1e-5));
+  ASSERT_TRUE(scene);
+  const double stiffness = local_stiffness_n_per_m(scene->patches[0].layers[0]);
+  EXPECT_GE(stiffness, 28277);
+  EXPECT_LE(stiffness, 1.03 * 28277);
 }
 
 // Two charges of one elementary charge 1 nm apart: 230.7078 pN.

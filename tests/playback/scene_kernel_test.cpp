@@ -223,6 +223,22 @@ TEST(SceneKernel, GroovesPushDownTheirSlopeAcrossThem) {
   EXPECT_LT(worst, 0.236 * 3e-7);
 }
 
+// Sliders are accepted where the block has a number, and nowhere else.
+TEST(SceneKernel, NumbersOfTheBlockAreThoseThatCanHaveASlider) {
+  const schema::ForceLayer layers[] = {
+      schema::SpringLayer{},    schema::DamperLayer{},       schema::GroovesLayer{}, schema::NoiseLayer{},
+      schema::HeightMapLayer{}, schema::TextureForceLayer{}, schema::BodyLayer{},    schema::LassoLayer{},
+      schema::MoverLayer{},     schema::FieldLayer{}};
+  for (const schema::ForceLayer& layer : layers) {
+    std::vector<std::string_view> in_block = numbers_in_block(layer), changing;
+    for (const schema::NamedLayerNumber& number : numbers_of(layer))
+      if (number.changes) changing.push_back(number.name);
+    std::ranges::sort(in_block), std::ranges::sort(changing);
+    EXPECT_EQ(in_block, changing) << type_of(layer);
+    EXPECT_FALSE(in_block.empty());
+  }
+}
+
 TEST(SceneKernel, DepthAndKappaChangeInATickAndThePeriodIsNoNumber) {
   const schema::ForceLayer layer = grooves(schema::GrooveProfile::sine, 2e-3, 1e-4, 1.5);
   EXPECT_EQ(numbers_in_block(layer), (std::vector<std::string_view>{"depth_m", "kappa_n"}));

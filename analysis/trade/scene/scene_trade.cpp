@@ -178,6 +178,12 @@ SceneTradeRow unknown_rate(const std::string& choice, const schema::Error& why) 
   return row;
 }
 
+bool has_levels(const schema::ForceLayer& layer) {
+  return layer.visit([](const schema::HeightMapLayer& /*map*/) { return true; },
+                     [](const schema::TextureForceLayer& /*texture*/) { return true; },
+                     [](const auto& /*other*/) { return false; });
+}
+
 // Without the first `left_out` levels. Each level is half an octave.
 std::shared_ptr<const playback::Relief> coarser_relief(const playback::Relief& relief, std::size_t left_out) {
   playback::Relief coarser = relief;
@@ -346,7 +352,7 @@ Result<void> SceneTrader::add_levels() {
     for (std::size_t j = 0; j < patches[i].layers.size(); ++j) {
       const schema::ForceLayer& layer = patches[i].layers[j];
       const std::string key = fmt::format("{} {}", type_of(layer), schema::file_of(layer));
-      if (schema::file_of(layer).empty() || std::ranges::find(files_, key) != files_.end()) continue;
+      if (!has_levels(layer) || std::ranges::find(files_, key) != files_.end()) continue;
       files_.push_back(key);
       TACTO_TRY(add_levels_of(i, j));
     }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace tacto::playback {
 namespace {
@@ -15,33 +14,6 @@ static_assert(schema::kMostAtoms == core::kMostAtoms);
 constexpr double kCoulombConstant = 8.9875517862e9;  // N m^2 / C^2: 1 / (4 pi epsilon_0), CODATA 2022
 constexpr double kPeriodOfExtent = 4.25;             // above 4, so that differences of places do not wrap
 constexpr double kLeastSigmaUnits = 65536, kMostUnitForce_n = 1;  // as core's read_scene_block()
-constexpr int kDirections = 8, kGrid = 64;
-
-// -dF/dplace of all atoms: symmetric, because each force is along the distance.
-struct Derivative {
-  double xx = 0, xy = 0, yy = 0;
-
-  double largest() const { return std::abs(0.5 * (xx + yy)) + std::hypot(0.5 * (xx - yy), xy); }
-};
-
-// F = g d; outside the core s = sigma^2 / d^2 and dg/d(d^2) = -s^2 / sigma^2 dg/ds, inside both are constant.
-void add_atom(Derivative& sum, const SectionAtom& atom, double core, double x_m, double y_m, double z_m) {
-  const double dx = x_m - atom.x_m, dy = y_m - atom.y_m, dz = z_m - atom.z_m;
-  const double sigma2 = atom.sigma_m * atom.sigma_m, square = dx * dx + dy * dy + dz * dz;
-  const bool inside = square <= core * core * sigma2;
-  const double s = inside ? 1 / (core * core) : sigma2 / square, s3 = s * s * s, root = std::sqrt(s);
-  const double g = atom.lennard_jones_n_per_m * (2 * s3 * s3 * s - s3 * s) + atom.coulomb_n_per_m * s * root;
-  const double by_s =
-      atom.lennard_jones_n_per_m * (14 * s3 * s3 - 4 * s3) + atom.coulomb_n_per_m * 1.5 * root;
-  const double along = inside ? 0 : 2 * by_s * s * s / sigma2;
-  sum.xx += along * dx * dx - g, sum.xy += along * dx * dy, sum.yy += along * dy * dy - g;
-}
-
-double stiffness_at(const FieldSection& section, double x_m, double y_m, double z_m) {
-  Derivative sum;
-  for (const SectionAtom& atom : section.atoms) add_atom(sum, atom, section.core, x_m, y_m, z_m);
-  return sum.largest();
-}
 
 }  // namespace
 
@@ -101,32 +73,6 @@ schema::Result<void> check_section(const FieldSection& section, const std::strin
                           where, "leave atoms out that are far from the section");
   }
   return {};
-}
-
-double stiffest_n_per_m(const FieldSection& section, const schema::LayerNumber& z_m,
-                        const schema::Patch& patch) {
-  const double low_m = z_m.slider ? z_m.slider->from : z_m.value,
-               high_m = z_m.slider ? z_m.slider->to : z_m.value;
-  double stiffest = 0;
-  const auto visit = [&](double x_m, double y_m, double at_z_m) {
-    if (std::abs(x_m) <= patch.width_m / 2 && std::abs(y_m) <= patch.height_m / 2)
-      stiffest = std::max(stiffest, stiffness_at(section, x_m, y_m, at_z_m));
-  };
-  for (const SectionAtom& atom : section.atoms) {
-    const double at_z_m = std::clamp(atom.z_m, low_m, high_m), dz = at_z_m - atom.z_m,
-                 radius_m = section.core * atom.sigma_m * (1 + 1e-9);
-    visit(atom.x_m, atom.y_m, at_z_m);
-    if (radius_m <= std::abs(dz)) continue;
-    const double in_plane_m = std::sqrt(radius_m * radius_m - dz * dz);
-    for (int i = 0; i < kDirections; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kDirections;
-      visit(atom.x_m + in_plane_m * std::cos(angle), atom.y_m + in_plane_m * std::sin(angle), at_z_m);
-    }
-  }
-  for (int i = 0; i < kGrid; ++i)
-    for (int j = 0; j < kGrid; ++j)
-      visit(patch.width_m * ((i + 0.5) / kGrid - 0.5), patch.height_m * ((j + 0.5) / kGrid - 0.5), z_m.value);
-  return stiffest;
 }
 
 double field_rounding_n(const FieldSection& section, double farthest_z_m) {

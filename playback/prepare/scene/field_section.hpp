@@ -37,13 +37,6 @@ FieldSection field_section(const schema::FieldLayer& layer, const std::vector<sc
 /// force constant beyond 1 N per unit.
 schema::Result<void> check_section(const FieldSection& section, const std::string& where);
 
-/// The largest eigenvalue, absolute, of the derivative of the force by the place, for a force_scale of 1: of
-/// places around each core (8, just outside of it, and its centre; with a slider of z_m in the section that
-/// is nearest to the atom) and on a grid of 64 x 64, all in the patch. For one atom in the section it is
-/// exact: 24 epsilon / sigma^2 (26 core^-14 - 7 core^-8); 57.146 epsilon / sigma^2 where the force is zero.
-double stiffest_n_per_m(const FieldSection& section, const schema::LayerNumber& z_m,
-                        const schema::Patch& patch);
-
 /// How much the kernel's force differs from that in double precision at most, for a force_scale of 1: each
 /// atom at its core, 64 roundings, and the rounding of places to a unit and of z to single precision.
 double field_rounding_n(const FieldSection& section, double farthest_z_m);

@@ -17,6 +17,7 @@
 #include "playback/prepare/relief/noise_octaves.hpp"
 #include "playback/prepare/scene/body_motion.hpp"
 #include "playback/prepare/scene/field_section.hpp"
+#include "playback/prepare/scene/field_stiffness.hpp"
 #include "playback/prepare/scene/stable_scene.hpp"
 #include "playback/prepare/texture_check.hpp"
 #include "playback/stability/free_limit.hpp"
