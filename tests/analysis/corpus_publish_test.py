@@ -138,6 +138,16 @@ def wrong_workflows_are_refused():
     run("corpus", "workflow", "one-core", "--engine", "pbs", "-o", "refused", code=USAGE)
     run("corpus", "workflow", "raw", "--engine", "slurm", "-o", "refused", code=NOT_FOUND)
     run("corpus", "workflow", "one-core", "--engine", "slurm", "-o", "job", code=USAGE)  # exists
+    # --force replaces what `workflow` wrote, nothing else.
+    pathlib.Path("own.sh").write_text("#!/bin/bash\n# mine\n")
+    pathlib.Path("only.sh").write_text("#!/bin/bash\n")
+    for name in ("raw/A0.json", "raw/A0.wav", "one-core/plan.corpus.json", "own.sh", "only.sh"):
+        before = pathlib.Path(name).read_bytes()
+        run("corpus", "workflow", "one-core", "--engine", "slurm", "--force", "-o", name, code=USAGE)
+        assert pathlib.Path(name).read_bytes() == before, name
+    for engine in ("slurm", "snakemake", "slurm"):
+        run("corpus", "workflow", "one-core", "--engine", engine, "--force", "-o", "replaced")
+        assert ("#SBATCH" in pathlib.Path("replaced").read_text()) == (engine == "slurm")
     many = json.loads(pathlib.Path("one-core/plan.corpus.json").read_text())
     many["recordings"] *= 10**5 // 12
     pathlib.Path("many").mkdir()
