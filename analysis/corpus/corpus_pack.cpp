@@ -11,6 +11,8 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -37,6 +39,32 @@ bool is_inside(const fs::path& path, const fs::path& folder) {
   return !from.empty() && *from.begin() != "..";
 }
 
+// --force removes only what `pack` wrote: each file is in SHA256SUMS and unchanged. The first other one is
+// named.
+Result<void> check_replaceable(const fs::path& output) {
+  const auto text = schema::read_file((output / kSums).string());
+  TACTO_TRY(text);
+  std::map<std::string, std::string> sums;  // by path
+  std::istringstream lines(*text);
+  for (std::string sum, path; lines >> sum && std::getline(lines >> std::ws, path);) sums[path] = sum;
+  std::vector<std::string> paths;
+  std::error_code failed;
+  for (fs::recursive_directory_iterator at(output, failed), end; !failed && at != end; at.increment(failed))
+    if (at->is_symlink(failed) || !at->is_directory(failed)) paths.push_back(at->path().string());
+  if (failed)
+    return schema::fail(ErrorKind::not_found, "cannot be listed: " + failed.message(), output.string());
+  std::ranges::sort(paths);
+  for (const std::string& path : paths) {
+    const auto listed = sums.find(fs::path(path).lexically_relative(output).string());
+    if (path == (output / kSums).string()) continue;
+    const auto sum = listed == sums.end() ? std::string() : schema::sha256_of_file(path).value_or("");
+    if (sum.empty() || sum != listed->second)
+      return schema::fail(ErrorKind::usage, "is not a file that 'corpus pack' wrote, or was changed since",
+                          path, "move it to another folder, or choose another output");
+  }
+  return {};
+}
+
 // Before any work is done. --force replaces a folder only if nothing but a former dataset is lost.
 Result<void> check_output(const CorpusPackOptions& options, const schema::CorpusPlan& plan) {
   const fs::path output = schema::canonical_path(options.output);
@@ -52,7 +80,7 @@ Result<void> check_output(const CorpusPackOptions& options, const schema::Corpus
   if (!schema::is_file((output / kCrate).string()) || !schema::is_file((output / kSums).string()))
     return schema::fail(ErrorKind::usage, "exists, and is not a dataset that 'corpus pack' wrote",
                         options.output, "choose another folder");
-  if (options.existing == schema::Existing::replace) return {};
+  if (options.existing == schema::Existing::replace) return check_replaceable(output);
   return schema::fail(ErrorKind::usage, "exists already", options.output, "--force replaces it");
 }
 

@@ -310,6 +310,21 @@ def nothing_is_lost_or_half_written():
     assert "--force" in run("corpus", "pack", "survey", "-o", "published", *CITATION, code=USAGE)[1] and contents("published") == before
     run("corpus", "pack", "survey", "-o", "published", "--force", *CITATION)
     assert contents("published") == before
+    # A file of another author, a changed one and a link stay, also with --force.
+    pathlib.Path("published/notes").mkdir()
+    pathlib.Path("published/notes/mine.txt").write_text("mine")
+    pathlib.Path("published/link").symlink_to("recordings")
+    table = pathlib.Path("published/recordings.csv").read_bytes()
+    pathlib.Path("published/recordings.csv").write_bytes(table + b"\n")
+    for name in ("link", "notes/mine.txt", "recordings.csv"):  # the first by name
+        kept = contents("published")
+        assert name in run("corpus", "pack", "survey", "-o", "published", "--force", *CITATION, code=USAGE)[1], name
+        assert contents("published") == kept and pathlib.Path("published", name).exists(), name
+        pathlib.Path("published", name).unlink()
+    pathlib.Path("published/recordings.csv").write_bytes(table)
+    pathlib.Path("published/notes").rmdir()
+    run("corpus", "pack", "survey", "-o", "published", "--force", *CITATION)
+    assert contents("published") == before
     for folder in ("people", "survey", "."):  # also with --force
         kept = contents(folder)
         run("corpus", "pack", "survey", "-o", folder, "--force", *CITATION, code=USAGE)
