@@ -13,6 +13,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,7 @@ namespace fs = std::filesystem;
 using schema::ErrorKind;
 using schema::Result;
 
+constexpr std::string_view kNumbersOnly[] = {"data", "ds64", "fmt ", "fact", "PEAK"};  // chunks of a WAV
 constexpr const char *kCrate = "ro-crate-metadata.json", *kTable = "recordings.csv";
 
 bool is_inside(const fs::path& path, const fs::path& folder) {
@@ -227,18 +229,28 @@ class Packing {
     return add_file(path, folder.files);
   }
 
-  // The parts of a WAV before and after its samples may hold text of another program.
+  // The parts of a WAV before and after its samples may hold text of another program; a chunk "JUNK" is often
+  // one that was removed by renaming it.
   Result<void> check_wav_text(const std::string& source) const {
     if (codes_.empty()) return {};
     const auto layout = schema::riff_layout(source);
     if (!layout) return schema::fail(ErrorKind::malformed, "is not a WAV", source);
-    constexpr std::uint64_t kFirstChunk = 12;  // after the words RIFF and WAVE
-    const std::uint64_t end = layout->data_at + (layout->wide ? layout->data_bytes_64 : layout->data_bytes);
-    if (!codes_.in(part_of(source, kFirstChunk, layout->data_at - kFirstChunk)) &&
-        !codes_.in(part_of(source, end, layout->present_bytes + layout->data_at - end)))
-      return {};
-    return schema::fail(ErrorKind::unsuitable, "has the code of a subject beside its samples", source,
-                        "remove that text, or publish with --with-subjects");
+    constexpr std::uint64_t kHead = 8;  // of a chunk: name, size
+    const std::uint64_t file_end = layout->data_at + layout->present_bytes;
+    for (std::uint64_t at = 12; at < file_end;) {  // after the words RIFF and WAVE
+      const std::string head = part_of(source, at, std::min(kHead, file_end - at)), name = head.substr(0, 4);
+      std::uint64_t bytes = 0;
+      for (std::size_t i = head.size(); i-- > 4;) bytes = bytes << 8 | static_cast<unsigned char>(head[i]);
+      if (name == "data" && layout->wide) bytes = layout->data_bytes_64;
+      const bool is_chunk = head.size() == kHead && bytes <= file_end - at - kHead;  // else other bytes
+      const std::uint64_t from = is_chunk ? at + kHead : at, end = is_chunk ? from + bytes : file_end;
+      if (std::ranges::find(kNumbersOnly, name) == std::end(kNumbersOnly) &&
+          codes_.in(part_of(source, from, end - from)))
+        return schema::fail(ErrorKind::unsuitable, "has the code of a subject beside its samples", source,
+                            "remove that text, or publish with --with-subjects");
+      at = end + bytes % 2;
+    }
+    return {};
   }
 
   Result<void> add_file(const std::string& path, std::vector<schema::CrateFile>& files,

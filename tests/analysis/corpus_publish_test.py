@@ -295,6 +295,19 @@ def a_code_in_a_wav_is_refused():
     run("corpus", "pack", "tags", "-o", "tagged-pack", "--with-subjects", *CITATION)
 
 
+def numbers_in_a_wavs_header_are_no_codes():
+    """20,000 frames are the bytes 20 4E 00 00 in the chunk "fact"; 4E is the letter N."""
+    pathlib.Path("short").mkdir()
+    run("record", "-d", "sim:speed=60mm/s,seed=3", "--time", "2s", "-o", "short/oak", "--subject", "N")
+    data = pathlib.Path("short/oak.wav").read_bytes()
+    assert b"fact" + struct.pack("<II", 4, 20000) in data[:200], data[:200]
+    run("corpus", "init", "letters", "--recordings", "short")
+    run("corpus", "run", "letters")
+    run("corpus", "pack", "letters", "-o", "letters-pack", *CITATION)
+    side = json.loads(next(pathlib.Path("letters-pack").rglob("oak.json")).read_text())
+    assert "subject" not in side, side
+
+
 def what_is_missing_is_named_at_once():
     error = run("corpus", "pack", "survey", "-o", "refused", "--publisher", "P", code=USAGE)[1]
     assert error.count("\n") == 1 and all(option in error for option in ("--title", "--creator", "--year", "--licence")) and "--publisher" not in error, error
@@ -357,6 +370,7 @@ def all_of_it():
     citation_is_what_was_stated(codes_of_subjects_are_removed())
     codes_stay_if_they_are_asked_for()
     a_code_in_a_wav_is_refused()
+    numbers_in_a_wavs_header_are_no_codes()
     what_is_missing_is_named_at_once()
     nothing_is_lost_or_half_written()
 
