@@ -213,7 +213,7 @@ class Packing {
     if (codes_.empty() || name.ends_with(".wav")) {
       TACTO_TRY(check_wav_text(source));
       std::error_code failed;
-      if (!fs::copy_file(source, folder_ + "/" + path, failed)) return unwritable(path, failed.value());
+      if (!fs::copy_file(source, folder_ + "/" + path, failed)) return unwritable(folder_ + "/" + path, failed.value());
     } else if (name.ends_with(".json")) {
       const auto text = schema::without_subjects(source, stem, codes_);
       TACTO_TRY(text);

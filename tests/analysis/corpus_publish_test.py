@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import signal
 import struct
@@ -17,7 +18,7 @@ import urllib.parse
 import tacto
 from tacto import COMMAND, run, run_json
 
-USAGE, NOT_FOUND, UNSUITABLE = 2, 3, 5
+USAGE, NOT_FOUND, UNSUITABLE, CANNOT_WRITE = 2, 3, 5, 7
 SURFACES, COPIES = "ABC", 4
 CODE, SHORT = "Quokka42", "7"  # of subjects; no checksum contains the first
 CITATION = ["--title", "Oak & linen \"1\"", "--creator", "Doe, Jane <0000-0002-1825-0097>", "--creator", "Nowak, Ola", "--publisher", "A lab",
@@ -361,6 +362,18 @@ def nothing_is_lost_or_half_written():
     assert not pathlib.Path("cut.part").exists()
 
 
+def a_full_disk_is_named():
+    """RLIMIT_FSIZE: writing beyond 100 kB fails as on a full disk; the recordings have more."""
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+
+    assert all(path.stat().st_size > 100_000 for path in pathlib.Path("raw").glob("*.wav"))
+    done = subprocess.run([COMMAND, "corpus", "pack", "one-core", "-o", "full", *CITATION], capture_output=True, text=True, preexec_fn=limit)
+    assert done.returncode == CANNOT_WRITE and f"{pathlib.Path('full.part').resolve()}/" in done.stderr, done
+    assert not list(pathlib.Path(".").glob("full*"))
+
+
 def all_of_it():
     write_recordings()
     environment = with_command_on_path()
@@ -373,6 +386,7 @@ def all_of_it():
     numbers_in_a_wavs_header_are_no_codes()
     what_is_missing_is_named_at_once()
     nothing_is_lost_or_half_written()
+    a_full_disk_is_named()
 
 
 if __name__ == "__main__":
