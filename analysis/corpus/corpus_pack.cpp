@@ -135,7 +135,7 @@ class Packing {
         recordings_(status.plan.recordings.size()) {}
 
   Result<CorpusPack> pack(const std::function<void(double)>& progress, const std::function<bool()>& stopped) {
-    collect();
+    TACTO_TRY(collect());
     TACTO_TRY(make_folder(folder_ + "/recordings"));
     for (std::size_t i = 0; i < recordings_.size(); ++i) {
       if (stopped())
@@ -154,7 +154,7 @@ class Packing {
 
  private:
   // Headers, units and the subjects of all recordings: a code may also be in the notes of another one.
-  void collect() {
+  Result<void> collect() {
     for (const CorpusUnitStatus& each : status_.units) {
       Packed& packed = recordings_[each.recording];
       packed.because = each.unit.because;
@@ -163,11 +163,21 @@ class Packing {
       if (each.unit.state == UnitState::done) packed.units.push_back(each.folder);
     }
     for (std::size_t i = 0; i < recordings_.size(); ++i) {
-      auto opened = schema::open_recording(path_of(options_.study, status_.plan.recordings[i]));
+      const std::string path = path_of(options_.study, status_.plan.recordings[i]);
+      auto opened = schema::open_recording(path);
       if (!opened) continue;
-      if (!options_.with_subjects) codes_.add(opened->header.subject);
+      if (!options_.with_subjects && !codes_.add(opened->header.subject))
+        return schema::fail(
+            ErrorKind::unsuitable,
+            fmt::format("has a subject whose code is not ASCII, '{}': not all of its spellings "
+                        "would be found",
+                        opened->header.subject),
+            path,
+            "change the code, then 'tactograph corpus init --force', or publish with "
+            "--with-subjects");
       if (!recordings_[i].damaged) recordings_[i].header = std::move(opened->header);
     }
+    return {};
   }
 
   Result<void> pack_recording(std::size_t i) {
@@ -213,7 +223,8 @@ class Packing {
     if (codes_.empty() || name.ends_with(".wav")) {
       TACTO_TRY(check_wav_text(source));
       std::error_code failed;
-      if (!fs::copy_file(source, folder_ + "/" + path, failed)) return unwritable(folder_ + "/" + path, failed.value());
+      if (!fs::copy_file(source, folder_ + "/" + path, failed))
+        return unwritable(folder_ + "/" + path, failed.value());
     } else if (name.ends_with(".json")) {
       const auto text = schema::without_subjects(source, stem, codes_);
       TACTO_TRY(text);

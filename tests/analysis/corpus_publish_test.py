@@ -309,6 +309,25 @@ def numbers_in_a_wavs_header_are_no_codes():
     assert "subject" not in side, side
 
 
+def other_spellings_of_a_code_are_found():
+    pathlib.Path("spelled").mkdir()
+    names = ("Jane Roe", "Jane_Roe", "jane-roe", "JaneRoe", "JANE - ROE")
+    copy("A", "spelled/Jane_Roe-oak", subject="Jane Roe", notes="; ".join(names))
+    copy("B", "spelled/plain", subject="S0-1", notes="s01, S_01, S0 1; 0.1 s")
+    run("corpus", "init", "spellings", "--recordings", "spelled")
+    run("corpus", "run", "spellings")
+    run("corpus", "pack", "spellings", "-o", "spelled-pack", *CITATION)
+    sides = [json.loads(path.read_text()) for path in pathlib.Path("spelled-pack").rglob("*.json") if path.name in ("00001.json", "plain.json")]
+    assert sorted(side["notes"] for side in sides) == ["; ".join(["[subject]"] * len(names)), "[subject], [subject], [subject]; 0.1 s"], sides
+    # "e" with two dots is one character or two, capital or small: such a code is refused before anything is written.
+    copy("B", "spelled/plain", subject="Zo\u00eb", notes="zoe\u0308")
+    run("corpus", "init", "spellings", "--recordings", "spelled", "--force")
+    run("corpus", "run", "spellings")
+    assert "plain.json" in run("corpus", "pack", "spellings", "-o", "zoe", *CITATION, code=UNSUITABLE)[1]
+    assert not list(pathlib.Path(".").glob("zoe*"))
+    run("corpus", "pack", "spellings", "-o", "zoe", "--with-subjects", *CITATION)
+
+
 def what_is_missing_is_named_at_once():
     error = run("corpus", "pack", "survey", "-o", "refused", "--publisher", "P", code=USAGE)[1]
     assert error.count("\n") == 1 and all(option in error for option in ("--title", "--creator", "--year", "--licence")) and "--publisher" not in error, error
@@ -384,6 +403,7 @@ def all_of_it():
     codes_stay_if_they_are_asked_for()
     a_code_in_a_wav_is_refused()
     numbers_in_a_wavs_header_are_no_codes()
+    other_spellings_of_a_code_are_found()
     what_is_missing_is_named_at_once()
     nothing_is_lost_or_half_written()
     a_full_disk_is_named()
