@@ -144,6 +144,8 @@ def matlab_files_hold_the_physical_values():
     # the file has N^2 mm and mm, the export SI: a factor of 1000 in single precision
     assert np.allclose(mat["density"], cells["density"].values.squeeze().T * 1e-3, rtol=1e-6, atol=0)
     assert np.allclose(mat["position_m"][:, 0], cells["position"] * 1e-3, rtol=1e-12, atol=1e-15)
+    for limit in ("known_from", "known_to"):  # 1/mm there
+        assert np.allclose(mat[f"{limit}_per_m"][:, 0], cells[limit].values.ravel() * 1e3, rtol=1e-12, atol=0), limit
     octave = "t = load('t.mat'); c = load('c.mat'); printf('%d %d %.17g', rows(t.tangential_force_n), rows(c.time_s), t.tangential_force_n(7))"
     out = subprocess.run(["octave-cli", "--norc", "--eval", octave], capture_output=True, text=True, check=True).stdout
     assert out.split()[:2] == [str(values.size), str(codes.shape[0])] and float(out.split()[2]) == values[6], out
