@@ -138,7 +138,8 @@ std::string refusal_of(const matvar_t& array) {
   if (kind == "cell" || kind == "sparse") return fmt::format("is a {} array", kind);
   if (kind == "function_handle" || kind == "object") return fmt::format("is of the class {}", kind);
   const std::uint64_t count = count_of(array);
-  if (kind == "empty" || count == 0) return "is empty";
+  if (kind == "empty" && count > 0) return "has no MATLAB class that can be read";
+  if (count == 0) return "is empty";
   if (array.isComplex != 0) return "is complex";
   if (array.rank != 2) return fmt::format("has {} dimensions", array.rank);
   if (count == 1) return "is a single number";
