@@ -133,6 +133,12 @@ def matlab_files_hold_the_physical_values():
         assert np.allclose(values, codes[:, i] * channel["scale"] + channel["offset"], rtol=1e-15, atol=0), channel
     assert mat["sample_rate_hz"] == header["sample_rate_hz"] and provenance_of(mat)["sha256"] == hashlib.sha256(pathlib.Path("c.wav").read_bytes()).hexdigest()
     assert provenance_of(mat)["simulated"] == told["simulated"] and told["simulated"]
+    header["notes"] = "Zo\u00eb, \u03b1 \U0001f600."
+    pathlib.Path("c.json").write_text(json.dumps(header))
+    tacto.run("export", "c", "-o", "n.mat")
+    assert provenance_of(scipy.io.loadmat("n.mat"))["notes"] == "Zo\u00eb, \u03b1 \ufffd.", provenance_of(scipy.io.loadmat("n.mat"))
+    out = subprocess.run(["octave-cli", "--norc", "--eval", "load('n.mat'); printf('%s', provenance.notes)"], capture_output=True, check=True).stdout
+    assert out.decode() == "Zo\u00eb, \u03b1 \ufffd.", out
     tacto.run("spatial", "c", "-o", ".", "--stroke", "1")
     tacto.run("export", "c.texture.json", "-o", "t.mat")
     position_m, values, _ = tacto.texture("c")
