@@ -18,7 +18,7 @@ struct WorkflowOptions {
 
 schema::Result<cli::Report> run_workflow(const WorkflowOptions& options) {
   const std::string& output = options.workflow.output;
-  TACTO_TRY(schema::check_output_free(output, options.existing));
+  TACTO_TRY(schema::check_table_free(output, options.existing, is_workflow));
   const auto workflow = corpus_workflow(options.workflow);
   TACTO_TRY(workflow);
   schema::PendingFiles pending;

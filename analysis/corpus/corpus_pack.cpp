@@ -11,6 +11,9 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -30,11 +33,38 @@ namespace fs = std::filesystem;
 using schema::ErrorKind;
 using schema::Result;
 
+constexpr std::string_view kNumbersOnly[] = {"data", "ds64", "fmt ", "fact", "PEAK"};  // chunks of a WAV
 constexpr const char *kCrate = "ro-crate-metadata.json", *kTable = "recordings.csv";
 
 bool is_inside(const fs::path& path, const fs::path& folder) {
   const fs::path from = path.lexically_relative(folder);
   return !from.empty() && *from.begin() != "..";
+}
+
+// --force removes only what `pack` wrote: each file is in SHA256SUMS and unchanged. The first other one is
+// named.
+Result<void> check_replaceable(const fs::path& output) {
+  const auto text = schema::read_file((output / kSums).string());
+  TACTO_TRY(text);
+  std::map<std::string, std::string> sums;  // by path
+  std::istringstream lines(*text);
+  for (std::string sum, path; lines >> sum && std::getline(lines >> std::ws, path);) sums[path] = sum;
+  std::vector<std::string> paths;
+  std::error_code failed;
+  for (fs::recursive_directory_iterator at(output, failed), end; !failed && at != end; at.increment(failed))
+    if (at->is_symlink(failed) || !at->is_directory(failed)) paths.push_back(at->path().string());
+  if (failed)
+    return schema::fail(ErrorKind::not_found, "cannot be listed: " + failed.message(), output.string());
+  std::ranges::sort(paths);
+  for (const std::string& path : paths) {
+    const auto listed = sums.find(fs::path(path).lexically_relative(output).string());
+    if (path == (output / kSums).string()) continue;
+    const auto sum = listed == sums.end() ? std::string() : schema::sha256_of_file(path).value_or("");
+    if (sum.empty() || sum != listed->second)
+      return schema::fail(ErrorKind::usage, "is not a file that 'corpus pack' wrote, or was changed since",
+                          path, "move it to another folder, or choose another output");
+  }
+  return {};
 }
 
 // Before any work is done. --force replaces a folder only if nothing but a former dataset is lost.
@@ -52,7 +82,7 @@ Result<void> check_output(const CorpusPackOptions& options, const schema::Corpus
   if (!schema::is_file((output / kCrate).string()) || !schema::is_file((output / kSums).string()))
     return schema::fail(ErrorKind::usage, "exists, and is not a dataset that 'corpus pack' wrote",
                         options.output, "choose another folder");
-  if (options.existing == schema::Existing::replace) return {};
+  if (options.existing == schema::Existing::replace) return check_replaceable(output);
   return schema::fail(ErrorKind::usage, "exists already", options.output, "--force replaces it");
 }
 
@@ -105,7 +135,7 @@ class Packing {
         recordings_(status.plan.recordings.size()) {}
 
   Result<CorpusPack> pack(const std::function<void(double)>& progress, const std::function<bool()>& stopped) {
-    collect();
+    TACTO_TRY(collect());
     TACTO_TRY(make_folder(folder_ + "/recordings"));
     for (std::size_t i = 0; i < recordings_.size(); ++i) {
       if (stopped())
@@ -124,7 +154,7 @@ class Packing {
 
  private:
   // Headers, units and the subjects of all recordings: a code may also be in the notes of another one.
-  void collect() {
+  Result<void> collect() {
     for (const CorpusUnitStatus& each : status_.units) {
       Packed& packed = recordings_[each.recording];
       packed.because = each.unit.because;
@@ -133,11 +163,21 @@ class Packing {
       if (each.unit.state == UnitState::done) packed.units.push_back(each.folder);
     }
     for (std::size_t i = 0; i < recordings_.size(); ++i) {
-      auto opened = schema::open_recording(path_of(options_.study, status_.plan.recordings[i]));
+      const std::string path = path_of(options_.study, status_.plan.recordings[i]);
+      auto opened = schema::open_recording(path);
       if (!opened) continue;
-      if (!options_.with_subjects) codes_.add(opened->header.subject);
+      if (!options_.with_subjects && !codes_.add(opened->header.subject))
+        return schema::fail(
+            ErrorKind::unsuitable,
+            fmt::format("has a subject whose code is not ASCII, '{}': not all of its spellings "
+                        "would be found",
+                        opened->header.subject),
+            path,
+            "change the code, then 'tactograph corpus init --force', or publish with "
+            "--with-subjects");
       if (!recordings_[i].damaged) recordings_[i].header = std::move(opened->header);
     }
+    return {};
   }
 
   Result<void> pack_recording(std::size_t i) {
@@ -183,7 +223,8 @@ class Packing {
     if (codes_.empty() || name.ends_with(".wav")) {
       TACTO_TRY(check_wav_text(source));
       std::error_code failed;
-      if (!fs::copy_file(source, folder_ + "/" + path, failed)) return unwritable(path, failed.value());
+      if (!fs::copy_file(source, folder_ + "/" + path, failed))
+        return unwritable(folder_ + "/" + path, failed.value());
     } else if (name.ends_with(".json")) {
       const auto text = schema::without_subjects(source, stem, codes_);
       TACTO_TRY(text);
@@ -199,18 +240,28 @@ class Packing {
     return add_file(path, folder.files);
   }
 
-  // The parts of a WAV before and after its samples may hold text of another program.
+  // The parts of a WAV before and after its samples may hold text of another program; a chunk "JUNK" is often
+  // one that was removed by renaming it.
   Result<void> check_wav_text(const std::string& source) const {
     if (codes_.empty()) return {};
     const auto layout = schema::riff_layout(source);
     if (!layout) return schema::fail(ErrorKind::malformed, "is not a WAV", source);
-    constexpr std::uint64_t kFirstChunk = 12;  // after the words RIFF and WAVE
-    const std::uint64_t end = layout->data_at + (layout->wide ? layout->data_bytes_64 : layout->data_bytes);
-    if (!codes_.in(part_of(source, kFirstChunk, layout->data_at - kFirstChunk)) &&
-        !codes_.in(part_of(source, end, layout->present_bytes + layout->data_at - end)))
-      return {};
-    return schema::fail(ErrorKind::unsuitable, "has the code of a subject beside its samples", source,
-                        "remove that text, or publish with --with-subjects");
+    constexpr std::uint64_t kHead = 8;  // of a chunk: name, size
+    const std::uint64_t file_end = layout->data_at + layout->present_bytes;
+    for (std::uint64_t at = 12; at < file_end;) {  // after the words RIFF and WAVE
+      const std::string head = part_of(source, at, std::min(kHead, file_end - at)), name = head.substr(0, 4);
+      std::uint64_t bytes = 0;
+      for (std::size_t i = head.size(); i-- > 4;) bytes = bytes << 8 | static_cast<unsigned char>(head[i]);
+      if (name == "data" && layout->wide) bytes = layout->data_bytes_64;
+      const bool is_chunk = head.size() == kHead && bytes <= file_end - at - kHead;  // else other bytes
+      const std::uint64_t from = is_chunk ? at + kHead : at, end = is_chunk ? from + bytes : file_end;
+      if (std::ranges::find(kNumbersOnly, name) == std::end(kNumbersOnly) &&
+          codes_.in(part_of(source, from, end - from)))
+        return schema::fail(ErrorKind::unsuitable, "has the code of a subject beside its samples", source,
+                            "remove that text, or publish with --with-subjects");
+      at = end + bytes % 2;
+    }
+    return {};
   }
 
   Result<void> add_file(const std::string& path, std::vector<schema::CrateFile>& files,

@@ -15,7 +15,8 @@ namespace tacto::analysis {
 struct CorpusPackOptions {
   std::string study, output;
   bool with_subjects = false;
-  schema::Existing existing = schema::Existing::keep;  ///< replaces only a folder that `pack` wrote
+  schema::Existing existing =
+      schema::Existing::keep;  ///< replaces only a folder in which all files are as `pack` wrote them
   schema::Citation citation;
 };
 

@@ -120,14 +120,16 @@ std::string resume_command(const CorpusWorkflowOptions& options, const CorpusWor
   return command + " --force -o " + cli::shell_word(options.output);
 }
 
+constexpr std::string_view kMadeBy = "# Made by 'tactograph corpus workflow'.";
+
 // The first lines of both files.
 std::string heading(const CorpusWorkflow& workflow, const std::string& study) {
   return fmt::format(
-      "# Textures of the {} recordings in {}, divided into {} shards.\n"
+      "{}\n# Textures of the {} recordings in {}, divided into {} shards.\n"
       "# Estimated work on one core: {:.3g} s a shard (from the length of {} recordings).\n"
       "# The command 'tactograph' has to be on the PATH of each node, and the folder at the same place.\n#\n",
-      workflow.recordings, study, workflow.shards, workflow.work_s / static_cast<double>(workflow.shards),
-      workflow.read);
+      kMadeBy, workflow.recordings, study, workflow.shards,
+      workflow.work_s / static_cast<double>(workflow.shards), workflow.read);
 }
 
 std::string slurm_text(const CorpusWorkflowOptions& options, const CorpusWorkflow& workflow) {
@@ -200,6 +202,10 @@ std::string snakemake_text(const CorpusWorkflowOptions& options, const CorpusWor
 }
 
 }  // namespace
+
+bool is_workflow(std::string_view first_line) {
+  return first_line == kMadeBy;
+}
 
 std::optional<double> slurm_minutes(const std::string& text) {
   const std::size_t dash = text.find('-');

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data-schema/base/error.hpp"
@@ -36,6 +37,9 @@ struct CorpusWorkflow {
 /// The number of shards depends on plan and recordings only, so that a shard has the same recordings with and
 /// without `missing`. Errors: of the plan; usage, of options; unsuitable, if nothing is missing.
 schema::Result<CorpusWorkflow> corpus_workflow(const CorpusWorkflowOptions& options);
+
+/// Whether a file with this first comment was made of a CorpusWorkflow::text.
+bool is_workflow(std::string_view first_line);
 
 /// A time limit as Slurm writes it (30, 10:00, 2:00:00, 1-12, 1-12:30 ...) in minutes; none for other text.
 std::optional<double> slurm_minutes(const std::string& text);

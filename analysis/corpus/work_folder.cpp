@@ -19,8 +19,11 @@ namespace fs = std::filesystem;
 using schema::Result;
 
 tl::unexpected<schema::Error> unwritable(const std::string& path, int error_number) {
+  // The standard library reports a full disk as EIO while it copies.
+  const bool may_be_full = error_number == ENOSPC || error_number == EDQUOT || error_number == EIO;
   return schema::fail(schema::ErrorKind::cannot_write,
-                      "cannot be written: " + std::generic_category().message(error_number), path);
+                      "cannot be written: " + std::generic_category().message(error_number), path,
+                      may_be_full ? "is the disk full?" : "");
 }
 
 Result<void> make_folder(const std::string& path) {

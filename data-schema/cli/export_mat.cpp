@@ -124,11 +124,21 @@ Result<cli::Report> spectrogram_to_mat(const StoredFile& file, const std::string
   TACTO_TRY(mat);
   std::vector<double> frequency_per_m(s.bins);
   for (std::size_t k = 0; k < s.bins; ++k) frequency_per_m[k] = s.frequency_per_m(k);
-  const std::vector<std::string> columns{"position_m", "spatial_frequency_per_m",
-                                         s.scaling == Scaling::density ? "density" : "amplitude"};
+  std::vector<std::string> columns{"position_m", "spatial_frequency_per_m",
+                                   s.scaling == Scaling::density ? "density" : "amplitude"};
   TACTO_TRY(mat->put(columns[0], s.position_m));
   TACTO_TRY(mat->put(columns[1], frequency_per_m));
   TACTO_TRY(mat->put(columns[2], std::span<const float>(s.cells), s.position_m.size()));
+  if (!s.known.empty()) {  // limits of the band that the recording could know, by position
+    std::vector<double> from_per_m, to_per_m;
+    for (const KnownBand& band : s.known) {
+      from_per_m.push_back(band.low_per_m);
+      to_per_m.push_back(band.high_per_m);
+    }
+    columns.insert(columns.end(), {"known_from_per_m", "known_to_per_m"});
+    TACTO_TRY(mat->put(columns[3], from_per_m));
+    TACTO_TRY(mat->put(columns[4], to_per_m));
+  }
   MatMembers members = provenance_of(file, s.simulated, "");
   append(members, {{"texture", s.name},
                    {"quantity", s.quantity},

@@ -32,6 +32,20 @@ bool continues(char a, char b) {
   return (is_digit(a) && is_digit(b)) || (is_letter(a) && is_letter(b));
 }
 
+// These may be in a code, in other spellings of it another one or none: "Jane Roe", Jane_Roe, JaneRoe.
+bool separates(char c) {
+  return c == ' ' || c == '_' || c == '-';
+}
+
+// Where the code ends that begins at `at`; 0 if none begins there.
+std::size_t end_of(const std::string& code, const std::string& text, std::size_t at) {
+  for (std::size_t i = 0; i < code.size(); ++i, ++at) {
+    while (i > 0 && at < text.size() && text[at] != code[i] && separates(text[at])) ++at;
+    if (at >= text.size() || text[at] != code[i]) return 0;
+  }
+  return at;
+}
+
 bool is_fixed(const std::string& key) {
   return key.ends_with("sha256") || key.ends_with("_date") ||
          std::ranges::find(kFixed, key) != std::end(kFixed);
@@ -76,10 +90,15 @@ class Cleaning {
 
 }  // namespace
 
-void SubjectCodes::add(const std::string& code) {
-  std::string lower;
-  for (const char c : code) lower += small(c);
-  if (!lower.empty()) codes_.insert(std::move(lower));
+bool SubjectCodes::add(const std::string& code) {
+  std::string lower, letters;
+  for (const char c : code) {
+    if (static_cast<unsigned char>(c) >= 0x80) return false;
+    lower += small(c);
+    if (!separates(c)) letters += small(c);
+  }
+  if (!lower.empty()) codes_.insert(letters.empty() ? lower : letters);
+  return true;
 }
 
 std::string SubjectCodes::without(std::string_view text) const {
@@ -88,11 +107,11 @@ std::string SubjectCodes::without(std::string_view text) const {
   for (std::size_t at = 0; at < text.size();) {
     std::size_t longest = 0;
     for (const std::string& code : codes_) {
-      if (lower.compare(at, code.size(), code) != 0 || code.size() <= longest) continue;
-      const std::size_t end = at + code.size();
+      const std::size_t end = end_of(code, lower, at);
+      if (end <= at + longest) continue;
       const bool inside = (at > 0 && continues(lower[at - 1], lower[at])) ||
                           (end < lower.size() && continues(lower[end - 1], lower[end]));
-      if (code.size() >= kAnywhere || !inside) longest = code.size();
+      if (code.size() >= kAnywhere || !inside) longest = end - at;
     }
     if (longest > 0)
       result += kInstead;

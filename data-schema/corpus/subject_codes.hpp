@@ -10,19 +10,22 @@
 
 namespace tacto::schema {
 
-/// A code is found in capital and small letters. Codes of three or more characters are found anywhere in a
-/// text, shorter ones where neither a further letter (beside a letter) nor a further digit (beside a digit)
-/// is adjacent: "7" in "7 strokes" and "oak7", not in "70 mm/s". So more is found than was meant, not less.
+/// A code is found in capital and small letters, and with other spaces, underscores and hyphens or without
+/// them. Codes of three or more characters are found anywhere in a text, shorter ones where neither a further
+/// letter (beside a letter) nor a further digit (beside a digit) is adjacent: "7" in "7 strokes" and "oak7",
+/// not in "70 mm/s". So more is found than was meant, not less.
 class SubjectCodes {
  public:
-  void add(const std::string& code);
+  /// False for a code that is not ASCII: its letters can be stored in several ways, and not all would be
+  /// found.
+  [[nodiscard]] bool add(const std::string& code);
   bool empty() const { return codes_.empty(); }
   bool in(std::string_view text) const { return !empty() && without(text) != text; }
   /// The text with "[subject]" in place of each code.
   std::string without(std::string_view text) const;
 
  private:
-  std::set<std::string, std::less<>> codes_;  // small letters
+  std::set<std::string, std::less<>> codes_;  // small letters, without separators
 };
 
 /// A recording's name, and the one that its files have instead.

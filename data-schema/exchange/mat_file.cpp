@@ -138,7 +138,8 @@ std::string refusal_of(const matvar_t& array) {
   if (kind == "cell" || kind == "sparse") return fmt::format("is a {} array", kind);
   if (kind == "function_handle" || kind == "object") return fmt::format("is of the class {}", kind);
   const std::uint64_t count = count_of(array);
-  if (kind == "empty" || count == 0) return "is empty";
+  if (kind == "empty" && count > 0) return "has no MATLAB class that can be read";
+  if (count == 0) return "is empty";
   if (array.isComplex != 0) return "is complex";
   if (array.rank != 2) return fmt::format("has {} dimensions", array.rank);
   if (count == 1) return "is a single number";
@@ -262,6 +263,21 @@ std::string matlab_name(std::string name) {
   return name.substr(0, 63);
 }
 
+// MATLAB's characters of 16 bits; `text` is UTF-8. SciPy reads no file in which a character needs two of
+// them, so one beyond U+FFFF becomes the replacement character.
+std::u16string utf16_of(const std::string& text) {
+  std::u16string units;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i++]);
+    const unsigned more = lead < 0x80 ? 0U : lead < 0xE0 ? 1U : lead < 0xF0 ? 2U : 3U;
+    std::uint32_t point = more == 0 ? lead : lead & (0x3FU >> more);
+    for (unsigned k = 0; k < more && i < text.size(); ++k)
+      point = point << 6U | (static_cast<unsigned char>(text[i++]) & 0x3FU);
+    units += point > 0xFFFF ? u'\uFFFD' : static_cast<char16_t>(point);
+  }
+  return units;
+}
+
 }  // namespace
 
 bool is_mat(std::string_view beginning) {
@@ -372,14 +388,10 @@ struct MatWriter::State {
       double copy = *number;
       return functions->variable(nullptr, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, &copy, 0);
     }
-    // Latin text of one byte a character, which every reader knows; other characters become '?'.
-    std::string text;
-    for (const char c : std::get<std::string>(value))
-      if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U)
-        text += static_cast<unsigned char>(c) < 0x80 ? c : '?';
+    std::u16string text = utf16_of(std::get<std::string>(value));
     dims[1] = text.size();
     dims[0] = text.empty() ? 0 : 1;
-    return functions->variable(nullptr, MAT_C_CHAR, MAT_T_UINT8, 2, dims, text.data(), 0);
+    return functions->variable(nullptr, MAT_C_CHAR, MAT_T_UTF16, 2, dims, text.data(), 0);
   }
 };
 

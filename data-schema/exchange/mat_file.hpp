@@ -60,7 +60,7 @@ MatVersion mat_version_for(std::uint64_t largest_variable_bytes);
 /// The beginning of every file of MatWriter, after the version: "MATLAB 5.0 MAT-file, made by tactograph".
 bool is_own_mat(std::string_view beginning);
 
-/// The members of a struct.
+/// The members of a struct; texts are UTF-8, characters beyond U+FFFF become U+FFFD.
 using MatMembers = std::vector<std::pair<std::string, std::variant<std::string, double>>>;
 
 /// Writes variables one after the other, not compressed: measured doubles hardly become smaller. Names become

@@ -198,7 +198,9 @@ Result<void> check_table_free(const std::string& path, Existing existing,
   TACTO_TRY(file);
   std::string line(kLongestBeginning, '\0');
   line.resize(std::fread(line.data(), 1, line.size(), file->get()));
-  if (line.empty() || ours(line.substr(0, line.find('\n')))) return check_output_free(path, existing);
+  const bool empty = line.empty();
+  if (line.starts_with("#!")) line.erase(0, line.find('\n') + 1);  // of a script
+  if (empty || ours(line.substr(0, line.find('\n')))) return check_output_free(path, existing);
   return fail(ErrorKind::usage, "has other contents and is not overwritten", path,
               "choose another name, or remove it first");
 }

@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import signal
 import struct
@@ -17,7 +18,7 @@ import urllib.parse
 import tacto
 from tacto import COMMAND, run, run_json
 
-USAGE, NOT_FOUND, UNSUITABLE = 2, 3, 5
+USAGE, NOT_FOUND, UNSUITABLE, CANNOT_WRITE = 2, 3, 5, 7
 SURFACES, COPIES = "ABC", 4
 CODE, SHORT = "Quokka42", "7"  # of subjects; no checksum contains the first
 CITATION = ["--title", "Oak & linen \"1\"", "--creator", "Doe, Jane <0000-0002-1825-0097>", "--creator", "Nowak, Ola", "--publisher", "A lab",
@@ -138,6 +139,16 @@ def wrong_workflows_are_refused():
     run("corpus", "workflow", "one-core", "--engine", "pbs", "-o", "refused", code=USAGE)
     run("corpus", "workflow", "raw", "--engine", "slurm", "-o", "refused", code=NOT_FOUND)
     run("corpus", "workflow", "one-core", "--engine", "slurm", "-o", "job", code=USAGE)  # exists
+    # --force replaces what `workflow` wrote, nothing else.
+    pathlib.Path("own.sh").write_text("#!/bin/bash\n# mine\n")
+    pathlib.Path("only.sh").write_text("#!/bin/bash\n")
+    for name in ("raw/A0.json", "raw/A0.wav", "one-core/plan.corpus.json", "own.sh", "only.sh"):
+        before = pathlib.Path(name).read_bytes()
+        run("corpus", "workflow", "one-core", "--engine", "slurm", "--force", "-o", name, code=USAGE)
+        assert pathlib.Path(name).read_bytes() == before, name
+    for engine in ("slurm", "snakemake", "slurm"):
+        run("corpus", "workflow", "one-core", "--engine", engine, "--force", "-o", "replaced")
+        assert ("#SBATCH" in pathlib.Path("replaced").read_text()) == (engine == "slurm")
     many = json.loads(pathlib.Path("one-core/plan.corpus.json").read_text())
     many["recordings"] *= 10**5 // 12
     pathlib.Path("many").mkdir()
@@ -285,6 +296,38 @@ def a_code_in_a_wav_is_refused():
     run("corpus", "pack", "tags", "-o", "tagged-pack", "--with-subjects", *CITATION)
 
 
+def numbers_in_a_wavs_header_are_no_codes():
+    """20,000 frames are the bytes 20 4E 00 00 in the chunk "fact"; 4E is the letter N."""
+    pathlib.Path("short").mkdir()
+    run("record", "-d", "sim:speed=60mm/s,seed=3", "--time", "2s", "-o", "short/oak", "--subject", "N")
+    data = pathlib.Path("short/oak.wav").read_bytes()
+    assert b"fact" + struct.pack("<II", 4, 20000) in data[:200], data[:200]
+    run("corpus", "init", "letters", "--recordings", "short")
+    run("corpus", "run", "letters")
+    run("corpus", "pack", "letters", "-o", "letters-pack", *CITATION)
+    side = json.loads(next(pathlib.Path("letters-pack").rglob("oak.json")).read_text())
+    assert "subject" not in side, side
+
+
+def other_spellings_of_a_code_are_found():
+    pathlib.Path("spelled").mkdir()
+    names = ("Jane Roe", "Jane_Roe", "jane-roe", "JaneRoe", "JANE - ROE")
+    copy("A", "spelled/Jane_Roe-oak", subject="Jane Roe", notes="; ".join(names))
+    copy("B", "spelled/plain", subject="S0-1", notes="s01, S_01, S0 1; 0.1 s")
+    run("corpus", "init", "spellings", "--recordings", "spelled")
+    run("corpus", "run", "spellings")
+    run("corpus", "pack", "spellings", "-o", "spelled-pack", *CITATION)
+    sides = [json.loads(path.read_text()) for path in pathlib.Path("spelled-pack").rglob("*.json") if path.name in ("00001.json", "plain.json")]
+    assert sorted(side["notes"] for side in sides) == ["; ".join(["[subject]"] * len(names)), "[subject], [subject], [subject]; 0.1 s"], sides
+    # "e" with two dots is one character or two, capital or small: such a code is refused before anything is written.
+    copy("B", "spelled/plain", subject="Zo\u00eb", notes="zoe\u0308")
+    run("corpus", "init", "spellings", "--recordings", "spelled", "--force")
+    run("corpus", "run", "spellings")
+    assert "plain.json" in run("corpus", "pack", "spellings", "-o", "zoe", *CITATION, code=UNSUITABLE)[1]
+    assert not list(pathlib.Path(".").glob("zoe*"))
+    run("corpus", "pack", "spellings", "-o", "zoe", "--with-subjects", *CITATION)
+
+
 def what_is_missing_is_named_at_once():
     error = run("corpus", "pack", "survey", "-o", "refused", "--publisher", "P", code=USAGE)[1]
     assert error.count("\n") == 1 and all(option in error for option in ("--title", "--creator", "--year", "--licence")) and "--publisher" not in error, error
@@ -298,6 +341,21 @@ def what_is_missing_is_named_at_once():
 def nothing_is_lost_or_half_written():
     before = contents("published")
     assert "--force" in run("corpus", "pack", "survey", "-o", "published", *CITATION, code=USAGE)[1] and contents("published") == before
+    run("corpus", "pack", "survey", "-o", "published", "--force", *CITATION)
+    assert contents("published") == before
+    # A file of another author, a changed one and a link stay, also with --force.
+    pathlib.Path("published/notes").mkdir()
+    pathlib.Path("published/notes/mine.txt").write_text("mine")
+    pathlib.Path("published/link").symlink_to("recordings")
+    table = pathlib.Path("published/recordings.csv").read_bytes()
+    pathlib.Path("published/recordings.csv").write_bytes(table + b"\n")
+    for name in ("link", "notes/mine.txt", "recordings.csv"):  # the first by name
+        kept = contents("published")
+        assert name in run("corpus", "pack", "survey", "-o", "published", "--force", *CITATION, code=USAGE)[1], name
+        assert contents("published") == kept and pathlib.Path("published", name).exists(), name
+        pathlib.Path("published", name).unlink()
+    pathlib.Path("published/recordings.csv").write_bytes(table)
+    pathlib.Path("published/notes").rmdir()
     run("corpus", "pack", "survey", "-o", "published", "--force", *CITATION)
     assert contents("published") == before
     for folder in ("people", "survey", "."):  # also with --force
@@ -323,6 +381,18 @@ def nothing_is_lost_or_half_written():
     assert not pathlib.Path("cut.part").exists()
 
 
+def a_full_disk_is_named():
+    """RLIMIT_FSIZE: writing beyond 100 kB fails as on a full disk; the recordings have more."""
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+
+    assert all(path.stat().st_size > 100_000 for path in pathlib.Path("raw").glob("*.wav"))
+    done = subprocess.run([COMMAND, "corpus", "pack", "one-core", "-o", "full", *CITATION], capture_output=True, text=True, preexec_fn=limit)
+    assert done.returncode == CANNOT_WRITE and f"{pathlib.Path('full.part').resolve()}/" in done.stderr, done
+    assert not list(pathlib.Path(".").glob("full*"))
+
+
 def all_of_it():
     write_recordings()
     environment = with_command_on_path()
@@ -332,8 +402,11 @@ def all_of_it():
     citation_is_what_was_stated(codes_of_subjects_are_removed())
     codes_stay_if_they_are_asked_for()
     a_code_in_a_wav_is_refused()
+    numbers_in_a_wavs_header_are_no_codes()
+    other_spellings_of_a_code_are_found()
     what_is_missing_is_named_at_once()
     nothing_is_lost_or_half_written()
+    a_full_disk_is_named()
 
 
 if __name__ == "__main__":

@@ -106,6 +106,9 @@ def refuse_all_cuts(name, column):
         assert done.returncode in (USAGE, MALFORMED) and done.stderr.count("\n") == 1, (name, length, done)
 
 
+HEAD_73 = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM"
+
+
 def set_class(item, name):
     """MATLAB's attribute: text of a type that ends with zero, without the zero."""
     kind = h5py.h5t.C_S1.copy()
@@ -127,7 +130,7 @@ def write_73(path, force_n, fields=True):
             data[name] = values.reshape(1, -1)
             set_class(data[name], kind)
     with open(path, "r+b") as file:
-        file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM")
+        file.write(HEAD_73)
 
 
 def version_7_3():
@@ -138,6 +141,22 @@ def version_7_3():
     write_73("strange.mat", force_n, fields=False)  # matio leaves out one of its fields
     _, said = tacto.run("import", "strange.mat", "-o", "x", "--rate", "10kHz", "--channel", "position=data.count*1um", code=MALFORMED)
     assert "data" in said, said
+
+
+def a_class_that_matlab_would_not_write_is_not_empty():
+    """h5py pads a text with zeros where MATLAB does not, and other programs write no class."""
+    with h5py.File("other.mat", "w", userblock_size=512) as file:
+        for name in ("padded", "none"):
+            file[name] = np.arange(300.0).reshape(1, -1)
+        file["padded"].attrs["MATLAB_class"] = np.bytes_("double")
+        file["void"] = np.zeros(2, dtype=np.uint64)
+        set_class(file["void"], "double")
+        file["void"].attrs["MATLAB_empty"] = np.uint8(1)
+    with open("other.mat", "r+b") as file:
+        file.write(HEAD_73)
+    refusals = {row["name"]: row["not_imported"] for row in tacto.run_json("import", "other.mat")["arrays"]}
+    assert refusals["none"] and refusals["none"] != refusals["void"], refusals
+    assert refusals["padded"] in ("", refusals["none"]), refusals
 
 
 def files_of_octave():
@@ -152,5 +171,5 @@ def files_of_octave():
 
 if __name__ == "__main__":
     for test in (numbers_are_those_of_scipy, without_options_it_lists, each_refusal_names_its_array, nan_is_refused_or_becomes_a_gap,
-                 a_cut_file_is_never_silently_short, version_7_3, files_of_octave):
+                 a_cut_file_is_never_silently_short, version_7_3, a_class_that_matlab_would_not_write_is_not_empty, files_of_octave):
         tacto.in_folder(test)

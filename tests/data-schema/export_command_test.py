@@ -133,6 +133,12 @@ def matlab_files_hold_the_physical_values():
         assert np.allclose(values, codes[:, i] * channel["scale"] + channel["offset"], rtol=1e-15, atol=0), channel
     assert mat["sample_rate_hz"] == header["sample_rate_hz"] and provenance_of(mat)["sha256"] == hashlib.sha256(pathlib.Path("c.wav").read_bytes()).hexdigest()
     assert provenance_of(mat)["simulated"] == told["simulated"] and told["simulated"]
+    header["notes"] = "Zo\u00eb, \u03b1 \U0001f600."
+    pathlib.Path("c.json").write_text(json.dumps(header))
+    tacto.run("export", "c", "-o", "n.mat")
+    assert provenance_of(scipy.io.loadmat("n.mat"))["notes"] == "Zo\u00eb, \u03b1 \ufffd.", provenance_of(scipy.io.loadmat("n.mat"))
+    out = subprocess.run(["octave-cli", "--norc", "--eval", "load('n.mat'); printf('%s', provenance.notes)"], capture_output=True, check=True).stdout
+    assert out.decode() == "Zo\u00eb, \u03b1 \ufffd.", out
     tacto.run("spatial", "c", "-o", ".", "--stroke", "1")
     tacto.run("export", "c.texture.json", "-o", "t.mat")
     position_m, values, _ = tacto.texture("c")
@@ -144,6 +150,8 @@ def matlab_files_hold_the_physical_values():
     # the file has N^2 mm and mm, the export SI: a factor of 1000 in single precision
     assert np.allclose(mat["density"], cells["density"].values.squeeze().T * 1e-3, rtol=1e-6, atol=0)
     assert np.allclose(mat["position_m"][:, 0], cells["position"] * 1e-3, rtol=1e-12, atol=1e-15)
+    for limit in ("known_from", "known_to"):  # 1/mm there
+        assert np.allclose(mat[f"{limit}_per_m"][:, 0], cells[limit].values.ravel() * 1e3, rtol=1e-12, atol=0), limit
     octave = "t = load('t.mat'); c = load('c.mat'); printf('%d %d %.17g', rows(t.tangential_force_n), rows(c.time_s), t.tangential_force_n(7))"
     out = subprocess.run(["octave-cli", "--norc", "--eval", octave], capture_output=True, text=True, check=True).stdout
     assert out.split()[:2] == [str(values.size), str(codes.shape[0])] and float(out.split()[2]) == values[6], out
