@@ -232,8 +232,9 @@ TEST(ScenePatches, OnlyNumbersThatCanChangeMayHaveASlider) {
     for (const auto& [name, value] : kLayers[i].items()) {
       if (!value.is_number()) continue;
       Body body = all_kinds();
-      layer(body, i)[name] =
-          slider(value, value, value.get<double>() + (value.is_number_integer() ? 1 : 1e-3));
+      const Body to =
+          value.is_number_integer() ? Body(value.get<int>() + 1) : Body(value.get<double>() + 1e-3);
+      layer(body, i)[name] = slider(value, value, to);
       if (name == "static_friction_n") layer(body, i)["kinetic_friction_n"] = 0;
       const auto scene = parsed(body);
       if (scene) {
