@@ -318,7 +318,7 @@ def other_spellings_of_a_code_are_found():
     run("corpus", "run", "spellings")
     run("corpus", "pack", "spellings", "-o", "spelled-pack", *CITATION)
     sides = [json.loads(path.read_text()) for path in pathlib.Path("spelled-pack").rglob("*.json") if path.name in ("00001.json", "plain.json")]
-    assert sorted(side["notes"] for side in sides) == ["; ".join(["[subject]"] * len(names)), "[subject], [subject], [subject]; 0.1 s"], sides
+    assert sorted(side["notes"] for side in sides) == ["[subject], [subject], [subject]; 0.1 s", "; ".join(["[subject]"] * len(names))], sides
     # "e" with two dots is one character or two, capital or small: such a code is refused before anything is written.
     copy("B", "spelled/plain", subject="Zo\u00eb", notes="zoe\u0308")
     run("corpus", "init", "spellings", "--recordings", "spelled", "--force")
