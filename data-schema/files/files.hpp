@@ -54,8 +54,8 @@ Result<void> check_output_free(const std::string& path, Existing existing);
 Result<void> check_wav_free(const std::string& path, Existing existing);
 
 /// The same for an output that replaces only its own kind: a table or page that `ours` recognises by its
-/// first line, of a script the line after the interpreter's; an empty file is always replaced. Errors: usage, if a file has the name and is to be kept, or
-/// has other content, which would be lost.
+/// first line, of a script the line after the interpreter's; an empty file is always replaced. Errors: usage,
+/// if a file has the name and is to be kept, or has other content, which would be lost.
 Result<void> check_table_free(const std::string& path, Existing existing,
                               const std::function<bool(std::string_view beginning)>& ours);
 
