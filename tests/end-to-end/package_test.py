@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Debian packages in a bare Debian 12 without the build's libraries: usage: package_test.py BUILD-FOLDER
+"""The Debian packages in a bare Debian 12 without the build's libraries, installed as the recipe for Apptainer does; the
+tarball in a root folder that contains nothing else but busybox: usage: package_test.py BUILD-FOLDER
 
 Needs root (for a root folder of its own), mmdebstrap and a Debian mirror; otherwise it prints "skipped" and the reason.
 """
@@ -16,8 +17,13 @@ import tempfile
 SKIPPED = 77
 EXPOSURE = 1.9  # of the unit, by systemd 252: the value before there was a package
 
+TARBALL = pathlib.Path(__file__).parents[2] / "cmake/tarball"
+
 INSIDE = r"""set -e
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin
+cp /root/tactograph_*.deb /tmp
+(%s)
+cp /tmp/tactograph_*.deb /root
 apt-get update -q
 apt-get install -y -q --no-install-recommends /root/*.deb man-db systemd
 id -nG tactograph | grep -qw plugdev; test -s /etc/tactograph/tactographd.json
@@ -31,6 +37,14 @@ systemd-analyze verify /usr/lib/systemd/system/tactographd.service
 systemd-analyze security --offline=true /usr/lib/systemd/system/tactographd.service | tail -n 1
 apt-get purge -y -q tactograph; test ! -e /etc/tactograph
 echo all of it worked
+"""
+
+ALONE = """set -e
+tactograph demo -o demo
+tactograph corpus init study --recordings 'demo/?.json'
+tactograph corpus run study --shard 1/1
+tactograph export demo/C -o C.mat
+tactographd --help
 """
 
 
@@ -67,6 +81,26 @@ def the_core_compiles_from_its_package(packages, folder):
     assert (folder / "usr/share/tactograph/schemas/texture.schema.json").is_file()
 
 
+def the_tarball_runs_in_an_empty_root(build, folder):
+    """Its files are those of the build, so that it loads nothing of the machine and shows letters in the same font."""
+    made = subprocess.run([TARBALL / "make.sh", build, folder / "tarball"], capture_output=True, text=True)
+    assert made.returncode == 0, made.stderr
+    root = folder / "empty"
+    for name in ("bin", "opt", "tmp"):
+        (root / name).mkdir(parents=True)
+    shutil.copy("/bin/busybox", root / "bin")
+    for name in ("sh", "readlink", "dirname"):
+        (root / "bin" / name).symlink_to("busybox")
+    subprocess.run(["tar", "-xf", made.stdout.strip(), "-C", root / "opt", "--strip-components=1"], check=True)
+    (root / "bin/tactograph").symlink_to("../opt/bin/tactograph")
+    done = subprocess.run(["/usr/sbin/chroot", root, "/bin/sh", "-c", f"cd /tmp; PATH=/bin:/opt/bin; {ALONE}"], env={}, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-2000:]
+    subprocess.run([pathlib.Path(build).resolve() / "tactograph", "demo", "-o", "demo"], cwd=folder, check=True, capture_output=True)
+    for name in ("C.wav", "C.texture.wav", "C.png"):
+        assert (root / "tmp/demo" / name).read_bytes() == (folder / "demo" / name).read_bytes(), name
+    assert list((root / "tmp/study").rglob("*.texture.wav")) and (root / "tmp/C.mat").stat().st_size > 0
+
+
 def skip_without_mirror(done):
     if done.returncode != 0 and re.search(r"Could not (resolve|connect)|Failed to fetch|Temporary failure|timed out", done.stdout + done.stderr):
         skip("no Debian mirror answers; packages and lintian were checked")
@@ -84,7 +118,8 @@ def everything_works_inside(folder, packages):
     for package in packages:
         shutil.copy(package, folder / "root")
     shutil.copy("/etc/resolv.conf", folder / "etc/resolv.conf")
-    (folder / "root/inside.sh").write_text(INSIDE)
+    recipe = re.search(r"^%post\n(.*?)^%", (TARBALL / "tactograph.def").read_text(), re.DOTALL | re.MULTILINE)[1]
+    (folder / "root/inside.sh").write_text(INSIDE % recipe)
     done = subprocess.run(["unshare", "-mpf", f"--mount-proc={folder}/proc", "chroot", str(folder), "bash", "/root/inside.sh"],
                           capture_output=True, text=True)
     skip_without_mirror(done)
@@ -106,6 +141,7 @@ def main():
             skip("a root folder of its own needs root; packages and lintian were checked")
         if subprocess.run(["unshare", "-mpf", "true"], capture_output=True).returncode != 0:
             skip("this machine allows no namespaces; packages and lintian were checked")
+        the_tarball_runs_in_an_empty_root(build, folder)
         bare_debian(folder / "root")
         everything_works_inside(folder / "root", packages)
 
