@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "firmware-host/comedi/comedi_device.hpp"
 #include "firmware-host/replay/replay_device.hpp"
 #include "firmware-host/sim/device/sim_device.hpp"
 #include "firmware-host/sim/planar/planar_device.hpp"
@@ -19,6 +20,7 @@ struct Scheme {
 
 constexpr Scheme kSchemes[] = {{"usb:", open_usb_device},
                                {"tty:", open_tty_device},
+                               {"comedi:", open_comedi_device},
                                {kPlanarScheme, open_planar_device},
                                {"sim:", open_sim_device},
                                {"replay:", open_replay_device}};

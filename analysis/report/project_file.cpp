@@ -71,6 +71,7 @@ Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file
     case FileKind::protocol:
       return add_protocol(path, file);
     case FileKind::protocol_key:
+    case FileKind::wiring:
       return {};
     case FileKind::device:
       return add_device(path, file);

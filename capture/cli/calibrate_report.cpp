@@ -26,7 +26,7 @@ schema::Result<void> check_scales(const std::vector<schema::CalibrationEntry>& e
 }  // namespace
 
 void declare_common(CLI::App& app, CalibrateOptions& options) {
-  app.add_option("-d,--device", options.device, "The device: usb:, usb:serial=XYZ, sim:...");
+  app.add_option("-d,--device", options.device, "The device: usb:, usb:serial=XYZ, comedi:NAME, sim:...");
   app.add_option("--calibration", options.calibration,
                  "Calibration file; default: SERIAL.calibration.json in ~/.config/tactograph/calibrations");
   app.add_flag("--dry-run", options.dry_run, "Measure and print only; store nothing");

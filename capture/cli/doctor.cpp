@@ -26,6 +26,13 @@ cli::Report row_of(const Check& check) {
   return row.add("what_to_do", check.remedy);
 }
 
+// The card's input of a channel, and the sensor's range there.
+cli::Report row_of(const schema::Channel& channel) {
+  cli::Report row;
+  row.add("channel", channel.name).add("from", channel.source);
+  return row.add("unit", channel.unit).add("smallest", *channel.range_min).add("largest", *channel.range_max);
+}
+
 schema::Result<cli::Report> run_doctor(const DoctorOptions& options) {
   DoctorRequest request = options.request;
   request.stale_after_s = options.stale_after_s.value_or(kStaleAfter_s);
@@ -37,7 +44,12 @@ schema::Result<cli::Report> run_doctor(const DoctorOptions& options) {
   for (const Check& check : checks) rows.push_back(row_of(check));
   const Check* const first_failure = diagnosis.first_failure();
   cli::Report report;
-  report.add("checks", std::move(rows))
+  report.add("checks", std::move(rows));
+  std::vector<cli::Report> wired;
+  for (const schema::Channel& channel : diagnosis.channels)
+    if (options.request.device.starts_with("comedi:")) wired.push_back(row_of(channel));
+  if (!wired.empty()) report.add("wiring", std::move(wired));
+  report
       .add("can_record", first_failure == nullptr)
       .add("next", diagnosis.next);
   if (first_failure != nullptr)
@@ -48,7 +60,7 @@ schema::Result<cli::Report> run_doctor(const DoctorOptions& options) {
 cli::Action declare_doctor(CLI::App& app) {
   auto options = std::make_shared<DoctorOptions>();
   DoctorRequest& request = options->request;
-  app.add_option("-d,--device", request.device, "The device: usb:, usb:serial=XYZ, tty:, sim:...");
+  app.add_option("-d,--device", request.device, "The device: usb:, usb:serial=XYZ, tty:, comedi:NAME, sim:...");
   app.add_option("-o,--folder", request.folder, "Folder of the recordings");
   app.add_option("--calibration", request.calibration,
                  "Calibration file of the device, if not the one that 'tactograph calibrate' stores");

@@ -2,6 +2,7 @@
 #include "capture/doctor/doctor.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -102,10 +103,9 @@ double bytes_per_s(const Capabilities& capabilities) {
 }
 
 Check device_seen(const Capabilities& said) {
-  return {"device",
-          Health::works,
+  return {"device", said.warnings.empty() ? Health::works : Health::warns,
           fmt::format("{}, serial {}{}", said.name, said.serial, said.simulated.empty() ? "" : ", emulated"),
-          {}};
+          fmt::to_string(fmt::join(said.warnings, "; "))};
 }
 
 Check device_missing(const schema::Error& why) {
@@ -200,10 +200,12 @@ const Check* Diagnosis::first_failure() const {
 Diagnosis examine(const DoctorRequest& request) {
   Diagnosis diagnosis;
   const auto device = firmware_host::open_device(request.device);
-  if (device)
+  if (device) {
     check_device(**device, request, diagnosis.checks);
-  else
+    diagnosis.channels = (*device)->capabilities().channels;
+  } else {
     check_without_device(device.error(), request, diagnosis.checks);
+  }
   diagnosis.next = next_of(diagnosis, request, !device || (*device)->is_real_time());
   return diagnosis;
 }

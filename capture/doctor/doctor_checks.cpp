@@ -119,9 +119,10 @@ bool is_denied(const schema::Error& why) {
 }
 
 Check check_permission(const schema::Error& why, const std::string& root) {
-  if (why.where.starts_with("tty:") && is_denied(why))
+  const bool on_usb = !why.where.starts_with("tty:") && !why.where.starts_with("/dev/");
+  if (!on_usb && is_denied(why))
     return {"permission", Health::fails, why.what, why.remedy, schema::ErrorKind::not_found};
-  if (why.where.starts_with("tty:")) return {"permission", Health::skipped, "requires a device", {}};
+  if (!on_usb) return {"permission", Health::skipped, "requires a device", {}};
   const std::string rule = installed_rule(root);
   const std::string found = rule.empty() ? fmt::format("{} is not installed", kRule) : rule + " is installed";
   const std::string remedy =

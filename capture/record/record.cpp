@@ -357,7 +357,7 @@ Result<schema::RecordingHeader> calibrated_header(const Device& device, const Re
   auto warnings =
       apply_calibration(*header, *request.calibration, request.stale_after_s, schema::creation_time());
   TACTO_TRY(warnings);
-  header->warnings = std::move(*warnings);
+  header->warnings.insert(header->warnings.end(), warnings->begin(), warnings->end());
   return header;
 }
 

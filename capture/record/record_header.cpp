@@ -38,6 +38,7 @@ schema::Result<schema::RecordingHeader> header_for(const firmware_host::Capabili
   header.finger = request.finger;
   header.surface = request.surface.empty() ? capabilities.surface : request.surface;
   header.notes = request.notes;
+  header.warnings = capabilities.warnings;
   for (const schema::Channel& channel : capabilities.channels) {
     const bool volts = channel.quantity == "tangential_force" && channel.unit == "V";
     if (volts && !header.transducer)

@@ -13,6 +13,7 @@
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/session/session_netcdf.hpp"
 #include "data-schema/transducer/transducer.hpp"
+#include "data-schema/wiring/wiring.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -63,6 +64,7 @@ Result<Checked> check_document(const StoredFile& file, const Progress& progress)
   if (file.kind == FileKind::hand) checked.findings = check_by_reading(read_hand(file.path));
   if (file.kind == FileKind::protocol) checked.findings = check_by_reading(read_protocol(file.path));
   if (file.kind == FileKind::protocol_key) checked.findings = check_by_reading(read_protocol_key(file.path));
+  if (file.kind == FileKind::wiring) checked.findings = check_by_reading(read_wiring(file.path));
   if (file.kind == FileKind::corpus) checked.findings = check_by_reading(read_corpus_plan(file.path));
   if (file.kind == FileKind::results) checked.findings = check_by_reading(read_results(file.path));
   if (file.kind == FileKind::texture) checked.findings = check_texture(file.path, *document, progress);

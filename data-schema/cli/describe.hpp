@@ -33,6 +33,7 @@ Result<cli::Report> describe_hand(const std::string& path);
 Result<cli::Report> describe_corpus(const std::string& path);
 Result<cli::Report> describe_protocol(const std::string& path);
 Result<cli::Report> describe_protocol_key(const std::string& path);
+Result<cli::Report> describe_wiring(const std::string& path);
 
 /// The report's first lines: file, kind, and what simulated it.
 cli::Report report_of(FileKind kind, const std::string& path, const std::string& simulated);

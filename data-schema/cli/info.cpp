@@ -47,6 +47,8 @@ Result<cli::Report> describe(const StoredFile& file) {
       return describe_protocol(file.path);
     case FileKind::protocol_key:
       return describe_protocol_key(file.path);
+    case FileKind::wiring:
+      return describe_wiring(file.path);
   }
   return fail(ErrorKind::internal, "this kind of file cannot be described", file.path);
 }

@@ -16,10 +16,10 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 18> kNames = {
-    "recording",   "texture",       "transducer", "spectrogram", "formants", "descriptions",
-    "calibration", "scene",         "session",    "results",     "trade",    "device",
-    "hand",        "session_table", "height_map", "corpus",      "protocol", "protocol_key"};
+constexpr std::array<std::string_view, 19> kNames = {
+    "recording",  "texture", "transducer", "spectrogram",  "formants", "descriptions", "calibration",
+    "scene",      "session", "results",    "trade",        "device",   "hand",         "session_table",
+    "height_map", "corpus",  "protocol",   "protocol_key", "wiring"};
 
 struct Ending {
   FileKind kind;
@@ -44,6 +44,7 @@ constexpr Ending kEndings[] = {
     {FileKind::corpus, ".corpus.json"},
     {FileKind::protocol, ".protocol.json"},
     {FileKind::protocol_key, ".key.json"},
+    {FileKind::wiring, ".wiring.json"},
 };
 
 // What comes with tactograph under a name.

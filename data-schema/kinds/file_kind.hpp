@@ -28,7 +28,8 @@ enum class FileKind {
   height_map,
   corpus,  ///< the plan of a corpus
   protocol,
-  protocol_key  ///< which stimulus has which code
+  protocol_key,  ///< which stimulus has which code
+  wiring         ///< which sensor is wired to which input of a card
 };
 
 /// "recording", "texture", ... as in the files' own member `kind`.

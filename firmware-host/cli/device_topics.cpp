@@ -28,6 +28,8 @@ std::string devices_text() {
          "  tty:                    the only board on the USB serial ports\n"
          "  tty:/dev/ttyACM0        a board by its serial port\n"
          "  tty:PATH,baud=2000000   the same at another baud rate than 1000000\n"
+         "  comedi:NAME             a data acquisition card, wired as NAME.wiring.json says; it records, it cannot "
+         "play\n"
          "  sim:KEY=VALUE,...       the emulated device; the keys: tactograph help sim\n"
          "  sim:planar,KEY=VALUE    the emulated force device, for scenes with force patches\n"
          "  replay:NAME             a recording as a device, as fast as possible\n"

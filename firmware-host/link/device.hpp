@@ -36,6 +36,7 @@ struct Capabilities {
   std::vector<schema::Channel> channels;
   std::optional<schema::Transducer> transducer;
   std::string surface;  ///< the surface on the tray, if the device reports it
+  std::vector<std::string> warnings;  ///< for whoever records, and for the recording
 };
 
 /// Counters of a stream since start().

@@ -24,6 +24,7 @@ ROOMS = ["analysis", "capture", "data-schema", "firmware-host", "playback", "spa
 # Header (a regular expression for the text between the brackets) -> the only places that may include it.
 WALLS = {
     r"libusb": ["firmware-host/usb"],
+    r"comedi(lib)?\.h": ["firmware-host/comedi"],
     r"termios": ["firmware-host/tty", "data-schema/command"],
     r"fftw3": ["spatial/dsp"],
     r"sndfile": ["data-schema/wav"],

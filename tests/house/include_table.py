@@ -8,10 +8,10 @@ MAY_INCLUDE = {
     "data-schema/calibration": "data-schema/{base files json}",
     "data-schema/check":
         "data-schema/{base corpus device experiment files height json kinds recording results scene session spectrogram texture transducer "
-        "wav}",
+        "wav wiring}",
     "data-schema/cli":
         "data-schema/{base calibration check command corpus device exchange experiment files height kinds recording report results scene session spectrogram "
-        "texture transducer}",
+        "texture transducer wiring}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
     "data-schema/corpus": "data-schema/{base json}",
@@ -33,10 +33,12 @@ MAY_INCLUDE = {
     "data-schema/texture": "data-schema/{base files json kinds wav}",
     "data-schema/transducer": "data-schema/{base json}",
     "data-schema/wav": "data-schema/{base files}",
-    "firmware-host": "data-schema/base firmware-host/{link replay sim/device sim/physics sim/planar tty usb}",
+    "data-schema/wiring": "data-schema/{base files json recording transducer}",
+    "firmware-host": "data-schema/base firmware-host/{comedi link replay sim/device sim/physics sim/planar tty usb}",
     "firmware-host/boards": "",
     "firmware-host/boards/stm32f405": "firmware-host/core/{firmware wire}",
     "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
+    "firmware-host/comedi": "data-schema/{base wiring} firmware-host/link",
     "firmware-host/core/firmware": "firmware-host/{core/kernel core/scene core/wire}",
     "firmware-host/core/kernel": "firmware-host/core/wire",
     "firmware-host/core/scene": "firmware-host/core/{kernel wire}",

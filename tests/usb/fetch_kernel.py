@@ -12,8 +12,9 @@ import sys
 import tempfile
 
 META_PACKAGE = "linux-image-amd64"
-# dummy_hcd: controller and device in one; usb_f_fs: the device's function; 9p: the host's files.
-WANTED = ["virtio_pci", "9pnet_virtio", "9p", "libcomposite", "usb_f_fs", "dummy_hcd"]
+# dummy_hcd: controller and device in one; usb_f_fs: the device's function; 9p: the host's files; comedi_test: an
+# emulated data acquisition card.
+WANTED = ["virtio_pci", "9pnet_virtio", "9p", "libcomposite", "usb_f_fs", "dummy_hcd", "comedi_test"]
 
 
 def output(*command, **more):

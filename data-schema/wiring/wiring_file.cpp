@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "data-schema/files/files.hpp"
+#include "data-schema/json/json_document.hpp"
+#include "data-schema/json/known_members.hpp"
+#include "data-schema/json/named_document.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/wiring/wiring.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::string_view kWiringKind = "wiring";
+
+WiredInput input_from(const Json& body) {
+  WiredInput input;
+  input.input = body["input"];
+  input.quantity = body["quantity"];
+  input.name = text_or(body, "name", input.quantity);
+  input.range_from_v = body["range_v"][0];
+  input.range_to_v = body["range_v"][1];
+  input.reference = body["reference"];
+  if (body.contains("per_volt")) input.per_volt = body["per_volt"].get<double>();
+  input.at_zero_volt = number_or(body, "at_zero_volt", 0);
+  return input;
+}
+
+Result<void> check_input(const Wiring& wiring, std::size_t index, const std::string& file) {
+  const WiredInput& input = wiring.inputs[index];
+  const std::string where = fmt::format("{}#/inputs/{}", file, index);
+  if (auto quantity = quantity_named(input.quantity); !quantity)
+    return fail(ErrorKind::unsuitable, quantity.error().what, where + "/quantity", quantity.error().remedy);
+  if (!(input.range_from_v < input.range_to_v))
+    return fail(ErrorKind::unsuitable, "the range has no length", where + "/range_v",
+                "give the lower end first, as in [-5, 5]");
+  const bool of_transducer = input.quantity == "tangential_force" && !wiring.transducer_name.empty();
+  if (!input.per_volt && !of_transducer)
+    return fail(
+        ErrorKind::unsuitable, "per_volt is missing", where,
+        "give the SI units of the quantity for one volt; or, for the tangential force, the transducer");
+  if (input.per_volt == 0)
+    return fail(ErrorKind::unsuitable, "0 units per volt", where + "/per_volt", "give the sensor's scale");
+  if (!input.per_volt && input.at_zero_volt != 0)
+    return fail(ErrorKind::unsuitable, "at_zero_volt needs per_volt", where + "/at_zero_volt",
+                "remove it: the transducer has no force at 0 V");
+  for (std::size_t earlier = 0; earlier < index; ++earlier)
+    if (wiring.inputs[earlier].name == input.name)
+      return fail(ErrorKind::unsuitable, fmt::format("'{}' is the name of two channels", input.name),
+                  where + "/name", "give one of them another name");
+  return {};
+}
+
+}  // namespace
+
+Result<Wiring> read_wiring(const std::string& name) {
+  const auto found = open_named(kWiringKind, name);
+  TACTO_TRY(found);
+  TACTO_TRY(check_document_known(found->document, kWiringKind, found->where));
+  const Json& body = found->document.body;
+  Wiring wiring;
+  wiring.name = body["name"];
+  wiring.card = body["card"];
+  wiring.rate_hz = body["rate_hz"];
+  wiring.transducer_name = text_or(body, "transducer");
+  wiring.notes = text_or(body, "notes");
+  for (const Json& input : body["inputs"]) wiring.inputs.push_back(input_from(input));
+  for (std::size_t i = 0; i < wiring.inputs.size(); ++i) TACTO_TRY(check_input(wiring, i, found->where));
+  if (!wiring.transducer_name.empty()) {
+    const auto beside = (std::filesystem::path(found->where).parent_path() / wiring.transducer_name).string();
+    auto transducer =
+        read_transducer(is_file(path_of_kind("transducer", beside)) ? beside : wiring.transducer_name);
+    TACTO_TRY(transducer);
+    wiring.transducer = std::move(*transducer);
+  }
+  keep_unknown(found->document, wiring);
+  return wiring;
+}
+
+}  // namespace tacto::schema
