@@ -4,10 +4,10 @@
 #pragma once
 
 #include "data-schema/control/control.hpp"
+#include "playback/control/stay_watch.hpp"
 #include "playback/host-loop/host_loop.hpp"
 #include "playback/player/flight_recorder.hpp"
 #include "playback/player/player.hpp"
-#include "playback/session/stay_watch.hpp"
 
 namespace tacto::playback {
 
