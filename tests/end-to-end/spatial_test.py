@@ -294,7 +294,7 @@ def long_recordings_need_little_memory():
     idle = tacto.peak_mb("--version")
     for more in ([], ["--filter", "butterworth"]):
         peak = tacto.peak_mb("spatial", "long", "-o", "t", "--force", *more)
-        measured(f"spatial_command.{more[-1] if more else 'fourier'}_600_s_mb", peak - idle)
+        measured(f"spatial.{more[-1] if more else 'fourier'}_600_s_mb", peak - idle)
         tacto.expect_little_memory(" ".join(["600 s at 10 kHz", *more]), peak, idle)
     assert len(list(pathlib.Path(".").glob("t-*.texture.wav"))) == 600
 
