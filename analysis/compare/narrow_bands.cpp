@@ -5,12 +5,13 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <cstddef>
 #include <numbers>
 #include <numeric>
 #include <span>
 #include <utility>
+#include <vector>
 
-#include "analysis/compare/local_mean.hpp"
 #include "data-schema/base/decibels.hpp"
 #include "data-schema/base/raised_cosine.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
@@ -19,6 +20,24 @@ namespace tacto::analysis {
 namespace {
 
 using Powers = std::vector<double>;
+
+// 0, v_0, v_0 + v_1, ...: one value more than the input.
+std::vector<double> running_sums(const std::vector<double>& values) {
+  std::vector<double> sums(values.size() + 1, 0.0);
+  std::partial_sum(values.begin(), values.end(), sums.begin() + 1);
+  return sums;
+}
+
+// Mean over `reach` values to each side. Near an end the reach is shorter, but equal to both sides.
+std::vector<double> local_mean(const std::vector<double>& values, std::size_t reach) {
+  const std::vector<double> sums = running_sums(values);
+  std::vector<double> means(values.size());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const std::size_t r = std::min({reach, k, values.size() - 1 - k});
+    means[k] = (sums[k + r + 1] - sums[k - r]) / static_cast<double>(2 * r + 1);
+  }
+  return means;
+}
 
 constexpr double kTapered = 0.125;                             // of the length, at each end
 constexpr std::size_t kDensity = 48, kLevel = 192, kNear = 8;  // half bins to each side

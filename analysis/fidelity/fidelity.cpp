@@ -3,17 +3,22 @@
 
 #include <fmt/format.h>
 
+#include <stdlib.h>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "analysis/compare/along_path.hpp"
 #include "analysis/compare/band_sums.hpp"
 #include "analysis/compare/played_texture.hpp"
-#include "analysis/fidelity/scratch_folder.hpp"
 #include "data-schema/base/decibels.hpp"
+#include "data-schema/base/error.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/texture/texture.hpp"
 #include "data-schema/transducer/transducer.hpp"
@@ -39,6 +44,39 @@ using playback::FingerPath;
 using schema::ErrorKind;
 using schema::Result;
 using schema::Texture;
+
+/// Created in the system's folder for temporary files. The destructor deletes it with its contents.
+class ScratchFolder {
+ public:
+  /// Errors: cannot_write.
+  static schema::Result<ScratchFolder> make();
+  ScratchFolder(ScratchFolder&& other) noexcept;
+  ScratchFolder& operator=(ScratchFolder&&) = delete;
+  ~ScratchFolder();
+
+  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  explicit ScratchFolder(std::string path) : path_(std::move(path)) {}
+  std::string path_;
+};
+
+namespace fs = std::filesystem;
+
+schema::Result<ScratchFolder> ScratchFolder::make() {
+  std::error_code failure;
+  std::string path = (fs::temp_directory_path(failure) / "tactograph-XXXXXX").string();
+  if (!failure && mkdtemp(path.data()) != nullptr) return ScratchFolder(path);
+  return schema::fail(schema::ErrorKind::cannot_write, "no temporary folder can be made", path,
+                      "set TMPDIR to a folder that can be written");
+}
+
+ScratchFolder::ScratchFolder(ScratchFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
+}
 
 constexpr double kLeftOutS = 0.05, kFadeM = 1e-3;  // left out at either end of the texture
 constexpr double kFarthestShiftM = 50e-6;

@@ -18,6 +18,7 @@ constexpr std::string_view kStyle = R"(
 body { font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; color: var(--text); background: var(--page); max-width: 62rem; margin: 2rem auto; padding: 0 1rem; overflow-wrap: break-word; }
 h1 { font-size: 1.7rem; margin-bottom: .2rem; } h2 { font-size: 1.25rem; margin-top: 2.6rem; border-top: 1px solid var(--line); padding-top: 1.2rem; }
 p.answer { font-size: 1.2rem; font-weight: 600; margin: .8rem 0; }
+a { color: inherit; }
 .simulated { background: var(--note); border-left: .4rem solid var(--edge); padding: .6rem 1rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .8rem 0; }
 th, td { padding: .35rem .6rem; text-align: right; vertical-align: top; border-bottom: 1px solid var(--line); }
@@ -208,7 +209,8 @@ std::string inline_svg(std::string_view svg, std::string_view alternative) {
                      escaped(alternative), percent_encoded(svg));
 }
 
-std::string html_table(const std::vector<std::string>& headers, std::size_t rows, const CellText& cell) {
+std::string html_table(const std::vector<std::string>& headers, std::size_t rows, const CellText& cell,
+                       const RowTarget& target) {
   std::vector<std::vector<std::string>> cells(rows);
   std::vector<bool> text_columns(headers.size());
   for (std::size_t row = 0; row < rows; ++row)
@@ -217,11 +219,15 @@ std::string html_table(const std::vector<std::string>& headers, std::size_t rows
       if (is_text(cells[row].back())) text_columns[column] = true;
     }
   std::string table = fmt::format("<table{}>\n{}<tbody>\n", table_class(headers.size()), head_row(headers));
-  for (const auto& row : cells) {
+  for (std::size_t i = 0; i < rows; ++i) {
     table += "<tr>";
-    for (std::size_t column = 0; column < headers.size(); ++column)
-      table += fmt::format("<td{} data-label=\"{}\">{}</td>", cell_class(row[column], text_columns[column]),
-                           escaped(headers[column]), with_breaks(row[column]));
+    for (std::size_t column = 0; column < headers.size(); ++column) {
+      const std::string& text = cells[i][column];
+      std::string shown = with_breaks(text);
+      if (target && column == 0) shown = fmt::format("<a href=\"#{}\">{}</a>", escaped(target(i)), shown);
+      table += fmt::format("<td{} data-label=\"{}\">{}</td>", cell_class(text, text_columns[column]),
+                           escaped(headers[column]), shown);
+    }
     table += "</tr>\n";
   }
   return table + "</tbody></table>\n";

@@ -42,17 +42,23 @@ class Column {
 /// The cell of a row and a column, by number.
 using CellText = std::function<std::string(std::size_t row, std::size_t column)>;
 
+/// The id on the page to which the first cell of a row leads.
+using RowTarget = std::function<std::string(std::size_t row)>;
+
 /// A <table> with `rows` rows. Headers and cells are escaped. On a narrow screen each row becomes a list of
 /// "header: cell"; cells wrap and are never cut.
-std::string html_table(const std::vector<std::string>& headers, std::size_t rows, const CellText& cell);
+std::string html_table(const std::vector<std::string>& headers, std::size_t rows, const CellText& cell,
+                       const RowTarget& target = {});
 
 template <class Row>
 std::string html_table(const std::vector<Row>& rows,
-                       const std::type_identity_t<std::vector<Column<Row>>>& columns) {
+                       const std::type_identity_t<std::vector<Column<Row>>>& columns,
+                       const RowTarget& target = {}) {
   std::vector<std::string> headers;
   for (const Column<Row>& column : columns) headers.push_back(column.header());
-  return html_table(headers, rows.size(),
-                    [&](std::size_t row, std::size_t column) { return columns[column].cell(rows[row]); });
+  return html_table(
+      headers, rows.size(),
+      [&](std::size_t row, std::size_t column) { return columns[column].cell(rows[row]); }, target);
 }
 
 /// A <table>; the first row is its head. Cells are escaped. Precondition: all rows have the same size. New

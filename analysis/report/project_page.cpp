@@ -39,16 +39,23 @@ std::string main_figures(const ProjectFile& file) {
 // With more files, the page shows the first ones and folds the rest.
 constexpr std::size_t kRowsShown = 20, kSectionsShown = 12;
 
+// Of the section of a file.
+std::string section_id(std::size_t file) {
+  return fmt::format("file-{}", file + 1);
+}
+
 std::string files_table(const Project& project, std::size_t from, std::size_t to) {
   using File = const ProjectFile*;
   std::vector<File> files;
   for (std::size_t i = from; i < to; ++i) files.push_back(&project.files[i]);
-  return html_table(files, {{"file", [&](File file) { return within(project, file->path); }},
-                            {"kind", [](File file) { return std::string(schema::kind_name(file->kind)); }},
-                            {"date", [](File file) { return file->date; }},
-                            {"device or source", [](File file) { return source_words(*file); }},
-                            {"SHA-256", [](File file) { return file->checksum; }},
-                            {"main figures", [](File file) { return main_figures(*file); }}});
+  return html_table(files,
+                    {{"file", [&](File file) { return within(project, file->path); }},
+                     {"kind", [](File file) { return std::string(schema::kind_name(file->kind)); }},
+                     {"date", [](File file) { return file->date; }},
+                     {"device or source", [](File file) { return source_words(*file); }},
+                     {"SHA-256", [](File file) { return file->checksum; }},
+                     {"main figures", [](File file) { return main_figures(*file); }}},
+                    [&](std::size_t row) { return section_id(from + row); });
 }
 
 std::string overview(const Project& project) {
@@ -85,10 +92,14 @@ std::string section_body(const Project& project, const ProjectFile& file) {
          html;
 }
 
-std::string section(const Project& project, const ProjectFile& file) {
+// A browser opens a folded section when a link leads to its inside.
+std::string section(const Project& project, std::size_t number) {
+  const ProjectFile& file = project.files[number];
   const std::string title = fmt::format("{}: {}", schema::kind_name(file.kind), within(project, file.path));
-  if (project.files.size() > kSectionsShown) return folded(title, section_body(project, file));
-  return fmt::format("<h2>{}</h2>\n{}", escaped(title), section_body(project, file));
+  const std::string id = section_id(number), body = section_body(project, file);
+  if (project.files.size() > kSectionsShown)
+    return folded(title, fmt::format("<div id=\"{}\">\n{}</div>\n", id, body));
+  return fmt::format("<h2 id=\"{}\">{}</h2>\n{}", id, escaped(title), body);
 }
 
 std::string counted(const Project& project) {
@@ -106,7 +117,7 @@ std::string project_page(const Project& project) {
                                  answer(counted(project) + "."), schema::creation_time(), escaped(kCreator));
   body += broken_list(project) + overview(project) + foreign_list(project);
   if (project.files.size() > kSectionsShown) body += "<h2>Each file</h2>\n";
-  for (const ProjectFile& file : project.files) body += section(project, file);
+  for (std::size_t i = 0; i < project.files.size(); ++i) body += section(project, i);
   return html_document(title, body);
 }
 

@@ -10,7 +10,6 @@
 
 #include "capture/table/csv_fields.hpp"
 #include "capture/table/plain_decimal.hpp"
-#include "capture/table/plain_rows.hpp"
 #include "capture/table/text_encoding.hpp"
 
 namespace tacto::capture {
@@ -64,7 +63,7 @@ std::size_t line_of_row(const std::deque<CsvReader::Landmark>& landmarks, std::s
 CsvReader::CsvReader(CsvLayout layout, const std::vector<std::size_t>& columns, std::string file)
     : layout_(std::move(layout)),
       file_(std::move(file)),
-      places_(layout_.columns.size(), RowForm::kSkipped),
+      places_(layout_.columns.size(), kSkipped),
       kept_(columns.size()),
       line_(layout_.data_line) {
   for (std::size_t k = 0; k < columns.size(); ++k) places_[columns[k]] = k;
@@ -108,25 +107,11 @@ void CsvReader::drop_rows() {
 // Reads all complete lines and leaves the bytes after them.
 bool CsvReader::take_lines(std::string_view& bytes) {
   for (;;) {
-    take_plain_rows(bytes);
     const auto end = bytes.find(layout_.line_end);
     if (end == std::string_view::npos) return true;
     if (!take_line(bytes.substr(0, end))) return false;
     bytes.remove_prefix(end + 1);
   }
-}
-
-void CsvReader::take_plain_rows(std::string_view& bytes) {
-  const RowForm form{layout_.delimiter, layout_.line_end, decimal_mark_ == 0 ? '.' : decimal_mark_, places_,
-                     kept_};
-  if (blank_line_ != 0 || form.mark == form.delimiter) return;
-  make_room(bytes.size() / 2 + kept_);
-  const PlainRows read = read_plain_rows(bytes, form, store_.numbers.get() + store_.count);
-  if (read.rows == 0) return;
-  if (read.marked) decimal_mark_ = form.mark;
-  note_rows(read.rows);
-  line_ += read.rows;
-  bytes.remove_prefix(read.bytes);
 }
 
 bool CsvReader::take_line(std::string_view line) {
@@ -148,7 +133,7 @@ bool CsvReader::take_row(std::string_view line) {
   std::size_t at = 0;
   for (std::size_t column = 0; column < places_.size(); ++column) {
     if (at > line.size()) return refuse_ragged(line);
-    if (places_[column] == RowForm::kSkipped) {
+    if (places_[column] == kSkipped) {
       at = field_end(line, at, layout_.delimiter);
     } else if (!take_number(line, at, column)) {
       return false;
@@ -156,7 +141,7 @@ bool CsvReader::take_row(std::string_view line) {
     ++at;  // skips the delimiter
   }
   if (at <= line.size()) return refuse_ragged(line);
-  note_rows(1);
+  note_row();
   return true;
 }
 
@@ -232,14 +217,13 @@ void CsvReader::make_room(std::size_t numbers) {
   store_.room = room;
 }
 
-// Records rows on consecutive lines; the first is on the next line.
-void CsvReader::note_rows(std::size_t rows) {
+void CsvReader::note_row() {
   const bool follows =
       !landmarks_.empty() && landmarks_.back().line + (rows_ - landmarks_.back().row) == line_;
   if (!follows) landmarks_.push_back({rows_, line_});
   blank_line_ = 0;
-  rows_ += rows;
-  store_.count += rows * kept_;
+  ++rows_;
+  store_.count += kept_;
 }
 
 }  // namespace tacto::capture

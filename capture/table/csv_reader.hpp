@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -65,7 +66,6 @@ class CsvReader {
 
  private:
   bool take_lines(std::string_view& bytes);
-  void take_plain_rows(std::string_view& bytes);
   bool take_line(std::string_view line);
   bool take_row(std::string_view line);
   bool take_number(std::string_view line, std::size_t& at, std::size_t column);
@@ -75,11 +75,12 @@ class CsvReader {
   bool refuse_blank();
   bool refuse(std::string what, std::string remedy, std::optional<std::size_t> column = std::nullopt);
   void make_room(std::size_t numbers);
-  void note_rows(std::size_t rows);
+  void note_row();
 
   CsvLayout layout_;
   std::string file_;
-  std::vector<std::size_t> places_;  // of each column of the file: its place in a row, or RowForm::kSkipped
+  static constexpr std::size_t kSkipped = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> places_;  // of each column of the file: its place in a row, or kSkipped
   std::size_t kept_;                 // numbers of a row
   NumberStore store_;                // rows()
   std::deque<Landmark> landmarks_;

@@ -113,6 +113,11 @@ std::vector<std::string> labels_of(const std::vector<std::string>& keys) {
   return labels;
 }
 
+std::string label_with_unit(std::string_view key) {
+  const auto suffix = suffix_of(key);
+  return suffix ? fmt::format("{} ({})", label_of(key), suffix->unit) : label_of(key);
+}
+
 std::string cell_text(const std::string& key, const ReportPrinter::Value& value) {
   if (const auto* number = std::get_if<double>(&value)) return number_for_people(key, *number);
   if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);

@@ -14,6 +14,9 @@ namespace tacto::cli {
 /// the quantity, too: "from_s" and "from_m" are "from (time)" and "from (length)".
 std::vector<std::string> labels_of(const std::vector<std::string>& keys);
 
+/// "resonance (Hz)" of "resonance_hz".
+std::string label_with_unit(std::string_view key);
+
 /// The value with its unit and four digits. Empty for a list of reports.
 std::string cell_text(const std::string& key, const ReportPrinter::Value& value);
 

@@ -12,7 +12,7 @@
 
 namespace tacto::firmware_host {
 
-/// The event after a burst's bytes. All but `none` and `end` are faults for tests.
+/// The event after a burst's bytes. All but `none` and `end` simulate faults, in tests.
 enum class BurstEnd : std::uint8_t {
   none,    ///< more bytes may follow in the same transfer
   end,     ///< the transfer ends here

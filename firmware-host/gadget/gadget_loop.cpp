@@ -15,13 +15,6 @@ constexpr std::chrono::milliseconds kIdleWake{
 
 }  // namespace
 
-GadgetLoop::GadgetLoop(GadgetBoard& board, BoardLink& link, const FaultPlan& faults,
-                       std::function<void(const std::string&)> say)
-    : board_(board),
-      link_(link),
-      faults_(faults, [&link](std::span<const std::uint8_t> bytes, BurstEnd end) { link.send(bytes, end); }),
-      say_(std::move(say)) {}
-
 void GadgetLoop::run(const std::function<bool()>& stopped) {
   while (!stopped()) {
     exchange();
@@ -40,7 +33,7 @@ void GadgetLoop::exchange() {
   link_.take_received(board_.from_host());
   if (board_.from_host().size() > before) drive_.heard();
   board_.poll();
-  faults_.pass(board_.to_host());
+  if (!board_.to_host().empty()) link_.send(board_.to_host(), BurstEnd::none);
   board_.to_host().clear();
 }
 

@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "firmware-host/core/wire/message_types.hpp"
 #include "firmware-host/gadget/board_link.hpp"
-#include "firmware-host/gadget/fault_injector.hpp"
 #include "firmware-host/gadget/gadget_board.hpp"
 
 namespace tacto::firmware_host {
@@ -116,8 +116,8 @@ class DriveWatch {
 /// drive, and the next rise of the drive.
 class GadgetLoop {
  public:
-  GadgetLoop(GadgetBoard& board, BoardLink& link, const FaultPlan& faults,
-             std::function<void(const std::string&)> say);
+  GadgetLoop(GadgetBoard& board, BoardLink& link, std::function<void(const std::string&)> say)
+      : board_(board), link_(link), say_(std::move(say)) {}
 
   /// Runs until `stopped` returns true; it is called at least twenty times per second.
   void run(const std::function<bool()>& stopped);
@@ -130,7 +130,6 @@ class GadgetLoop {
 
   GadgetBoard& board_;
   BoardLink& link_;
-  FaultInjector faults_;
   std::function<void(const std::string&)> say_;
   TickPacer pacer_;
   DriveWatch drive_;

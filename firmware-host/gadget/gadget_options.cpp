@@ -26,13 +26,6 @@ Result<void> read_id(const std::string& text, GadgetOptions& options) {
                       "give VENDOR:PRODUCT in hexadecimal, for example 1209:0001");
 }
 
-Result<void> read_faults(const std::string& text, GadgetOptions& options) {
-  auto plan = parse_fault_plan(text);
-  TACTO_TRY(plan);
-  options.faults = *plan;
-  return {};
-}
-
 template <std::string GadgetOptions::*kField>
 Result<void> read_text(const std::string& text, GadgetOptions& options) {
   options.*kField = text;
@@ -48,8 +41,7 @@ constexpr Option kOptions[] = {{"--board", read_text<&GadgetOptions::board>},
                                {"--serial", read_text<&GadgetOptions::serial>},
                                {"--udc", read_text<&GadgetOptions::udc>},
                                {"--pty", read_text<&GadgetOptions::pty>},
-                               {"--id", read_id},
-                               {"--fault", read_faults}};
+                               {"--id", read_id}};
 
 Result<void> read_option(std::string_view name, const char* value, GadgetOptions& options) {
   for (const Option& option : kOptions) {
@@ -72,10 +64,6 @@ Result<GadgetOptions> parse_gadget_options(std::span<const char* const> argument
     const char* value = i + 1 < arguments.size() ? arguments[i + 1] : nullptr;
     TACTO_TRY(read_option(name, value, options));
   }
-  const FaultPlan& faults = options.faults;
-  if (!options.pty.empty() && (faults.packet || faults.stall_after || faults.stop_reading_after))
-    return schema::fail(ErrorKind::usage, "a serial port has no packets, stalls or transfers", "--fault",
-                        "use another fault with --pty");
   return options;
 }
 
@@ -83,8 +71,8 @@ std::string gadget_help() {
   return fmt::format(
       R"(tactograph-gadget: emulates a tactograph device at the USB device port of this machine
 
-usage: tactograph-gadget [--board BOARD] [--serial TEXT] [--udc PORT] [--id VENDOR:PRODUCT] [--fault FAULTS]
-       tactograph-gadget --pty NAME [--board BOARD] [--serial TEXT] [--fault FAULTS]
+usage: tactograph-gadget [--board BOARD] [--serial TEXT] [--udc PORT] [--id VENDOR:PRODUCT]
+       tactograph-gadget --pty NAME [--board BOARD] [--serial TEXT]
 
   --board BOARD   source of the samples: sim: (physics; for example sim:surface=C,speed=50mm/s), or replay:FILE (a
                   recording's codes, once; replay:FILE,loop=1 repeats them). Default: sim:
@@ -93,12 +81,10 @@ usage: tactograph-gadget [--board BOARD] [--serial TEXT] [--udc PORT] [--id VEND
   --pty NAME      instead of USB: makes a serial port with that name (a pseudo-terminal), as in
                   tactograph-gadget --pty board, then tactograph record -d tty:board. It needs neither root nor hardware
   --id V:P        USB vendor and product, hexadecimal. Default: {:04x}:{:04x}, which is for tests and in-house use only
-  --fault FAULTS  simulated faults for tests of a host, separated by commas:
-{}
+
 It runs until Ctrl-C or SIGTERM, also after it was unplugged. On USB it needs root, libcomposite and usb_f_fs.
-packet, stall-after and deaf-after are faults of USB.
 )",
-      usb::kTestVendor, usb::kTestProduct, fault_words());
+      usb::kTestVendor, usb::kTestProduct);
 }
 
 }  // namespace tacto::firmware_host

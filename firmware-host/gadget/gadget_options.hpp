@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
+#include "data-schema/base/error.hpp"
 #include "firmware-host/core/firmware/usb_identity.hpp"
-#include "firmware-host/gadget/fault_plan.hpp"
 
 namespace tacto::firmware_host {
 
@@ -17,7 +17,6 @@ struct GadgetOptions {
   std::string udc;     ///< empty: the first
   std::string pty;     ///< the name of a serial port to make; empty: USB
   std::uint16_t vendor = usb::kTestVendor, product = usb::kTestProduct;
-  FaultPlan faults;
 };
 
 /// Errors: usage: an option that does not exist, one without its value, an invalid value.

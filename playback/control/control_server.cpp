@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "playback/control/control_token.hpp"
+
 namespace tacto::playback {
 namespace {
 
@@ -18,8 +20,10 @@ using schema::Result;
 
 constexpr int kLinesAtOnce = 2, kAcceptAtOnce = 128;  // few, because the device is served between two serve()
 constexpr short kSomethingCame = POLLIN | POLLHUP | POLLERR;
-constexpr std::chrono::seconds kGreetsWithin{5}, kStopPlaceFor{5};
-constexpr std::ptrdiff_t kStopPlaces = 8;  // per socket, beside clients accepted since the last serve()
+constexpr std::chrono::seconds kGreetsWithin{5}, kStopPlaceFor{5}, kWrongTokenWaits{1};
+// Beside clients accepted since the last serve().
+constexpr std::ptrdiff_t kStopPlaces = 8;  // per socket
+constexpr std::ptrdiff_t kStrangers = 4;   // by TCP, without the token
 constexpr std::size_t kListening = 2;      // descriptors before the clients'
 constexpr std::size_t kMostEvents = 1000;  // between two serve(); usual are ten a second
 
@@ -37,6 +41,8 @@ const schema::Error kSilent{ErrorKind::usage, "no hello came within 5 s of conne
 const schema::Error kUnknown{
     ErrorKind::usage, "by TCP the first request must be hello with the token", "request",
     hello_text(R"(,"token":"...")") + ": the token is the first line of the file that tcp_token_file names"};
+const schema::Error kTooManyStrangers{ErrorKind::unsuitable, "too many connections have not given the token",
+                                      "request", "send hello with the token as soon as it is connected"};
 const schema::Error kOnlyWatches{ErrorKind::usage, "a connection that watches accepts no requests", "request",
                                  "open another connection"};
 
@@ -50,7 +56,7 @@ bool stops(const ControlRequest& request) {
   return request.verb == ControlVerb::stop || request.verb == ControlVerb::disarm;
 }
 
-bool is_unauthenticated(const ControlClient& client) {
+bool is_stranger(const ControlClient& client) {
   return client.by_tcp && !client.greeted;
 }
 
@@ -87,15 +93,14 @@ void ControlServer::disconnect(ControlClient& client, const schema::Error& why) 
 bool ControlServer::has_place(bool by_tcp) const {
   const auto taken = [&](bool tcp_only) {
     return std::ranges::count_if(clients_, [&](const ControlClient& one) {
-      return !one.gone && !one.for_stop && (one.by_tcp || !tcp_only);
+      return !one.gone && !one.for_stop && !is_stranger(one) && (one.by_tcp || !tcp_only);
     });
   };
   if (by_tcp && taken(true) >= std::max(1, place_.most_clients / 2)) return false;
   return taken(false) < place_.most_clients;
 }
 
-// disconnect_expired() has disconnected silent clients by TCP already. This finds one by the Unix socket that
-// sent no hello.
+// Finds a client by the Unix socket that sent no hello in time.
 bool ControlServer::make_place(bool by_tcp) {
   if (has_place(by_tcp)) return true;
   const Time now = place_.now();
@@ -121,8 +126,18 @@ void ControlServer::free_stop_places(bool by_tcp) {
   }
 }
 
-// Any user of the machine may connect by TCP, so TCP gets only a part of the places, and only briefly without
-// a token.
+// Any user of the machine may connect by TCP. Each stranger was served at least once, so newer ones may
+// replace it: first one that waits for the answer to a wrong token, then the oldest.
+void ControlServer::disconnect_strangers() {
+  const auto is_here = [](const ControlClient& one) { return !one.gone && is_stranger(one); };
+  const auto waits = [&](const ControlClient& one) { return is_here(one) && one.leaves_at; };
+  for (auto many = std::ranges::count_if(clients_, is_here) - kStrangers; many > 0; --many) {
+    auto leaving = std::ranges::find_if(clients_, waits);
+    if (leaving == clients_.end()) leaving = std::ranges::find_if(clients_, is_here);
+    disconnect(*leaving, kTooManyStrangers);
+  }
+}
+
 void ControlServer::accept_from(int listening, bool by_tcp) {
   for (int i = 0; i < kAcceptAtOnce; ++i) {
     const int accepted = accept4(listening, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
@@ -132,28 +147,16 @@ void ControlServer::accept_from(int listening, bool by_tcp) {
     client.since = place_.now();
     client.by_tcp = by_tcp;
     if (!by_tcp) client.user = peer_user(accepted);
-    client.for_stop = !make_place(by_tcp);
+    client.for_stop = !by_tcp && !make_place(by_tcp);
     clients_.push_back(std::move(client));
   }
-}
-
-// A client with the right token replaces one that waits for the answer to a wrong token.
-void ControlServer::leave_stop_place(ControlClient& client) {
-  if (!has_place(client.by_tcp) && client.by_tcp) {
-    const auto waiting = std::ranges::find_if(clients_, [](const ControlClient& one) {
-      return !one.gone && !one.for_stop && one.by_tcp && one.leaves_at;
-    });
-    if (waiting != clients_.end()) disconnect(*waiting, full());
-  }
-  client.for_stop = !has_place(client.by_tcp);
 }
 
 // Disconnects clients whose time has ended, and gives free places to those in reserved places.
 void ControlServer::disconnect_expired() {
   const Time now = place_.now();
   for (ControlClient& one : clients_) {
-    if (is_unauthenticated(one) && !one.leaves_at && now > one.since + kGreetsWithin)
-      disconnect(one, kSilent);
+    if (is_stranger(one) && !one.leaves_at && now > one.since + kGreetsWithin) disconnect(one, kSilent);
     if (!one.gone && one.for_stop && now > one.since + kStopPlaceFor) disconnect(one, full());
     if (one.gone || !one.leaves_at || now < *one.leaves_at) continue;
     one.send(one.last_line);
@@ -168,7 +171,7 @@ void ControlServer::disconnect_expired() {
 std::optional<schema::Error> ControlServer::refusal_of(const ControlClient& client,
                                                        const Result<ControlRequest>& request) const {
   const bool greets = request && request->verb == ControlVerb::hello;
-  if (is_unauthenticated(client)) {
+  if (is_stranger(client)) {
     if (!request && request.error().kind == ErrorKind::unsupported_version) return request.error();
     if (!greets || !is_token(request->token, place_.loopback->token)) return kUnknown;
   }
@@ -179,17 +182,15 @@ std::optional<schema::Error> ControlServer::refusal_of(const ControlClient& clie
   return std::nullopt;
 }
 
-// Returns none if the answer is delayed, as after many wrong tokens.
+// Returns none if the answer is delayed, as to a wrong token.
 std::optional<std::string> ControlServer::refuse(ControlClient& client, const std::string& line,
                                                  const ControlRequest* request) {
-  const bool wrong_token = is_unauthenticated(client) && request != nullptr && !request->token.empty();
-  const auto wait = wrong_token ? wrong_tokens_.wait_of(place_.now()) : std::chrono::seconds(0);
-  if (wait.count() > 0) {
-    client.leaves_at = place_.now() + wait;
+  if (is_stranger(client) && request != nullptr && !request->token.empty()) {
+    client.leaves_at = place_.now() + kWrongTokenWaits;
     client.last_line = line;
     return std::nullopt;
   }
-  client.disconnect_after_answer = is_unauthenticated(client) || (client.for_stop && request != nullptr);
+  client.disconnect_after_answer = is_stranger(client) || (client.for_stop && request != nullptr);
   return line;
 }
 
@@ -209,9 +210,12 @@ std::optional<std::string> ControlServer::answer_to(ControlClient& client, const
     return std::nullopt;
   }
   if (!*fields) return schema::control_error_line(id, fields->error());
-  client.greeted = client.greeted || request->verb == ControlVerb::hello;
+  if (request->verb == ControlVerb::hello) {
+    const bool gets_place = client.for_stop || is_stranger(client);
+    if (gets_place) client.for_stop = !make_place(client.by_tcp);
+    client.greeted = true;
+  }
   client.watching = client.watching || request->verb == ControlVerb::watch;
-  if (client.for_stop && request->verb == ControlVerb::hello) leave_stop_place(client);
   return schema::control_reply_line(id, **fields);
 }
 
@@ -298,6 +302,7 @@ void ControlServer::serve(int timeout_ms, const Handler& handler) {
   const bool some = poll(waiting.data(), waiting.size(), ready ? 0 : timeout_ms) > 0;
   if (some || ready) attend_all(waiting, handler);
   for (const bool by_tcp : {false, true}) free_stop_places(by_tcp);
+  disconnect_strangers();
   if (some && (waiting[0].revents & POLLIN) != 0) accept_from(descriptor_, false);
   if (some && (waiting[1].revents & POLLIN) != 0) accept_from(tcp_.descriptor, true);
   std::erase_if(clients_, [](const ControlClient& one) { return one.gone; });

@@ -15,8 +15,7 @@
 #include "data-schema/control/control.hpp"
 #include "playback/control/control_client.hpp"
 #include "playback/control/control_socket.hpp"
-#include "playback/control/control_token.hpp"
-#include "playback/session/stay_watch.hpp"
+#include "playback/control/stay_watch.hpp"
 
 namespace tacto::playback {
 
@@ -29,15 +28,16 @@ struct LoopbackPlace {
 struct SocketPlace {
   std::string path;
   std::string group;      ///< its members may connect; empty: only the daemon's user
-  int most_clients = 16;  ///< at most half of them by TCP
+  int most_clients = 16;  ///< at most half of them by TCP, of those that gave the token
   std::optional<LoopbackPlace> loopback;
   std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;
 };
 
 /// If all places are used, a client that sent no hello within 5 s of connecting is disconnected for the next
 /// one. If there is none, the next clients get one of a few places that are reserved for `stop` and `disarm`,
-/// for 5 s at most; the oldest of them makes room for another. The server never waits for a client, neither
-/// for the end of a line nor for one that does not read. For one thread.
+/// for 5 s at most; the oldest of them makes room for another. Clients by TCP that have not given the token
+/// (four at most) use none of these places. A wrong token is answered after a second. The server never waits
+/// for a client, neither for the end of a line nor for one that does not read. For one thread.
 class ControlServer {
  public:
   /// None: answer_late() answers later; until then the next lines of that client wait. One such request at a
@@ -76,7 +76,7 @@ class ControlServer {
   bool has_place(bool by_tcp) const;
   bool make_place(bool by_tcp);
   void free_stop_places(bool by_tcp);
-  void leave_stop_place(ControlClient& client);
+  void disconnect_strangers();
   void disconnect(ControlClient& client, const schema::Error& why);
   schema::Error full() const;
   std::vector<pollfd> what_is_waited_for() const;
@@ -94,7 +94,6 @@ class ControlServer {
   SocketPlace place_;
   int descriptor_;
   LoopbackSocket tcp_;
-  WrongTokens wrong_tokens_;
   std::vector<ControlClient> clients_;  // in the order of connecting
   std::uint64_t last_id_ = 0;
   std::uint64_t lines_ = 0;  // of clients that sent hello

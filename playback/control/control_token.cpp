@@ -15,8 +15,6 @@ using schema::Result;
 
 constexpr std::size_t kLeastToken = 16, kMostToken = 200;
 constexpr mode_t kOfOthers = 077;
-constexpr std::size_t kFreeGuesses = 10;
-constexpr std::chrono::seconds kGuessesWithin{60}, kGuessWaits{1};
 
 std::string how_to_make(const std::string& path) {
   return fmt::format("make one: (umask 077; od -An -tx1 -N16 /dev/urandom | tr -d ' \\n' >{})", path);
@@ -43,14 +41,6 @@ bool is_token(std::string_view said, std::string_view token) {
   for (std::size_t i = 0; i < said.size(); ++i)
     differs |= static_cast<unsigned char>(said[i]) ^ static_cast<unsigned char>(token[i % token.size()]);
   return differs == 0;
-}
-
-std::chrono::seconds WrongTokens::wait_of(Time now) {
-  while (!newest_.empty() && now - newest_.front() > kGuessesWithin) newest_.pop_front();
-  const bool many = newest_.size() >= kFreeGuesses;
-  if (many) newest_.pop_front();
-  newest_.push_back(now);
-  return many ? kGuessWaits : std::chrono::seconds(0);
 }
 
 }  // namespace tacto::playback

@@ -2,8 +2,6 @@
 // The token of clients over TCP, to which any user of the machine may connect.
 #pragma once
 
-#include <chrono>
-#include <deque>
 #include <string>
 #include <string_view>
 
@@ -17,16 +15,5 @@ schema::Result<std::string> read_control_token(const std::string& path);
 
 /// Compares in a time that does not depend on the first difference.
 bool is_token(std::string_view said, std::string_view token);
-
-/// The delay of the answer to a wrong token: a second, after ten of them within a minute.
-class WrongTokens {
- public:
-  using Time = std::chrono::steady_clock::time_point;
-  /// Records a wrong token at `now` and returns the delay.
-  std::chrono::seconds wait_of(Time now);
-
- private:
-  std::deque<Time> newest_;  // at most ten
-};
 
 }  // namespace tacto::playback

@@ -8,11 +8,11 @@
 
 #include "data-schema/control/control.hpp"
 #include "data-schema/control/daemon_config.hpp"
+#include "playback/control/stay_watch.hpp"
 #include "playback/player/host_loop_client.hpp"
 #include "playback/player/player.hpp"
 #include "playback/player/player_device.hpp"
 #include "playback/player/program_loader.hpp"
-#include "playback/session/stay_watch.hpp"
 
 namespace tacto::playback {
 

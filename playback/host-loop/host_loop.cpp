@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "playback/host-loop/host_loop.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -113,6 +115,13 @@ HostLoop::~HostLoop() {
 
 std::unique_ptr<firmware_host::Transport> HostLoop::transport() {
   return std::make_unique<LoopTransport>(*board_);
+}
+
+std::string HostLoop::latency_words() const {
+  const EdgeToDrive measured = latency();
+  return fmt::format(
+      "from the encoder's edge to the drive: p50 {:.2f} ms, p99 {:.2f} ms (count's age, queue, round trip)",
+      1e3 * measured.p50_s, 1e3 * measured.p99_s);
 }
 
 HostLoopStatus HostLoop::status() const {

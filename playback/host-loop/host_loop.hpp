@@ -12,6 +12,7 @@
 
 #include "firmware-host/link/transport.hpp"
 #include "playback/host-loop/host_board.hpp"
+#include "playback/host-loop/loop_view.hpp"
 #include "playback/host-loop/tick_clock.hpp"
 #include "playback/host-loop/time_histogram.hpp"
 
@@ -48,7 +49,7 @@ struct HostLoopStatus {
 /// keeps the device's queue 4 ms long, and opens the enable input if the device faults, or sends no counts
 /// for the watchdog's time. A computer that stalls sends nothing: then the device's own watchdog ramps to
 /// zero.
-class HostLoop {
+class HostLoop final : public LoopView {
  public:
   /// Starts both threads. The device streams its encoder from now on; it is armed only while the loop is
   /// armed. Only the carrier thread may use the client until the end. Errors: device: no stream, no encoder.
@@ -56,15 +57,17 @@ class HostLoop {
                                                          const HostLoopOptions& options);
   HostLoop(const HostLoop&) = delete;
   HostLoop& operator=(const HostLoop&) = delete;
-  ~HostLoop();
+  ~HostLoop() override;
 
   /// For the player's own Client.
   std::unique_ptr<firmware_host::Transport> transport();
-  HostBoard& board() { return *board_; }
-  const HostBoard& board() const { return *board_; }
   HostLoopStatus status() const;
   /// Delay from the encoder's edge to the drive, measured at the start: a texture looks ahead by it.
   double delay_s() const { return delay_s_; }
+  std::int32_t lateness_ns(std::uint64_t tick) const override { return board_->lateness_ns(tick); }
+  std::int64_t due_ns(std::uint64_t tick) const override { return board_->due_ns(tick); }
+  void take_samples(std::uint64_t tick, SampleRun& into) override { board_->take_samples(tick, into); }
+  std::string latency_words() const override;
   EdgeToDrive latency() const { return {latency_.quantile_s(0.5), latency_.quantile_s(0.99)}; }
 
  private:

@@ -15,8 +15,8 @@ struct HostLoopClient {
   explicit operator bool() const { return loop != nullptr; }
 };
 
-/// Starts the loop between a device and a player, and sets the player's options that come from the loop. The
-/// loop uses `device` as long as it exists. Errors: as HostLoop::begin, Client::connect.
+/// Starts the loop between a device and a player, and sets the player's option `loop`. The loop uses `device`
+/// as long as it exists. Errors: as HostLoop::begin, Client::connect.
 schema::Result<HostLoopClient> close_loop_on_host(firmware_host::Client& device, const std::string& uri,
                                                   const HostLoopOptions& loop_options,
                                                   PlayerOptions& options);

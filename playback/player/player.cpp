@@ -209,7 +209,7 @@ schema::SessionHeader Player::session_header() const {
   const firmware_host::Description& about = client_.description();
   schema::SessionHeader header = loaded_header();
   header.clock_hz = about.welcome.clock_hz;
-  header.loop = options_.loop;
+  header.loop = options_.loop != nullptr ? "host" : "device";
   header.device_uri = uri_;
   header.device_name = about.welcome.name;
   header.device_serial = about.welcome.serial;
@@ -271,7 +271,7 @@ Result<void> Player::arm(const std::string& session_path) {
   session_path_ = session_path;
   if (forces_)
     for (const HeldLayer& layer : forces_->held) recorder_->event({0, steady_ns(), held_words(layer)});
-  if (const auto streams = options_.measured ? Result<void>() : tray_.begin_stream(); !streams)
+  if (const auto streams = options_.loop != nullptr ? Result<void>() : tray_.begin_stream(); !streams)
     recorder_->event({0, steady_ns(), "no samples of the tray: " + schema::message(streams.error())});
   const auto beaten = beat();
   enter(PlayerState::armed, "");
@@ -360,7 +360,7 @@ Result<void> Player::disarm(const std::string& why) {
 
 // A device that closes the loop itself reads the encoder and sets the drive in the same tick.
 std::string Player::latency_words() const {
-  if (options_.latency) return options_.latency();
+  if (options_.loop != nullptr) return options_.loop->latency_words();
   return fmt::format("from the encoder's edge to the {}: the device's own tick, at most {:g} ms",
                      forces_ ? "force" : "drive", 1e3 / loaded_header().rate_hz);
 }
@@ -416,15 +416,16 @@ void Player::take(const Message& message) {
   const double ns_per_clock = 1e9 / std::max(1U, about.clock_hz);
   const auto time_ns = std::llround(static_cast<double>(message.device_ticks) * ns_per_clock);
   const double period_ns = 1e9 / loaded_header().rate_hz;
+  LoopView* const loop = options_.loop;
   for (std::uint8_t i = 0; i < message.count; ++i) {
     const std::uint64_t number = message.first_tick + i;
     schema::SessionTick row = row_of(message, i);
     row.tick = number;
-    row.time_ns = options_.due_ns ? options_.due_ns(number) : time_ns + std::llround(i * period_ns);
-    if (options_.lateness_ns) row.lateness_ns = options_.lateness_ns(number);
+    row.time_ns = loop != nullptr ? loop->due_ns(number) : time_ns + std::llround(i * period_ns);
+    if (loop != nullptr) row.lateness_ns = loop->lateness_ns(number);
     view_.take(row);
     recorder_->tick(row);
-    if (tray_.run() != nullptr && options_.measured) options_.measured(number, *tray_.run());
+    if (tray_.run() != nullptr && loop != nullptr) loop->take_samples(number, *tray_.run());
   }
   const PlayerState seen = state_of(view_.last().flags);
   if (seen != state_ && state_ != PlayerState::fault && state_ != PlayerState::idle)

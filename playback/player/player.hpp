@@ -9,6 +9,7 @@
 #include <string>
 
 #include "firmware-host/link/client.hpp"
+#include "playback/host-loop/loop_view.hpp"
 #include "playback/host-loop/tray_samples.hpp"
 #include "playback/player/flight_recorder.hpp"
 #include "playback/player/force_program.hpp"
@@ -29,17 +30,9 @@ std::string_view to_string(PlayerState state);
 struct PlayerOptions {
   FullQueue full_queue = FullQueue::lose;
   double heartbeat_s = 0.025;
-  double most_late = 0.2;       ///< part of the ticks within a second; a larger part is a fault
-  std::string loop = "device";  ///< where it is closed, for the session
-  bool tell_limits = false;     ///< live, by a second kernel on the recorder's thread (live_limits.hpp)
-  /// How late a tick was, if it is measured.
-  std::function<std::int32_t(std::uint64_t tick)> lateness_ns;
-  /// When a tick was due, by the device's clock, if this is more precise than the time in its message.
-  std::function<std::int64_t(std::uint64_t tick)> due_ns;
-  /// Appends the samples of the tray's sensor up to a tick, if the host loop reads the device's samples.
-  std::function<void(std::uint64_t tick, SampleRun& into)> measured;
-  /// The measured latency from the encoder's edge to the drive, in words, for the session.
-  std::function<std::string()> latency;
+  double most_late = 0.2;    ///< part of the ticks within a second; a larger part is a fault
+  bool tell_limits = false;  ///< live, by a second kernel on the recorder's thread (live_limits.hpp)
+  LoopView* loop = nullptr;  ///< of a loop on this computer; none: the device closes it
 };
 
 struct PlayerStatus {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "playback/prepare/inverse_filter.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "data-schema/base/decibels.hpp"
-#include "playback/prepare/toeplitz.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -91,22 +91,27 @@ class Designer {
     return sum;
   }
 
-  // Solves the normal equations, which are symmetric and Toeplitz.
+  // Solves the normal equations, which are symmetric, Toeplitz and, by the ridge, positive definite.
   std::vector<double> solved() {
     ++solutions_;
-    std::vector<double> row(count_), right(count_);
+    const auto n = static_cast<Eigen::Index>(count_);
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(n), right = Eigen::VectorXd::Zero(n);
     for (std::size_t k = 0; k <= kGrid; ++k) {
       const double weights =
           weight(k) * std::norm(responses_[k]) + (kept(k) ? 0 : penalties_[k] * leads_[k] * leads_[k]);
       const Complex aim = kept(k) ? weight(k) * std::conj(responses_[k]) * delayed(k) : 0;
-      for (std::size_t i = 0; i < count_; ++i) {
-        const Complex turn = turns_[k * i % (2 * kGrid)];
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const Complex turn = turns_[k * static_cast<std::size_t>(i) % (2 * kGrid)];
         row[i] += weights * turn.real();
         right[i] += (aim * std::conj(turn)).real();
       }
     }
     row[0] *= 1 + kRidge;
-    return solve_toeplitz(row, right);
+    Eigen::MatrixXd equations(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j) equations(i, j) = row[std::abs(i - j)];
+    const Eigen::VectorXd taps = equations.llt().solve(right);
+    return {taps.begin(), taps.end()};
   }
 
   // Returns false if the gain is within its limit.

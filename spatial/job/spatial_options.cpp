@@ -120,13 +120,9 @@ void declare_spatial(CLI::App& app, SpatialOptions& options) {
   cli::add_quantity(app, "--grid", options.pitch_m, Dimension::length,
                     "Distance between samples of the texture [1um, or by --quality]");
   cli::add_choice<std::optional<ResampleMethod>>(
-      app, "--method", options.method,
-      {{"hermite", ResampleMethod::hermite},
-       {"linear", ResampleMethod::linear},
-       {"swapped", ResampleMethod::swapped},
-       {"sinc", ResampleMethod::sinc}},
-      "Resampling: monotone cubics with their true inverse, straight lines, cubics with exchanged axes, or a "
-      "windowed sinc at the true inverse (error 3e-7 up to 0.3 of the sample rate, ten times slower; cubics "
+      app, "--method", options.method, {{"hermite", ResampleMethod::hermite}, {"sinc", ResampleMethod::sinc}},
+      "Resampling: monotone cubics with their true inverse, or a windowed sinc at the true inverse (error "
+      "3e-7 up to 0.3 of the sample rate, ten times slower; cubics "
       "pass 90 % up to 0.24 of the rate) [hermite, or by --quality]");
   cli::declare_budget(app, options.chosen_by, "method and grid");
   cli::add_choice<Equalise>(app, "--equalise", options.texture.equalise,

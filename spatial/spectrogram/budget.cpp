@@ -19,8 +19,7 @@ constexpr double kBytesPerSample = 4;
 // a little (1 % in 700 draws of spatial_budget_test).
 constexpr double kMargin = 1.1;
 constexpr double kMaxTextureError = 0.1;
-constexpr std::array kMethods = {ResampleMethod::linear, ResampleMethod::hermite, ResampleMethod::swapped,
-                                 ResampleMethod::sinc};
+constexpr std::array kMethods = {ResampleMethod::hermite, ResampleMethod::sinc};
 
 Result<schema::MeasuredChoice> measured(const schema::TradeTable& table, const char* stage,
                                         std::string_view name) {

@@ -7,10 +7,8 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <functional>
 
 #include "data-schema/base/quantity.hpp"
-#include "spatial/dsp/resample/hermite.hpp"
 #include "spatial/dsp/resample/hermite_inverse.hpp"
 
 namespace tacto::spatial {
@@ -21,94 +19,27 @@ constexpr double kMostSamples = 1e9;
 constexpr double kOnGrid = 1e-6;
 constexpr std::size_t kPiece = 2048;
 
-// The times at which the finger was at increasing positions.
-using Times = std::function<void(std::span<const double> way, std::span<double> sample)>;
-using Value = std::function<double(double sample)>;
-
-void clamp_all(std::span<double> values, double low, double high) {
-  for (double& value : values) value = std::clamp(value, low, high);
-}
-
-Times linear_times(const MonotonePath& path) {
-  return [&path, i = std::size_t{0}](std::span<const double> way, std::span<double> sample) mutable {
-    for (std::size_t k = 0; k < way.size(); ++k) {
-      while (i + 2 < path.way_m.size() && way[k] >= path.way_m[i + 1]) ++i;
-      const double share = (way[k] - path.way_m[i]) / (path.way_m[i + 1] - path.way_m[i]);
-      sample[k] = path.sample[i] + share * (path.sample[i + 1] - path.sample[i]);
-    }
-    clamp_all(sample, path.sample.front(), path.sample.back());
-  };
-}
-
-Times swapped_times(const MonotonePath& path) {
-  return [&path, sample_at = HermiteCurve(path.way_m, path.sample)](std::span<const double> way,
-                                                                    std::span<double> sample) {
-    sample_at.evaluate_sorted(way, sample);
-    clamp_all(sample, path.sample.front(), path.sample.back());
-  };
-}
-
-Times true_times(const MonotonePath& path) {
-  return
-      [sample_at = HermiteInverse(path.sample, path.way_m)](
-          std::span<const double> way, std::span<double> sample) { sample_at.evaluate_sorted(way, sample); };
-}
-
-Times times_of(ResampleMethod method, const MonotonePath& path) {
-  if (method == ResampleMethod::linear) return linear_times(path);
-  return method == ResampleMethod::swapped ? swapped_times(path) : true_times(path);
-}
-
-Value values_of(ResampleMethod method, std::span<const double> values, std::size_t margin,
-                const WindowedSinc* sinc) {
-  const double before = static_cast<double>(margin);
-  if (method == ResampleMethod::sinc) return [=](double sample) { return (*sinc)(values, sample + before); };
-  if (method == ResampleMethod::swapped) return UniformHermiteCurve(-before, 1, values);
-  return [=](double sample) {
-    const double place = sample + before;
-    const double i = std::clamp(std::floor(place), 0.0, static_cast<double>(values.size() - 2));
-    const auto k = static_cast<std::size_t>(i);
-    return values[k] + (place - i) * (values[k + 1] - values[k]);
-  };
-}
-
-void in_two_steps(const EvenPlaces& places, const Times& times, const Value& value, std::span<double> out) {
+void by_sinc(const MonotonePath& path, const EvenPlaces& places, std::span<const double> values,
+             std::size_t margin, const WindowedSinc& sinc, std::span<double> out) {
+  const HermiteInverse sample_at(path.sample, path.way_m);
   std::array<double, kPiece> way, sample;
   for (std::size_t begin = 0; begin < places.count; begin += kPiece) {
     const std::size_t size = std::min(kPiece, places.count - begin);
     for (std::size_t k = 0; k < size; ++k) way[k] = places.at(begin + k);
-    times(std::span(way).first(size), std::span(sample).first(size));
-    for (std::size_t k = 0; k < size; ++k) out[begin + k] = value(sample[k]);
+    sample_at.evaluate_sorted(std::span(way).first(size), std::span(sample).first(size));
+    for (std::size_t k = 0; k < size; ++k)
+      out[begin + k] = sinc(values, sample[k] + static_cast<double>(margin));
   }
 }
 
 }  // namespace
 
 std::string_view name_of(ResampleMethod method) {
-  switch (method) {
-    case ResampleMethod::linear:
-      return "linear";
-    case ResampleMethod::swapped:
-      return "swapped";
-    case ResampleMethod::sinc:
-      return "sinc";
-    case ResampleMethod::hermite:
-      break;
-  }
-  return "hermite";
+  return method == ResampleMethod::sinc ? "sinc" : "hermite";
 }
 
 double kept_hz(ResampleMethod method, double sample_rate_hz) {
-  switch (method) {
-    case ResampleMethod::linear:
-      return 0.178 * sample_rate_hz;
-    case ResampleMethod::sinc:
-      return 0.45 * sample_rate_hz;
-    case ResampleMethod::hermite:
-    case ResampleMethod::swapped:
-      break;
-  }
-  return 0.24 * sample_rate_hz;
+  return (method == ResampleMethod::sinc ? 0.45 : 0.24) * sample_rate_hz;
 }
 
 std::size_t margin_of(ResampleMethod method) {
@@ -148,7 +79,7 @@ void Resampler::operator()(const MonotonePath& path, int direction, const SpaceG
   if (method_ == ResampleMethod::hermite)
     hermite_(path.sample, path.way_m, values, margin, places, out);
   else
-    in_two_steps(places, times_of(method_, path), values_of(method_, values, margin, sinc_.get()), out);
+    by_sinc(path, places, values, margin, *sinc_, out);
   if (direction < 0) std::ranges::reverse(out);
 }
 

@@ -19,22 +19,19 @@ namespace tacto::spatial {
 
 /// The method of resampling to space. Error: RMS relative to that of the force, for a surface of one line
 /// every 0.4 mm, or every 0.1 mm (125 and 500 Hz), under a finger of 50 mm/s whose speed varies by a tenth,
-/// at 10 kHz and with exact positions (asserted by resample_test). Cost: relative to hermite, at 5 values of
-/// the grid per sample (hermite_bench). If positions are rounded, swapped differs from hermite, too, because
-/// it is the PCHIP of another function (4e-6 of the RMS on the bare-finger recording).
+/// at 10 kHz and with exact positions (asserted by resample_test). Straight lines and the PCHIP of exchanged
+/// axes were slower than hermite and no better (DECISIONS.md).
 enum class ResampleMethod {
   hermite,  ///< monotone cubics, true inverse of S_x. Error 1.1e-4, 3.2e-3: the monotone cubic flattens peaks
-  linear,   ///< straight lines for both, as numpy.interp. Error 5.8e-4, 9.2e-3. Cost 1.5
-  swapped,  ///< PCHIP of time over position, then of force over time. Error as hermite. Cost 3
-  sinc,     ///< windowed sinc of 32 samples at the true inverse's time. Error 3.1e-7, 3e-7. Cost 10
+  sinc,     ///< windowed sinc of 32 samples at the true inverse's time. Error 3.1e-7, 3e-7. Ten times slower
 };
 
-/// "hermite", "linear", "swapped", "sinc".
+/// "hermite", "sinc".
 std::string_view name_of(ResampleMethod method);
 
 /// The highest frequency, Hz, at which a method keeps nine tenths of the amplitude: 0.24 of the sample rate
-/// with the cubics, 0.178 with straight lines (sinc^2), 0.45 with the windowed sinc (resample_test). Above
-/// it, the missing part has become images at other frequencies.
+/// with the cubics, 0.45 with the windowed sinc (resample_test). Above it, the missing part has become images
+/// at other frequencies.
 double kept_hz(ResampleMethod method, double sample_rate_hz);
 
 /// Samples beyond each end of a path that a method uses: with this margin its values at the ends are those of

@@ -81,16 +81,15 @@ def results_hold_what_was_found(said):
     stored = json.load(open("bench.results.json"))
     figures = {row["name"]: row["value"] for row in stored["figures"]}
     found = values(said)["resonance_hz"]
-    interval_is_visible(figures["resonance_hz, 95 %"], found)
-    assert "reported 500, by Table I 547.7" in figures["contradiction of the paper: resonance_hz"], figures
+    interval_is_visible(figures["resonance (Hz), 95 %"], found)
+    assert not any("_" in name or "paper" in name for name in figures), figures
     assert "not separately identifiable" in figures and "condition number" in figures and stored["details"]["parameters"] == said["parameters"]
     curves = {picture["title"]: [curve["name"] for curve in picture["curves"]] for picture in stored["pictures"]}
     assert curves == {"Amplitude": ["data", "model", "95 % band", "", "inverse"], "Phase": ["data", "model", "inverse"],
                       "Residuals": ["amplitude", "phase"]}, curves
     tacto.run("report", ".", "-o", "page.html")
     page = pathlib.Path("page.html").read_text()
-    assert "contradiction of the paper" in page and "not separately identifiable" in page
-    assert all(f"contradiction of the paper: {key}" in page for key in ("r_squared_actuator", "r_squared_sensor", "finger_at_resonance_db", "reconstruction_filter_at_500hz_db", "stretch_factors"))
+    assert "not separately identifiable" in page
     for beside, name in ((["--results", "tray.results.json"], "tray"), (["--picture", "plots/tray.svg"], "plots/tray"), ([], "NAME")):
         words = tacto.run("identify", "-d", "sim:tray_sensor=on", *beside, code=2)[1]
         assert f"add -o {name} for {name}.transducer.json" in words and " ".join(beside) in words and not pathlib.Path("tray.results.json").exists(), words

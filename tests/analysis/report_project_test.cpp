@@ -30,6 +30,8 @@ TEST(ReportProject, LeavesOutWhatCannotBeDrawn) {
   const std::string page = project_page(project);
   EXPECT_NE(page.find("Drawn of study/b"), std::string::npos);
   EXPECT_NE(page.find("x and y differ in length"), std::string::npos);
+  EXPECT_NE(page.find("<a href=\"#file-1\">b</a>"), std::string::npos) << "the table leads to the section";
+  EXPECT_NE(page.find("<h2 id=\"file-1\">"), std::string::npos);
 }
 
 // A twentieth of a recording at ten times the amplitude is an onset, not a spike: no gap, and no words in the

@@ -62,16 +62,6 @@ void pchip_true_inverse(benchmark::State& state) {
 }
 BENCHMARK(pchip_true_inverse)->Unit(benchmark::kMillisecond);
 
-void resample_linear(benchmark::State& state) {
-  take_to_space(state, ResampleMethod::linear);
-}
-BENCHMARK(resample_linear)->Unit(benchmark::kMillisecond);
-
-void resample_swapped(benchmark::State& state) {
-  take_to_space(state, ResampleMethod::swapped);
-}
-BENCHMARK(resample_swapped)->Unit(benchmark::kMillisecond);
-
 void resample_sinc(benchmark::State& state) {
   take_to_space(state, ResampleMethod::sinc);
 }

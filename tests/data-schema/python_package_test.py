@@ -14,7 +14,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests/end-to-end")]
 
-import daemon_test
+import run_daemon
 import tacto
 
 
@@ -42,8 +42,8 @@ def the_wheel_plays():
     wheel = install_wheel("installed")
     version = re.fullmatch(r"tactograph-(.+)-py3-none-any\.whl", wheel)[1]
     assert f"tactograph {version}" in tacto.run("--version")[0]
-    daemon_test.prepare_files()
-    with daemon_test.daemon():
+    run_daemon.prepare_files()
+    with run_daemon.daemon():
         done = subprocess.run(["/usr/bin/python3", "-c", example("Play") + "\nprint(len(played.time), tactograph.__file__)"],
                               capture_output=True, text=True, env={**os.environ, "PYTHONPATH": "installed"})
     assert done.returncode == 0, done.stderr
@@ -63,9 +63,9 @@ def problem(call):
 def refusals_have_the_kinds_of_the_daemon():
     sys.path.insert(0, str(ROOT / "data-schema/python"))
     import tactograph
-    daemon_test.prepare_files()
+    run_daemon.prepare_files()
     pathlib.Path("torn.texture.json").write_text("{")
-    with daemon_test.daemon(), tactograph.Daemon("control") as daemon:
+    with run_daemon.daemon(), tactograph.Daemon("control") as daemon:
         assert daemon.about["version"] == "1.0" and daemon.status()["state"] == "idle", (daemon.about, daemon.status())
         assert problem(lambda: daemon.load("none")).kind == "not_found"
         assert problem(lambda: daemon.load("torn")).kind == "malformed"
@@ -76,8 +76,8 @@ def refusals_have_the_kinds_of_the_daemon():
 
 def events_come_over_a_second_connection():
     import tactograph
-    daemon_test.prepare_files()
-    with daemon_test.daemon(), tactograph.Daemon("control") as daemon, tactograph.Daemon("control") as watcher:
+    run_daemon.prepare_files()
+    with run_daemon.daemon(), tactograph.Daemon("control") as daemon, tactograph.Daemon("control") as watcher:
         events = watcher.events()
         daemon.load("oak")
         daemon.arm()
@@ -91,8 +91,8 @@ def events_come_over_a_second_connection():
 
 def a_daemon_that_ends_is_a_connection_error():
     import tactograph
-    daemon_test.prepare_files()
-    with daemon_test.daemon():
+    run_daemon.prepare_files()
+    with run_daemon.daemon():
         daemon = tactograph.Daemon("control")
     try:
         daemon.status()
@@ -105,8 +105,8 @@ def over_tcp_with_a_token():
     import tactograph
     pathlib.Path("token").write_text("0123456789abcdef\n")
     pathlib.Path("token").chmod(0o600)
-    daemon_test.prepare_files(tcp_port=0, tcp_token_file="token")
-    with daemon_test.daemon() as process:
+    run_daemon.prepare_files(tcp_port=0, tcp_token_file="token")
+    with run_daemon.daemon() as process:
         port = int(process.ready.rsplit(":", 1)[1])
         with tactograph.Daemon(("127.0.0.1", port), token="0123456789abcdef") as daemon:
             assert daemon.status()["state"] == "idle"

@@ -21,7 +21,7 @@ import xarray
 TESTS = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / "end-to-end"), str(TESTS.parent / "data-schema" / "python")]
 
-import daemon_test
+import run_daemon
 import tactograph
 from tacto import run
 
@@ -151,9 +151,9 @@ def a_stored_session_is_read():
 
 
 def a_session_of_the_daemon_has_its_gains():
-    daemon_test.prepare_files(device="sim:paced=0")  # ticks come as fast as the daemon reads, whatever the machine does
-    with daemon_test.daemon():
-        client = daemon_test.Client()
+    run_daemon.prepare_files(device="sim:paced=0")  # ticks come as fast as the daemon reads, whatever the machine does
+    with run_daemon.daemon():
+        client = run_daemon.Client()
         client.must(request="load", file="oak", gain_m_per_n=0.0005)
         name = pathlib.Path(client.must(request="arm")["session"])
         client.must(request="play")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """tactographd and files: which it loads, whose gain it keeps with them, and who may name them. Nothing is played here, so
-that nothing depends on real time; what does is in daemon_test.py."""
+that nothing depends on real time; what does is in run_daemon.py."""
 import json
 import os
 import pathlib
@@ -13,7 +13,7 @@ import subprocess
 import numpy as np
 
 import tacto
-from daemon_test import Client, DAEMON, daemon, prepare_files, write_texture, write_token
+from run_daemon import Client, DAEMON, daemon, prepare_files, write_texture, write_token
 
 
 def a_texture_with_nan():

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """tactographd on an emulated device that does not keep real time: from load to a session that replays, a fault, and refusals.
-What depends on real time is in daemon_test.py."""
+What depends on real time is in daemon_test.py, daemon_load_test.py and daemon_clients_test.py."""
 import hashlib
 import json
 import os
@@ -13,7 +13,7 @@ import sys
 import numpy as np
 
 import tacto
-from daemon_test import Client, DAEMON, daemon, prepare_files, ticks_of
+from run_daemon import Client, DAEMON, daemon, prepare_files, ticks_of
 
 UNPACED = "sim:paced=0"  # emulated time passes only while the daemon reads: no watchdog can expire
 

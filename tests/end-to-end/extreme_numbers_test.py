@@ -11,7 +11,7 @@ import subprocess
 import numpy as np
 import soundfile
 
-import daemon_test
+import run_daemon
 import tacto
 
 PRESET = json.loads((pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json").read_text())
@@ -73,7 +73,7 @@ def one_number(index, path, value):
 
 
 def extreme_numbers_of_a_transducer():
-    daemon_test.prepare_files()
+    run_daemon.prepare_files()
     sweep = [(i, path, value) for i, (path, value) in enumerate((p, v) for p in MEMBERS for v in VALUES)]
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         results = list(pool.map(lambda one: one_number(*one), sweep))
@@ -85,7 +85,7 @@ def extreme_numbers_of_a_transducer():
 
 def what_was_found():
     """The four numbers of issue 14, item 9."""
-    daemon_test.prepare_files()
+    run_daemon.prepare_files()
     for member, value in (("actuator_scale", 1e308), ("actuator_scale", 1e-300), ("mass_kg", 1e-12), ("flexure_stiffness_n_per_m", 2.0**31)):
         write_transducer("odd", (member,), value)
         refused = run("render", "oak", "--finger-path", "path.csv", "--transducer", "odd", "-o", "drive.wav")

@@ -13,7 +13,7 @@ import xarray
 
 import tacto
 from measured import measured
-from daemon_test import write_texture
+from run_daemon import write_texture
 
 MINUTES = 1 if tacto.SANITIZED else 10
 

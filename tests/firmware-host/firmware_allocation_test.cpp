@@ -14,8 +14,7 @@ static_assert(noexcept(std::declval<Firmware&>().tick()));
 static_assert(noexcept(std::declval<Firmware&>().poll()));
 static_assert(noexcept(std::declval<TickKernel&>().tick(TickInput{})));
 static_assert(noexcept(std::declval<TickKernel&>().change(TextureSetup{}, 1)));
-static_assert(noexcept(std::declval<TickKernel&>().tick(0, true, std::declval<uint32_t&>(),
-                                                        std::declval<bool&>())));
+static_assert(noexcept(std::declval<TickKernel&>().drive(0, true, kNoForce)));
 
 TEST(Allocation, TheHookSeesAllocations) {
   const long before = tests::allocations_here();

@@ -8,10 +8,10 @@
 
 #include "firmware-host/core/wire/device_messages.hpp"
 #include "firmware-host/core/wire/frame_decoder.hpp"
-#include "firmware-host/gadget/fault_injector.hpp"
 #include "firmware-host/gadget/functionfs_descriptors.hpp"
 #include "firmware-host/gadget/gadget_loop.hpp"
 #include "firmware-host/gadget/gadget_options.hpp"
+#include "tests/firmware-host/faulty_link.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -155,17 +155,11 @@ TEST(FunctionFs, DescriptorsAddUp) {
   EXPECT_EQ(strings.back(), 0);
 }
 
-class Faults : public testing::Test {
+class Faults : public testing::Test, private BoardLink {
  protected:
   // The result of ten messages of samples with a pulse behind each.
   void pass(const std::string& plan) {
-    FaultInjector injector(*parse_fault_plan(plan),
-                           [this](std::span<const std::uint8_t> bytes, BurstEnd end) {
-                             sent_.insert(sent_.end(), bytes.begin(), bytes.end());
-                             longest_ = std::max(longest_, bytes.size());
-                             ends_.push_back(end);
-                             if (end == BurstEnd::stall || end == BurstEnd::unplug) frames_before_ = frames();
-                           });
+    tests::FaultyLink link(*this, tests::parse_fault_plan(plan).value());
     Bytes frames;
     for (std::uint32_t i = 0; i < 10; ++i) {
       wire::Samples samples;
@@ -175,7 +169,7 @@ class Faults : public testing::Test {
       add(samples, 2 * i, frames);
       add(wire::Pulse{}, 2 * i + 1, frames);
     }
-    injector.pass(frames);
+    link.send(frames, BurstEnd::none);
     whole_ = frames.size();
   }
 
@@ -202,6 +196,16 @@ class Faults : public testing::Test {
     }
     return count;
   }
+
+  void send(std::span<const std::uint8_t> bytes, BurstEnd end) override {
+    sent_.insert(sent_.end(), bytes.begin(), bytes.end());
+    longest_ = std::max(longest_, bytes.size());
+    ends_.push_back(end);
+    if (end == BurstEnd::stall || end == BurstEnd::unplug) frames_before_ = frames();
+  }
+  std::size_t waiting() const override { return 0; }
+  void take_received(std::vector<std::uint8_t>&) override {}
+  void wait_until(Clock::time_point) override {}
 
   Bytes sent_, majors_;
   std::vector<BurstEnd> ends_;
@@ -250,16 +254,14 @@ TEST_F(Faults, ShortPacketsHoldTheSameBytes) {
 }
 
 TEST(GadgetOptions, AreReadOrRefused) {
-  const char* const good[] = {"--board", "replay:oak", "--id", "1d50:60ab", "--fault", "deaf-after=0"};
+  const char* const good[] = {"--board", "replay:oak", "--id", "1d50:60ab"};
   const auto options = parse_gadget_options(good);
   ASSERT_TRUE(options);
   EXPECT_EQ(options->board, "replay:oak");
   EXPECT_EQ(options->vendor, 0x1d50);
   EXPECT_EQ(options->product, 0x60ab);
-  EXPECT_EQ(options->faults.stop_reading_after, 0U);
   for (const auto& [name, value] :
-       {std::pair{"--id", "1d50"}, std::pair{"--id", "x:1"}, std::pair{"--fault", "version=2"},
-        std::pair{"--fault", "packet=0"}, std::pair{"--udc", (const char*)nullptr}}) {
+       {std::pair{"--id", "1d50"}, std::pair{"--id", "x:1"}, std::pair{"--udc", (const char*)nullptr}}) {
     const char* const bad[] = {name, value};
     EXPECT_FALSE(parse_gadget_options(std::span(bad).first(value == nullptr ? 1 : 2))) << name;
   }

@@ -35,15 +35,18 @@ class KernelWorkload {
     float smooth = 0;
     for (float& value : profile_)
       value = smooth = 0.6F * smooth + static_cast<float>(next_()) * (1.0F / 32768);
-    kernel_.set_profile(
-        {profile_, {kWorkloadSamples, -500, INT64_C(1) << 30, 429496730, wire::ProfileEnds::mirror}});
-    kernel_.set({5, 15708, 0.05F, 0.01F, 100, 200}, 20000);
+    core::KernelSetup setup;
+    setup.texture.profile = {
+        profile_, {kWorkloadSamples, -500, INT64_C(1) << 30, 429496730, wire::ProfileEnds::mirror}};
+    setup.limits = {5, 15708, 0.05F, 0.01F, 100, 200};
+    setup.rate_hz = 20000;
     constexpr wire::Section kPeak{1.05F, -1.92F, 0.95F, -1.9F, 0.98F},
         kHigh{0.9967F, -1.9934F, 0.9967F, -1.9933F, 0.9934F};
     constexpr wire::Section kLow{0.0055F, 0.0111F, 0.0055F, -1.7786F, 0.8008F};
     const wire::Section sections[kWorkloadSections] = {kPeak, kHigh, kLow,  kPeak,
                                                        kHigh, kPeak, kHigh, {1.3F, -0.4F, 0, -0.1F, 0}};
-    kernel_.sections().set(sections, kWorkloadSections);
+    setup.sections = sections, setup.section_count = kWorkloadSections;
+    kernel_.set(setup);
   }
 
   /// One tick: the finger moves by 0 to 3 counts, and sometimes reverses.
@@ -51,8 +54,9 @@ class KernelWorkload {
     const int32_t draw = next_();
     if (draw % 500 == 0) way_ = -way_;
     count_ += way_ * (draw & 3);
-    bool sound = true;
-    return kernel_.tick(kernel_.target(count_, 40.0F), ++ticks_ < kWorkloadTicks - 400, flags_, sound);
+    const auto output = kernel_.tick({count_, 40, ++ticks_ < kWorkloadTicks - 400, core::kNoForce});
+    flags_ |= output.flags;
+    return output.drive_v;
   }
   uint32_t flags() const noexcept { return flags_; }
 

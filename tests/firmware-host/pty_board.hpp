@@ -12,6 +12,7 @@
 #include "firmware-host/gadget/gadget_loop.hpp"
 #include "firmware-host/gadget/pty_link.hpp"
 #include "firmware-host/tty/tty_address.hpp"
+#include "tests/firmware-host/faulty_link.hpp"
 
 namespace tacto::tests {
 
@@ -43,16 +44,16 @@ class BootingLink final : public firmware_host::BoardLink {
 
 class PtyBoard {
  public:
-  /// `path` is the name of the port, `board` and `faults` as of the gadget's options.
+  /// `path` is the name of the port, `board` as of the gadget's option, `faults` as of parse_fault_plan().
   PtyBoard(const std::string& path, const std::string& board, std::string_view faults = "",
            int deaf_hellos = 0)
       : address_{path, std::nullopt},
         board_(firmware_host::make_gadget_board(board, "").value()),
-        plan_(firmware_host::parse_fault_plan(faults).value()),
         link_(firmware_host::PtyLink::open(path).value()),
         booting_(*link_, deaf_hellos),
+        faulty_(booting_, parse_fault_plan(faults).value()),
         thread_([this] {
-          firmware_host::GadgetLoop(*board_, booting_, plan_, [](const std::string&) {}).run([this] {
+          firmware_host::GadgetLoop(*board_, faulty_, [](const std::string&) {}).run([this] {
             return stop_.load();
           });
         }) {}
@@ -66,9 +67,9 @@ class PtyBoard {
  private:
   firmware_host::TtyAddress address_;
   std::unique_ptr<firmware_host::GadgetBoard> board_;
-  firmware_host::FaultPlan plan_;
   std::unique_ptr<firmware_host::PtyLink> link_;
   BootingLink booting_;
+  FaultyLink faulty_;
   std::atomic<bool> stop_ = false;
   std::thread thread_;
 };

@@ -137,23 +137,24 @@ TickSetup smooth_setup(std::vector<wire::Section> sections) {
 double error_db_of(TickSetup setup, double gain) {
   setup.gain = gain;
   TickKernel kernel;
-  kernel.set_profile({setup.profile.data(), scale_of(setup.scale)});
-  kernel.set(setup.limits, static_cast<float>(setup.rate_hz));
-  kernel.sections().set(setup.sections.data(), static_cast<std::uint8_t>(setup.sections.size()));
+  KernelSetup same;
+  same.texture.profile = {setup.profile.data(), scale_of(setup.scale)};
+  same.limits = setup.limits;
+  same.rate_hz = static_cast<float>(setup.rate_hz);
+  same.sections = setup.sections.data();
+  same.section_count = static_cast<std::uint8_t>(setup.sections.size());
+  kernel.set(same);
   ExactTick exact(setup);
   double error = 0, size = 0;
   std::mt19937 random(5);
   std::int32_t count = 0;
   for (int tick = 0; tick < 40000; ++tick) {
     count += static_cast<std::int32_t>(random() % 4) * (tick / 3000 % 2 == 0 ? 1 : -1);
-    std::uint32_t flags = 0;
-    bool sound = true;
-    const double drive_v =
-        kernel.tick(kernel.target(count, static_cast<float>(gain)), tick < 39000, flags, sound);
+    const TickOutput output = kernel.tick({count, static_cast<float>(gain), tick < 39000, kNoForce});
     const double exact_v = exact.tick(count, tick < 39000);
-    error += (drive_v - exact_v) * (drive_v - exact_v);
+    error += (output.drive_v - exact_v) * (output.drive_v - exact_v);
     size += exact_v * exact_v;
-    EXPECT_TRUE(sound);
+    EXPECT_TRUE(output.sound);
   }
   EXPECT_GT(size / 40000, 1e-6) << "a drive of nothing proves nothing";
   return 10 * std::log10(error / size);
@@ -205,19 +206,22 @@ TEST(SceneKernel, AScenesBitsAreTheSameEverywhere) {
 }
 
 TEST(TickKernel, WhatIsNoNumberDrivesTowardsZeroAndIsForgotten) {
-  TickKernel kernel;
-  kernel.set({5, 5000, 0, 0.001F, 100, 200}, 1e4F);
   const wire::Section ringing{1, 0, 0, -1.9F, 0.99F};
-  kernel.sections().set(&ringing, 1);
-  std::uint32_t flags = 0;
-  bool sound = true;
-  for (int i = 0; i < 100; ++i) kernel.tick(1, true, flags, sound);
+  KernelSetup setup;
+  setup.limits = {5, 5000, 0, 0.001F, 100, 200};
+  setup.rate_hz = 1e4F;
+  setup.sections = &ringing, setup.section_count = 1;
+  TickKernel kernel;
+  kernel.set(setup);
+  for (int i = 0; i < 100; ++i) kernel.drive(1, true, kNoForce);
   const float before_v = kernel.last_v();
   EXPECT_EQ(before_v, 5);
-  EXPECT_EQ(kernel.tick(std::numeric_limits<float>::quiet_NaN(), true, flags, sound), before_v - 0.5F);
-  EXPECT_FALSE(sound);
-  for (int i = 0; i < 12; ++i) kernel.tick(0, true, flags, sound);
-  EXPECT_TRUE(sound);
+  const TickOutput lost = kernel.drive(std::numeric_limits<float>::quiet_NaN(), true, kNoForce);
+  EXPECT_EQ(lost.drive_v, before_v - 0.5F);
+  EXPECT_FALSE(lost.sound);
+  TickOutput after;
+  for (int i = 0; i < 12; ++i) after = kernel.drive(0, true, kNoForce);
+  EXPECT_TRUE(after.sound);
   EXPECT_EQ(kernel.last_v(), 0);
 }
 

@@ -36,7 +36,7 @@ WALLS = {
     r"opencv2/|cairo|pango": ["spatial/picture/engine"],
     r"png\.h": ["spatial/picture/engine", "capture/import"],
     r"pugixml": ["capture/import"],
-    r"Eigen/|unsupported/Eigen": ["analysis/compare", "analysis/identify", "analysis/psychometrics"],
+    r"Eigen/|unsupported/Eigen": ["analysis/compare", "analysis/identify", "analysis/psychometrics", "playback/prepare"],
     r"boost/": ["analysis/psychometrics", "data-schema/base"],
     r"CLI/": ["data-schema/command"],
     r"libwebsockets": ["analysis/live/server"],

@@ -96,10 +96,10 @@ MAY_INCLUDE = {
         "data-schema/{base command control device files recording report scene session texture} "
         "firmware-host/{core/scene link} playback/{choose control host-loop model player prepare/relief prepare/scene "
         "render session strokes}",
-    "playback/control": "data-schema/{base control files} playback/session",
+    "playback/control": "data-schema/{base control files}",
     "playback/daemon":
         "data-schema/{base control files report scene} firmware-host/sim/planar playback/{control host-loop model "
-        "player session}",
+        "player}",
     "playback/host-loop": "data-schema/{base session} firmware-host/{core/firmware core/kernel link} playback/prepare",
     "playback/model":
         "data-schema/{base files transducer wav} firmware-host/{core/kernel core/wire} spatial/{dsp/filter "
@@ -122,8 +122,7 @@ MAY_INCLUDE = {
         "data-schema/{base device} firmware-host/core/{kernel scene} playback/{model prepare prepare/relief prepare/scene} "
         "spatial/{dsp/filter dsp/fourier}",
     "playback/session":
-        "data-schema/{base control files session wav} firmware-host/{core/firmware core/kernel core/wire link} "
-        "playback/model",
+        "data-schema/{base files session wav} firmware-host/{core/firmware core/kernel core/wire link} playback/model",
     "playback/stability": "data-schema/{device scene} firmware-host/{core/scene sim/planar}",
     "playback/strokes":
         "data-schema/{base texture} firmware-host/{core/firmware core/kernel core/wire} playback/{choose model render "

@@ -111,12 +111,14 @@ Played played(const Prepared& prepared, const PrepareOptions& o, const LineTextu
               const RandomPath& path) {
   core::TickKernel kernel;
   kernel.set(prepared.setup());
+  core::FingerTracker tracker;  // as the kernel's
+  tracker.set(prepared.setup().texture.tracker);
   Played played;
   for (int i = 0; i < static_cast<int>(kSeconds * o.rate_hz); ++i) {
     const double true_m = path.place_m(i / o.rate_hz);
     const auto count = static_cast<std::int32_t>(std::floor(true_m / kTrueM));
     played.drive_v.push_back(kernel.tick({count, prepared.gain_m_per_n, true, core::kNoForce}).drive_v);
-    const core::FingerPlace place = kernel.place();
+    const core::FingerPlace place = tracker.track(count);
     const double guess_m = kTrueM * (place.count + double{place.offset});
     const double ahead_m = path.wander > 0 ? guess_m : true_m + path.mean_mps * prepared.delay_s;
     const double then_m = path.place_m(i / o.rate_hz + prepared.delay_s);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The places at the control socket with more clients than places: `stop` always gets one. And the delay after
-// wrong tokens.
+// The places at the control socket with more clients than places: `stop` always gets one. And connections
+// without the token: their number, and the delay after a wrong one.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -173,34 +173,42 @@ TEST_F(ControlPlaces, AStrangerOfAnotherVersionIsToldOfTheVersion) {
   EXPECT_EQ(server_->clients(), 0U) << "and is disconnected";
 }
 
-TEST_F(ControlPlaces, AfterTenWrongTokensEachOneWaitsASecond) {
-  for (int i = 0; i < 10; ++i) {
-    const auto wrong = by_tcp(hello_with("wrong-" + std::to_string(i)));
-    EXPECT_NE(answer_of(*wrong).find("tcp_token_file"), std::string::npos) << i;
-  }
-  const auto eleventh = by_tcp(hello_with("wrong-10"));
-  const auto right = by_tcp(hello_with(kToken));
-  EXPECT_NE(answer_of(*right).find("\"ok\":true"), std::string::npos) << "a right one waits for nothing";
+TEST_F(ControlPlaces, AWrongTokenIsAnsweredAfterASecondAndARightOneAtOnce) {
+  const auto wrong = by_tcp(hello_with("wrong"));
+  EXPECT_NE(answer_of(*by_tcp(hello_with(kToken))).find("\"ok\":true"), std::string::npos);
+  serve_until([&] { return server_->clients() == 1; });  // the other one has disconnected
+  EXPECT_EQ(server_->clients(), 1U);
   now_ += milliseconds(999);
   serve(2);
-  EXPECT_TRUE(eleventh->heard().empty());
+  EXPECT_TRUE(wrong->heard().empty());
   now_ += milliseconds(1);
-  EXPECT_NE(answer_of(*eleventh).find("tcp_token_file"), std::string::npos);
+  EXPECT_NE(answer_of(*wrong).find("tcp_token_file"), std::string::npos);
   serve();
-  EXPECT_EQ(server_->clients(), 1U);
-  now_ += seconds(61);
-  EXPECT_NE(answer_of(*by_tcp(hello_with("wrong-11"))).find("tcp_token_file"), std::string::npos)
-      << "a minute later it is the first again";
+  EXPECT_EQ(server_->clients(), 0U);
 }
 
-TEST_F(ControlPlaces, WrongTokensThatWaitKeepNoRightOneOut) {
-  std::vector<Client> wrong;
-  for (int i = 0; i < 10 + kPlaces / 2; ++i) {
-    wrong.push_back(by_tcp(hello_with("wrong")));
-    if (i < 10) answer_of(*wrong.back());
-  }
-  serve_until([&] { return server_->clients() == kPlaces / 2; });
+TEST_F(ControlPlaces, FourConnectionsMayBeWithoutTheToken) {
+  std::vector<Client> silent;
+  for (int i = 0; i < 4; ++i) silent.push_back(by_tcp());
+  serve(2);
+  EXPECT_EQ(server_->clients(), 4U);
+  const auto fifth = by_tcp();
+  EXPECT_NE(answer_of(*silent.front()).find("have not given the token"), std::string::npos)
+      << "the oldest goes";
+  EXPECT_EQ(server_->clients(), 4U);
+  fifth->say(hello_with(kToken));
+  EXPECT_NE(answer_of(*fifth).find("\"ok\":true"), std::string::npos);
+  const auto sixth = by_tcp();
+  serve(2);
+  EXPECT_EQ(server_->clients(), 5U) << "three silent, one new, one with the token";
+  EXPECT_TRUE(silent[1]->heard().empty());
+}
+
+TEST_F(ControlPlaces, ConnectionsWithoutTheTokenKeepNoRightOneOut) {
+  std::vector<Client> others;
+  for (int i = 0; i < 10; ++i) others.push_back(by_tcp(i % 2 == 0 ? hello_with("wrong") : std::string()));
   serve(10);
+  EXPECT_LE(server_->clients(), 4U);
   const auto right = by_tcp(hello_with(kToken) + kStatus);
   std::vector<std::string> heard;
   serve_until([&] {

@@ -61,8 +61,8 @@ SlowFinger played_to_slow_finger(double rate_hz, double jitter, bool between_cou
   options.between_counts = between_counts;
   const auto prepared =
       prepare(texture_of(0.03, grating_force), *schema::read_transducer("wiertlewski2011"), options);
-  core::TickKernel kernel;
-  kernel.set(prepared->setup());
+  core::TexturePlayer player;
+  player.set(prepared->setup().texture, 1);
   const JitteredEncoder encoder(kCoarseCountM, jitter);
   std::vector<double> played;
   SlowFinger slow;
@@ -70,9 +70,9 @@ SlowFinger played_to_slow_finger(double rate_hz, double jitter, bool between_cou
   const double half_m = between_counts ? 0 : 0.5 * kCoarseCountM;
   for (int i = 0; i < static_cast<int>(5 * rate_hz); ++i) {
     const double position_m = 0.005 + 0.001 * i / rate_hz;
-    const double value = kernel.target(encoder.count(position_m), 1);
+    const double value = player.target(encoder.count(position_m), 1);
     if (i < rate_hz) continue;
-    const double place_m = (kernel.place().count + double{kernel.place().offset}) * kCoarseCountM + half_m;
+    const double place_m = (player.place().count + double{player.place().offset}) * kCoarseCountM + half_m;
     slow.lag_counts += (position_m - place_m) / kCoarseCountM;
     slow.worst_counts = std::max(slow.worst_counts, std::abs(position_m - place_m) / kCoarseCountM);
     texture += value * value;

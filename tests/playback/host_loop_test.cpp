@@ -84,12 +84,7 @@ class HostLoopOnSim : public testing::Test {
     client_ = std::move(*client);
     PlayerOptions options;
     options.most_late = 1;
-    options.loop = "host";
-    options.lateness_ns = [this](std::uint64_t tick) { return loop_->board().lateness_ns(tick); };
-    options.due_ns = [this](std::uint64_t tick) { return loop_->board().due_ns(tick); };
-    options.measured = [this](std::uint64_t tick, SampleRun& into) {
-      loop_->board().take_samples(tick, into);
-    };
+    options.loop = loop_.get();
     player_ = std::move(*Player::make(*client_, "sim:", options));
   }
   Program program() {

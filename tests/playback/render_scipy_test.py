@@ -109,6 +109,9 @@ def check_rendering(folder, wanted, options, held, filtered):
     check(f"{label}: displacement in SciPy against --target", rms(in_band(tray - made.samples(asked), RATE)) / rms(wanted), 1e-3)
     found = check(f"{label}: --displacement against SciPy's", error(made.samples(moved), tray), 1e-3)
     measured(f"{key}.model_error_percent", 100 * found)
+    if filtered:
+        bare = error(in_band(tray_under(made.samples(drive), 32, held, False), RATE), wanted)
+        assert bare > 0.1, f"the filter changes nothing: {bare}"
     assert report["displacement_error_db"] < -50, report
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The drive must fall if the clients that have to stay connected are gone.
-#include "playback/session/stay_watch.hpp"
+#include "playback/control/stay_watch.hpp"
 
 #include <gtest/gtest.h>
 

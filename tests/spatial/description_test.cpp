@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Standard descriptions against closed forms; description_test.py compares them with SciPy.
+// Standard descriptions against closed forms; description_scipy_test.py compares them with SciPy.
 #include "spatial/features/description.hpp"
 
 #include <gtest/gtest.h>

@@ -153,7 +153,7 @@ def main():
     script = sys.argv[1]
     source = "sim:surface=triangle,period=1mm,depth=0.1mm,strokes=20,seed=5"
     tacto.run("record", "-d", source, "-o", RESULTS / "source", "--time", f"{SOURCE_S}s")
-    programs = {name: os.environ[name] for name in ("TACTOGRAPH", "GADGET", "USB_RESET")}
+    programs = {name: os.environ[name] for name in ("TACTOGRAPH", "GADGET", "FAULTY_GADGET", "USB_RESET")}
     virtual_machine.run(script, RESULTS, 1400, **programs)
     for check in CHECKS[script]:
         check()

@@ -9,7 +9,7 @@
 #include "analysis/identify/measure/angles.hpp"
 #include "analysis/identify/report/bode_curves.hpp"
 #include "analysis/identify/report/interval_words.hpp"
-#include "analysis/identify/report/paper_words.hpp"
+#include "data-schema/report/value_text.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -34,8 +34,14 @@ Results begun_results(const schema::Transducer& found) {
 }
 
 void add_identifiability(const ResponseFit& fit, const schema::Transducer& base, Results& results) {
-  for (const FittedParameter& p : fit.parameters)
-    results.figures.push_back({p.name + ", 95 %", interval_words(p, fit.claims_intervals())});
+  for (FittedParameter p : fit.parameters) {
+    std::string name = cli::label_with_unit(p.name);
+    if (p.name == "gain_m_per_v") {
+      name = "gain (\u00B5m/V)";
+      for (double* value : {&p.value, &p.low, &p.high}) *value *= 1e6;
+    }
+    results.figures.push_back({name + ", 95 %", interval_words(p, fit.claims_intervals())});
+  }
   for (const std::string& line : held_words(fit.choice, base))
     results.figures.push_back({"not separately identifiable", line});
   for (const std::string& line : fit.notes) results.figures.push_back({"not separately identifiable", line});
@@ -61,19 +67,6 @@ void add_residual_figures(const ResponseFit& fit, Results& results) {
       {"residuals of neighbours, correlation",
        fmt::format("phase {:.2f}, amplitude {:.2f}, at most {:.2f}", fit.misfit.phase_correlation,
                    fit.misfit.amplitude_correlation, fit.misfit.correlation_limit)});
-}
-
-void add_paper_figures(const ResponseFit& fit, const schema::Transducer& found, Results& results) {
-  const auto figures = paper_figures(found, fit);
-  if (!figures) return;
-  const auto number = [](double value) {
-    return std::isfinite(value) ? fmt::format("{:.4g}", value) : "nothing";
-  };
-  for (const PaperFigure& f : *figures)
-    results.figures.push_back(
-        {"contradiction of the paper: " + f.what,
-         fmt::format("reported {}, by Table I {}, identified {}; {}", number(f.reported), number(f.by_table),
-                     number(f.identified), f.remark)});
 }
 
 ResultPicture amplitude_picture(const ResponseFit& fit, const BodeCurves& c) {
@@ -105,6 +98,16 @@ void add_loops(const LoopFit& fit, Results& results) {
   results.figures.push_back({"lag", fmt::format("{:.3g} degrees", kDegrees * fit.lag_rad)});
   results.figures.push_back({"left", fmt::format("{:.2g} % by the operator, {:.3g} % by a line",
                                                  100 * fit.residual_part, 100 * fit.linear_residual_part)});
+  constexpr std::size_t kMostPoints = 1000;
+  ResultCurve measured{"measured", {}, {}}, model{"operator", {}, {}, true};
+  const std::size_t step = fit.loop_v.size() / kMostPoints + 1;
+  for (std::size_t i = 0; i < fit.loop_v.size(); i += step) {
+    measured.x.push_back(fit.loop_v[i]);
+    measured.y.push_back(1e6 * fit.loop_m[i]);
+    model.y.push_back(1e6 * fit.loop_model_m[i]);
+  }
+  model.x = measured.x;
+  results.pictures.push_back({"Loop", "drive (V)", "displacement (\u00B5m)", false, {measured, model}});
   results.pictures.push_back({"Operator",
                               "threshold (V)",
                               "weight",
@@ -137,7 +140,6 @@ Results identify_results(const ResponseFit& fit, const schema::Transducer& base,
   add_models(fit, results);
   add_identifiability(fit, base, results);
   add_residual_figures(fit, results);
-  if (is_the_papers(base)) add_paper_figures(fit, found, results);
   results.pictures = bode_pictures(fit);
   return results;
 }

@@ -8,10 +8,10 @@
 namespace tacto::analysis {
 
 /// Parameters with their intervals, combinations that are not separately identifiable, quality; Bode plot of
-/// data, model and inverse; residuals. If the base is the paper's, also the contradictions in the paper.
+/// data, model and inverse; residuals.
 schema::Results identify_results(const ResponseFit& fit, const schema::Transducer& base,
                                  const schema::Transducer& found);
-/// The loop's opening and the residual of the operator.
+/// The largest loop, its opening and the residual of the operator.
 schema::Results identify_results(const LoopFit& fit, const schema::Transducer& found);
 /// Both.
 schema::Results identify_results(const JointFit& fit, const schema::Transducer& base,

@@ -73,8 +73,7 @@ double worst_resampling_error(ResampleMethod method, double points) {
   return std::min(worst, 1.0);
 }
 
-constexpr ResampleMethod kAllMethods[] = {ResampleMethod::linear, ResampleMethod::hermite,
-                                          ResampleMethod::swapped, ResampleMethod::sinc};
+constexpr ResampleMethod kAllMethods[] = {ResampleMethod::hermite, ResampleMethod::sinc};
 
 // Cost of each method; the methods alternate.
 std::vector<double> resampling_costs_ns() {

@@ -131,8 +131,7 @@ Result<std::vector<TradeRow>> measure_offline(const schema::Texture& texture,
   const auto stroked = StrokedTexture::of(texture);
   TACTO_TRY(stroked);
   std::vector<TradeRow> rows;
-  constexpr ResampleMethod kMethods[] = {ResampleMethod::linear, ResampleMethod::hermite,
-                                         ResampleMethod::swapped, ResampleMethod::sinc};
+  constexpr ResampleMethod kMethods[] = {ResampleMethod::hermite, ResampleMethod::sinc};
   for (const ResampleMethod method : kMethods)
     for (const double pitch_m : spatial::kGrids_m) {
       rows.push_back(resampled(*stroked, method, pitch_m));

@@ -9,27 +9,18 @@ constexpr float kGainS = 0.01F;
 constexpr float kGateS = 0.02F;
 }  // namespace
 
-void TickKernel::set(const wire::Limits& limits, float rate_hz) noexcept {
-  rate_hz_ = rate_hz;
-  envelope_.set(limits.onset_s * rate_hz, limits.release_s * rate_hz);
-  limiter_.set(limits.drive_v, limits.slew_v_per_s / rate_hz);
-  energy_.set(0, 1);
-  gate_.set(0, 0, 1);
-  player_.begin(kGainS * rate_hz);
-  fir_.rest();
-  plays_.rest();
-  sections_.rest();
-}
-
 void TickKernel::set(const KernelSetup& setup) noexcept {
-  player_.set(setup.texture, kGainS * setup.rate_hz);
+  rate_hz_ = setup.rate_hz;
+  player_.set(setup.texture, kGainS * rate_hz_);
   fir_.set(setup.taps, setup.tap_count);
   plays_.clear();
   if (setup.hysteresis != nullptr) plays_.set(*setup.hysteresis);
+  plays_.rest();
   sections_.set(setup.sections, setup.section_count);
-  set(setup.limits, setup.rate_hz);
-  energy_.set(setup.energy_rms_v, setup.energy_window_s * setup.rate_hz);
-  gate_.set(setup.gate_on_n, setup.gate_off_n, kGateS * setup.rate_hz);
+  envelope_.set(setup.limits.onset_s * rate_hz_, setup.limits.release_s * rate_hz_);
+  limiter_.set(setup.limits.drive_v, setup.limits.slew_v_per_s / rate_hz_);
+  energy_.set(setup.energy_rms_v, setup.energy_window_s * rate_hz_);
+  gate_.set(setup.gate_on_n, setup.gate_off_n, kGateS * rate_hz_);
 }
 
 TickOutput TickKernel::tick(const TickInput& input) noexcept {

@@ -59,11 +59,6 @@ class TickKernel {
  public:
   /// Sets all parameters; starts at rest at zero.
   void set(const KernelSetup& setup) noexcept;
-  /// Sets only the limits, at a rate in Hz above zero; starts at rest at zero, without energy limit and
-  /// contact gate.
-  void set(const wire::Limits& limits, float rate_hz) noexcept;
-  void set_profile(const Profile& profile) noexcept { player_.set({profile, {}, 0}, 1); }
-  SectionChain& sections() noexcept { return sections_; }
 
   /// Cross-fades to another texture over `fade_s`; until then both must exist. Between ticks.
   void change(const TextureSetup& texture, float fade_s) noexcept {
@@ -80,18 +75,9 @@ class TickKernel {
   float target(int32_t count, float gain) noexcept { return player_.target(count, gain); }
   /// One tick of a target, from the texture or external.
   TickOutput drive(float target, bool raise, float normal_force_n) noexcept;
-  /// The same without a reported force. If the target is not finite, the drive is zero and `sound` is false.
-  float tick(float target, bool raise, uint32_t& flags, bool& sound) noexcept {
-    const TickOutput output = drive(target, raise, kNoForce);
-    flags |= output.flags;
-    sound = output.sound;
-    return output.drive_v;
-  }
 
   bool at_rest() const noexcept { return envelope_.at_rest() && limiter_.last_v() == 0; }
   float last_v() const noexcept { return limiter_.last_v(); }
-  /// The finger's position in the last tick; the speed in counts per tick, signed.
-  FingerPlace place() const noexcept { return player_.place(); }
 
  private:
   TexturePlayer player_;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes resample.txt: strokes resampled to a grid by NumPy and SciPy. Run: /usr/bin/python3 make_resample.py
+"""Writes resample.txt: strokes resampled to a grid by SciPy. Run: /usr/bin/python3 make_resample.py
 
-A stroke is a line of positions (counts of 1 um, ahead or back), one of forces, and one line per method.
+A stroke is a line of positions (counts of 1 um, ahead or back), one of forces, and one of resampled forces.
 """
 import pathlib
 
@@ -30,19 +30,9 @@ for direction in (1, -1):
     force = np.cumsum(rng.standard_normal(120))
     t = np.arange(120.0)
     at = np.arange(counts[0], counts[-1] + 1).astype(float)
-    when = {
-        "hermite": true_inverse(PchipInterpolator(t, counts), 0.0, 119.0, at),
-        "linear": np.interp(at, counts, t),
-        "swapped": PchipInterpolator(counts, t)(at),
-    }
-    value = {
-        "hermite": PchipInterpolator(t, force)(when["hermite"]),
-        "linear": np.interp(when["linear"], t, force),
-        "swapped": PchipInterpolator(t, force)(when["swapped"]),
-    }
+    value = PchipInterpolator(t, force)(true_inverse(PchipInterpolator(t, counts), 0.0, 119.0, at))
     # Back: the same path with decreasing counts, so that the grid meets it from its end.
     out.append(line(counts if direction > 0 else -counts))
     out.append(line(force))
-    for method in ("hermite", "linear", "swapped"):
-        out.append(line(value[method][::direction]))
+    out.append(line(value[::direction]))
 pathlib.Path(__file__).with_name("resample.txt").write_text("\n".join(out) + "\n")

@@ -2,11 +2,13 @@
 # Devices that go wrong by themselves.
 . "$GUEST/prelude.sh"
 . "$GUEST/takes.sh"
+faulty_gadget() { exec "$FAULTY_GADGET" "$fault" "$@"; }
+GADGET=faulty_gadget
 
 # faulty NAME FAULT OPTION... : a device that goes wrong by itself.
 faulty() {
   local name=$1 fault=$2; shift 2
-  start_gadget --board "$SOURCE" --serial F1 --fault "$fault"
+  start_gadget --board "$SOURCE" --serial F1
   take "$name" "$@"
   [ ! -e "$name.json" ] || keep "$name"
   stop_gadget

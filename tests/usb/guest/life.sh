@@ -55,8 +55,6 @@ say "refusals"
 refused "is not a known board" "$GADGET" --board piezo:
 refused "there is no option" "$GADGET" --bord sim:
 refused "needs a value" "$GADGET" --board
-refused "is not a known fault" "$GADGET" --fault melt-every=3
-refused "is not a number" "$GADGET" --fault drop-every=0
 refused "there is no device port" "$GADGET" --udc nowhere
 refused "nothing" "$GADGET" --board replay:nothing
 refused "run as root" setpriv --reuid 65534 --clear-groups "$GADGET" --board sim:

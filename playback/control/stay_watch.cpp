@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/session/stay_watch.hpp"
+#include "playback/control/stay_watch.hpp"
 
 #include <fmt/format.h>
 

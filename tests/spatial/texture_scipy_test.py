@@ -78,7 +78,7 @@ def check_against_scipy(folder, force, position):
         expected = force_at(when)
         errors[way] = rms(values[inside] - expected) / rms(expected)
     print("against SciPy, re the RMS:", errors)
-    measured("spatial_texture_oracle.true_inverse_error", errors["true inverse"])
+    measured("texture_scipy.true_inverse_error", errors["true inverse"])
     # The WAV holds 32-bit floats: 3e-8 of each value.
     assert errors["true inverse"] < 1e-6, errors
     assert errors["axes swapped"] < 1e-4, errors
