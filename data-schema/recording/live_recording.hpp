@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording in progress: what was written stays, whatever happens.
+// Writes a recording in progress so that it can be recovered after a crash or a power cut.
 #pragma once
 
 #include <cstdint>
