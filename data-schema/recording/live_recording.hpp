@@ -12,6 +12,9 @@
 
 namespace tacto::schema {
 
+/// What a power cut may lose, at most: with a disk that syncs in less than kSyncEvery_s, and with a busy one.
+inline constexpr double kMostLost_s = 0.1, kMostLostBusy_s = 1;
+
 /// The pause between two syncs. With blocks of 20 ms and a disk that syncs in as long again, a power cut
 /// loses less than 100 ms; a busy disk may take a second for a sync, and a power cut then loses that much. A
 /// killed process loses only the block that was not yet written, whatever the disk does.

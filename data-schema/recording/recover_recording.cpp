@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/quantity.hpp"
 #include "data-schema/files/event_file.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/recording/live_recording.hpp"
@@ -120,8 +121,9 @@ std::vector<std::string> make_gaps_agree(std::vector<Gap>& gaps) {
 }
 
 std::vector<std::string> notes_on(const EventLog& log) {
-  std::vector<std::string> notes = {
-      "it was not closed: its last 100 ms may be missing (up to 1 s after a power cut with a busy disk)"};
+  std::vector<std::string> notes = {fmt::format(
+      "it was not closed: its last {} may be missing (up to {} after a power cut with a busy disk)",
+      for_people(kMostLost_s, Dimension::time), for_people(kMostLostBusy_s, Dimension::time))};
   if (!log.cut_line.empty()) notes.push_back("its last event is incomplete: " + printable(log.cut_line));
   if (log.bad_lines > 0)
     notes.push_back(

@@ -98,27 +98,6 @@ TEST(Document, RefusesAnotherMajorVersionNamingBoth) {
   }
 }
 
-// Every kind that is JSON; spectrograms, height maps and tables of sessions call the same newer_version().
-TEST(Document, TheVersionOfEachKindIsJudgedBeforeItsMembers) {
-  int kinds = 0;
-  for (const EmbeddedFile& file : embedded_files()) {
-    if (!file.name.ends_with(".schema.json")) continue;
-    const Json schema = Json::parse(file.content);
-    const Json::json_pointer kind_of("/properties/kind/const");
-    if (!schema.contains(kind_of)) continue;
-    const std::string kind = schema[kind_of];
-    const auto error_with = [&](const char* version) {
-      const auto read = parse_document(Json{{"kind", kind}, {"version", version}}.dump(), "a", kind);
-      return read ? std::nullopt : std::optional(read.error().kind);
-    };
-    EXPECT_EQ(error_with("2.0"), ErrorKind::unsupported_version) << kind;
-    EXPECT_EQ(error_with("0.1"), ErrorKind::unsupported_version) << kind;
-    EXPECT_NE(error_with("1.9"), ErrorKind::unsupported_version) << kind;
-    ++kinds;
-  }
-  EXPECT_GT(kinds, 10);
-}
-
 TEST(Document, ReadsANewerMinorVersionAndKeepsItsMembers) {
   Json document = sound_recording();
   document["version"] = "1.7";

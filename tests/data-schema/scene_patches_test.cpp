@@ -399,7 +399,7 @@ TEST(ScenePatches, NamesOfPatchesAreDifferent) {
                  ErrorKind::unsuitable, "s#/patches/1/name", "two patches are named 'all'");
 }
 
-TEST(ScenePatches, MoreThan256LayersAreRefused) {
+TEST(ScenePatches, MoreThanTheMostLayersAreRefused) {
   const auto patches_of = [](std::size_t first, std::size_t second) {
     return [=](Body& b) {
       const auto many = [](std::size_t count) { return Body(std::vector<Body>(count, kLayers[6])); };
@@ -407,10 +407,13 @@ TEST(ScenePatches, MoreThan256LayersAreRefused) {
     };
   };
   Body fits;
-  patches_of(200, 56)(fits = all_kinds());
+  patches_of(200, kMostLayers - 200)(fits = all_kinds());
   EXPECT_TRUE(parsed(fits));
-  expect_refused(patches_of(200, 57), ErrorKind::unsuitable, "s#/patches/1", "more than 256 layers");
-  expect_refused(patches_of(257, 1), ErrorKind::malformed, "s#/patches/0/layers", "");
+  expect_refused(patches_of(200, kMostLayers - 199), ErrorKind::unsuitable, "s#/patches/1", "");
+  expect_refused(patches_of(kMostLayers + 1, 1), ErrorKind::malformed, "s#/patches/0/layers", "");
+  patches_of(kMostLayers, 0)(fits);  // no patch without a layer: the schema's own limit, not the sum
+  fits["patches"].erase(1);
+  EXPECT_TRUE(parsed(fits));
 }
 
 TEST(ScenePatches, BodiesNeedAMassAndNoMoreKineticFriction) {
