@@ -742,7 +742,7 @@ def by_tcp_with_a_token():
     with daemon() as process:
         port = int(process.ready.rsplit(":", 1)[1])
         newer = Client(greet=False, port=port).ask(request="hello", version="2.0")
-        assert not newer["ok"] and "uses version 2.0" in newer["error"]["what"] and "token" not in json.dumps(newer), newer
+        assert not newer["ok"] and newer["error"]["fault"] == 5 and "2.0" in newer["error"]["what"] and "token" not in json.dumps(newer), newer
         for first in ({"request": "status"}, {"request": "hello", "version": "1.0"},
                       {"request": "hello", "version": "1.0", "token": token[:-1]},
                       {"request": "hello", "version": "1.0", "token": token + "0"}):
@@ -869,7 +869,7 @@ def whoever_armed_is_silent():
             time.sleep(0.1)
         assert other.must(request="status")["state"] == "playing"
         time.sleep(1.5 * SLOW)
-        assert "no line came from any client for 1 s" in other.wait_for("idle")["why"]
+        assert " 1 s" in other.wait_for("idle")["why"]
         expect_a_soft_fall(session, "no line came from any client")
 
 
