@@ -92,12 +92,12 @@ TEST(CsvErrors, AHeaderWhoseRowsAreAllCommentsHasNoRow) {
   ASSERT_TRUE(layout);
   CsvReader reader(*layout, {0}, "t.csv");
   ASSERT_TRUE(reader.feed("# a\n"));
-  EXPECT_TRUE(tests::fails(reader.finish(), ErrorKind::malformed, "t.csv"));
+  EXPECT_TRUE(tests::fails(reader.finish(), schema::ErrorKind::malformed, "t.csv"));
 }
 
 TEST(CsvErrors, ALongFirstLineIsNoTable) {
   const auto layout = find_csv_layout("1,2,3", false, "t.csv");
-  EXPECT_TRUE(tests::fails(layout, ErrorKind::malformed, "t.csv"));
+  EXPECT_TRUE(tests::fails(layout, schema::ErrorKind::malformed, "t.csv"));
 }
 
 }  // namespace
