@@ -14,8 +14,6 @@ extern "C" const char tacto_module_build[];
 namespace tacto::schema {
 namespace {
 
-constexpr const char* kRemedy = "the installation is incomplete; install tactograph again";
-
 std::string path_of_module(void* handle, const char* module) {
   link_map* map = nullptr;
   return dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 ? map->l_name : module;
@@ -28,7 +26,8 @@ Result<void> check_build(void* handle, const char* module) {
   if (found == tacto_module_build) return {};
   return fail(ErrorKind::internal,
               fmt::format("is a module of build {}, this program is of build {}", found, tacto_module_build),
-              path_of_module(handle, module), kRemedy);
+              path_of_module(handle, module),
+              "program and module were installed from two builds; install tactograph again");
 }
 
 }  // namespace
@@ -39,7 +38,8 @@ Result<void*> function_in_module(const char* module, const char* function) {
   void* const address = handle == nullptr ? nullptr : dlsym(handle, function);
   if (address != nullptr) return address;
   const char* const why = dlerror();
-  return fail(ErrorKind::internal, why == nullptr ? "cannot be loaded" : why, module, kRemedy);
+  return fail(ErrorKind::internal, why == nullptr ? "cannot be loaded" : why, module,
+              "the installation is incomplete; install tactograph again");
 }
 
 }  // namespace tacto::schema

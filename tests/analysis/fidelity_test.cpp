@@ -85,7 +85,7 @@ TEST_F(FidelityOfATexture, TellsWhatTheLimitsTookAway) {
 }
 
 // 3 mm RMS of 100 um, and 150 um RMS of them.
-TEST_F(FidelityOfATexture, AsksAboutTheUnitWhereThirtyTimesTheLimitIsWanted) {
+TEST_F(FidelityOfATexture, AsksAboutTheUnitAtThirtyTimesTheLimit) {
   options_.play.device_uri = "sim:seed=4711,hysteresis=0.1";
   for (const double gain_m_per_n : {1.0, 0.05}) {
     options_.play.program.gain = {gain_m_per_n, false};
