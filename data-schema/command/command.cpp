@@ -154,14 +154,12 @@ int print_written(const schema::Result<void>& written, bool json) {
   return written ? 0 : print_error(written.error(), json);
 }
 
-// Of files whose unknown members the verb has named, its own warning begins with the same words.
+// A verb that uses a file may have named it with its unknown members.
 void warn_of_newer_versions() {
   const auto before = all_warnings();
-  for (const auto& [file, version] : schema::newer_versions()) {
-    const std::string note = schema::unknown_note(file, version, {});
-    const auto same = [&](const std::string& warning) { return warning.starts_with(note); };
-    if (std::ranges::none_of(before, same)) print_warning(note);
-  }
+  for (const auto& [file, version] : schema::newer_versions())
+    if (std::ranges::none_of(before, [&](const auto& note) { return schema::notes(note, file, version); }))
+      print_warning(schema::unknown_note(file, version, {}));
 }
 
 int act(const Entry& entry) {

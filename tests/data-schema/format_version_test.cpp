@@ -98,7 +98,7 @@ TEST(FormatVersion, OfEachFormatIsJudgedBeforeItsContent) {
   EXPECT_GT(formats.size(), 15U);
   formats.push_back(netcdf_format("spectrogram", folder / "spectrogram.nc",
                                   [](const std::string& path) { return read_spectrogram_nc(path); }));
-  formats.push_back(netcdf_format("height_map", folder / "map.nc",
+  formats.push_back(netcdf_format("height_map", folder / "map.height.nc",
                                   [](const std::string& path) { return read_height_map(path); }));
   formats.push_back(netcdf_format("session", folder / "session.nc",
                                   [](const std::string& path) { return read_session_table(path); }));
