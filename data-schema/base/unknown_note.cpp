@@ -23,7 +23,7 @@ std::string newer_words(const std::string& version) {
 
 }  // namespace
 
-bool notes(const std::string& note, const std::string& file, const std::string& newer_version) {
+bool is_note_on(const std::string& note, const std::string& file, const std::string& newer_version) {
   const auto named = note.find(newer_words(newer_version));
   return named != std::string::npos && file.starts_with(note.substr(0, named)) &&
          (file.size() == named || file[named] == '.');

@@ -13,7 +13,7 @@ std::string unknown_note(const std::string& path, const std::string& newer_versi
                          const std::vector<std::string>& unknown_members);
 
 /// Whether a note names the newer version of this file, by its path or stem.
-bool notes(const std::string& note, const std::string& file, const std::string& newer_version);
+bool is_note_on(const std::string& note, const std::string& file, const std::string& newer_version);
 
 /// unknown_note() for the value that a reader returned.
 template <class File>

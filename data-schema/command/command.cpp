@@ -158,7 +158,8 @@ int print_written(const schema::Result<void>& written, bool json) {
 void warn_of_newer_versions() {
   const auto before = all_warnings();
   for (const auto& [file, version] : schema::newer_versions())
-    if (std::ranges::none_of(before, [&](const auto& note) { return schema::notes(note, file, version); }))
+    if (std::ranges::none_of(before,
+                             [&](const auto& note) { return schema::is_note_on(note, file, version); }))
       print_warning(schema::unknown_note(file, version, {}));
 }
 
