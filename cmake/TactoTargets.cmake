@@ -39,8 +39,25 @@ endfunction()
 set(TACTO_MODULES lib/tactograph)
 set(CMAKE_BUILD_RPATH ${CMAKE_BINARY_DIR}/${TACTO_MODULES})
 set(CMAKE_INSTALL_RPATH $ORIGIN/../${TACTO_MODULES})
+# Program and modules name their build, because a module of another build would be called wrongly: another order of
+# functions, other types.
+file(GLOB shared CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/data-schema/base/*.hpp
+     ${CMAKE_SOURCE_DIR}/data-schema/netcdf/* ${CMAKE_SOURCE_DIR}/data-schema/exchange/matio/*
+     ${CMAKE_SOURCE_DIR}/spatial/picture/draw/*.hpp ${CMAKE_SOURCE_DIR}/spatial/picture/engine/*
+     ${CMAKE_SOURCE_DIR}/analysis/live/server/*)
+set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${shared})
+foreach(file IN LISTS shared)
+  file(SHA256 ${CMAKE_SOURCE_DIR}/${file} sum)
+  string(APPEND sums "${file} ${sum}\n")
+endforeach()
+string(SHA256 sums "${sums}")
+string(SUBSTRING ${sums} 0 12 TACTO_MODULE_SUM)
+set(TACTO_MODULE_BUILD ${CMAKE_BINARY_DIR}/generated/module_build.cpp)
+configure_file(${CMAKE_SOURCE_DIR}/cmake/module_build.cpp.in ${TACTO_MODULE_BUILD} @ONLY)
+set_source_files_properties(${TACTO_MODULE_BUILD} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+
 function(tacto_module name for)
-  add_library(${name} MODULE ${ARGN})
+  add_library(${name} MODULE ${ARGN} ${TACTO_MODULE_BUILD})
   target_link_libraries(${name} PRIVATE tacto_options)
   set_target_properties(${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden BUILD_RPATH "" INSTALL_RPATH ""
                         LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${TACTO_MODULES})

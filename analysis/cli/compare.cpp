@@ -14,6 +14,7 @@
 #include "analysis/cli/verbs.hpp"
 #include "analysis/compare/compare.hpp"
 #include "analysis/compare/compare_page.hpp"
+#include "analysis/compare/label_test.hpp"
 #include "analysis/compare/surfaces.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/command/output_options.hpp"
@@ -46,7 +47,7 @@ constexpr const char* kRule =
     "whether "
     "the strokes of A and B differ more than strokes of one side differ from each other:\n  different        "
     "    "
-    "p is at most 0.05 (999 exchanges of A and B), and the band that differs most differs by --tolerance or "
+    "p is at most 0.05 ({} exchanges of A and B), and the band that differs most differs by --tolerance or "
     "more; where the interval of that band contains 0 dB, the shapes of the spectra differ, all bands "
     "together\n  no difference found  otherwise; 'detectable' states what would have been found\n  undecided "
     "    "
@@ -479,7 +480,7 @@ cli::Action declare_compare(CLI::App& app) {
       app, "--spectrum-window", options->compare.window_m, Dimension::length,
       "Window of the compared spectra [an eighth of the shorter, at most 8 waves of the lowest frequency]");
   spatial::declare_spectrogram(app, options->compare.spectrogram);
-  app.footer(app.get_footer() + "\n" + kRule);
+  app.footer(app.get_footer() + "\n" + fmt::format(kRule, kExchanges));
   return [options, &app] { return run_compare(*options, app.count("--json") > 0); };
 }
 

@@ -176,7 +176,8 @@ cli::Action declare_status(CLI::App& app) {
 
 constexpr cli::VerbPart kParts[] = {
     {"init", "Write the plan: recordings with their checksums, steps and options", declare_init},
-    {"run", "Compute what is missing; a recording that fails is noted and stops nothing", declare_run},
+    {"run", "Compute what is missing; after a recording that fails, the run goes on and notes it",
+     declare_run},
     {"status", "What is done, missing or failed, and why; exit code 5 unless all is done", declare_status},
     {"workflow", "Write a file with which Slurm or Snakemake runs all shards on a cluster", declare_workflow},
     {"pack", "Write a dataset to give away: recordings, results, a table, checksums, an RO-Crate",

@@ -53,7 +53,7 @@ constexpr const char* kDesignRule =
     "device and finger need together for each passive hand; the speed below which each hand is proved; the "
     "amplitude below which Coulomb friction stops a swing.\n"
     "With --simulate each layer has a column more: rests, oscillates or grows, with the RMS in counts of the "
-    "encoder and in newtons. With --adversary it has the stiffness from which on a path gave energy.\n"
+    "encoder and in newtons. With --adversary it has the least stiffness at which a path generates energy.\n"
     "Exit code 9: unstable. The computed limit is passed, or a simulated tap grows; a tap that oscillates "
     "without growing and an adversary's path do not count.";
 
@@ -213,8 +213,9 @@ cli::Action declare_design(CLI::App& app) {
   app.add_flag("--lumped", o.lumped, "With --hand NAME: judge by the formula of Minsky 1990");
   app.add_flag("--simulate", o.simulate,
                "Tap each layer on its stiffest place, with the device's kernel on the emulated device");
-  app.add_option("--adversary", o.adversary_paths,
-                 "Search the energy that springs and dampers give on so many random paths of a hand")
+  app.add_option(
+         "--adversary", o.adversary_paths,
+         "Search N random closed paths of a hand for one on which springs and dampers generate energy")
       ->type_name("N")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
   playback::declare_hold_stable(app, o.hold_stable);

@@ -283,7 +283,7 @@ constexpr cli::VerbPart kExperimentParts[] = {
     {"analyse", "Fit psychometric functions to the answers of a study", declare_analyse},
     {"power", "How many participants a study needs for a difference of Weber fractions", declare_study_power},
     {"export", "Write the trials of a study as CSV and BIDS, with a script for R", declare_export_study},
-    {"withdraw", "Delete all files of a participant; only the fact remains", declare_withdraw},
+    {"withdraw", "Delete all files of a participant; code and date are noted", declare_withdraw},
     {"fit", "Fit psychometric functions, or a scale, to a table of answers", declare_fit},
 };
 

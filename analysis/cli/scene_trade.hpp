@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `trade` of a scene of force patches: what it does if a device is named.
+// `trade` of a scene of force patches on a force device.
 #pragma once
 
 #include <optional>

@@ -252,8 +252,8 @@ cli::Action declare_trade(CLI::App& app) {
   app.add_option(
       "-o,--output", options->outputs,
       "Output: a page (.html), results for 'report' (.results.json), a table of all choices "
-      "(.csv), or error against cost for the unit of cost with most choices in the first half "
-      "(.svg, .png); with --calibrate NAME.trade.json; with --device no picture, but the chosen scene "
+      "(.csv), or a picture of error against cost (.svg, .png; of both halves, that of the offline one); "
+      "with --calibrate NAME.trade.json; with --device no picture, but the chosen scene "
       "(NAME.scene.json); may be repeated");
   app.add_option("--transducer", options->transducer, "A preset or NAME.transducer.json")
       ->capture_default_str();

@@ -14,7 +14,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kExchanges = 999;
 constexpr std::uint64_t kExchangeSeed = 17;
 constexpr double kPriorFreedom = 4;
 constexpr double kCorrelationShare = 0.7;

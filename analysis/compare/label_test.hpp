@@ -9,6 +9,9 @@
 
 namespace tacto::analysis {
 
+/// Exchanges of the labels of A and B, from which the p of a test is computed.
+inline constexpr std::size_t kExchanges = 999;
+
 /// Levels in dB of strokes (or means of recordings) of two sides, A and B.
 struct LabelledLevels {
   std::size_t bands = 0;
@@ -59,7 +62,7 @@ double separable_part(const LabelledLevels& data);
 ///   window statistic = max over all windows of t_b^2 = c_b^2 / s~_b^2
 ///   shape statistic = t' (0.7 R + 0.3 I)^-1 t over the single bands, R the correlation of the residuals of
 ///                     null model and side (Hotelling's T^2, regularised)
-/// The p of each is its rank among 999 exchanges of the labels within the strata (seeded: the same in each
+/// The p of each is its rank among kExchanges exchanges within the strata (seeded: the same in each
 /// call), and p the rank of the smaller of the two. Each exchanged side is projected in the same way.
 /// Preconditions: f >= 1, separable_part > 0.
 LabelTest label_test(const LabelledLevels& data);

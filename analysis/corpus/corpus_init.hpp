@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plan of a corpus, made of recordings.
+// Makes the plan of a corpus from recordings.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is done of a corpus.
+// The state of a corpus: the results that exist, are missing, failed, or belong to changed recordings.
 #pragma once
 
 #include <cstddef>

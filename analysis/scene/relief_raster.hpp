@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of a scene acts in each pixel of a picture, and its relief as hill shading.
+// The layers of a scene that act in each pixel of a picture, and the relief as hill shading.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Both halves of the trade, and the table from which the verbs choose.
+// Measures error and cost of the choices for one texture, and of all choices for the table from which the
+// verbs choose.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One line of a spectrum, without a Fourier transform of all frequencies.
+// The Fourier transform of samples at one frequency, under a Hann window.
 #pragma once
 
 #include <complex>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capture/doctor/doctor.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -64,9 +66,9 @@ cli::Action declare_doctor(CLI::App& app) {
   app.add_option("-o,--folder", request.folder, "Folder of the recordings");
   app.add_option("--calibration", request.calibration,
                  "Calibration file of the device, if not the one that 'tactograph calibrate' stores");
-  cli::add_quantity(app, "--stale-after", options->stale_after_s, schema::Dimension::time,
-                    "Age from which a calibration is stale; default: " +
-                        schema::for_people(kStaleAfter_s, schema::Dimension::time));
+  cli::add_quantity(
+      app, "--stale-after", options->stale_after_s, schema::Dimension::time,
+      "Age from which a calibration is stale; default: " + fmt::format("{} days", kStaleAfterDays));
   app.add_option("--questions", request.questions, "Number of measured round trips to the device");
   app.footer(app.get_footer() +
              "\nExit code 0: a recording can be made; 7: the folder or the disk prevents it; 8: another "

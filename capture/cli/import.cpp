@@ -82,7 +82,7 @@ void declare_circumstances(CLI::App& app, ImportRequest& request) {
   app.add_option("--subject", request.subject, "A code for the person, never a name");
   app.add_option("--finger", request.finger, "Finger, or object that slid instead of one");
   app.add_option("--surface", request.surface, "Surface that was touched");
-  app.add_option("--notes", request.notes, "Other notes");
+  app.add_option("--notes", request.notes, "Notes in free text");
   app.add_option_function<std::string>(
          "--humidity",
          [&request](const std::string& text) { request.humidity_percent = parsed_percent(text); },

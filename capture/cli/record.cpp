@@ -19,9 +19,11 @@
 #include "capture/record/record.hpp"
 #include "capture/record/take_name.hpp"
 #include "capture/table/text_encoding.hpp"
+#include "data-schema/base/quantity.hpp"
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/command/stop_signals.hpp"
 #include "data-schema/command/terminal_keys.hpp"
+#include "data-schema/recording/live_recording.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/report/pace.hpp"
 #include "data-schema/report/progress.hpp"
@@ -64,13 +66,13 @@ void declare_options(CLI::App& app, RecordOptions& options) {
   app.add_option("--calibration", options.calibration,
                  "Calibration file of the device, if not the one that 'tactograph calibrate' stores");
   app.add_flag("--no-calibration", options.no_calibration, "Use the nominal scales of the device only");
-  cli::add_quantity(app, "--stale-after", options.stale_after_s, Dimension::time,
-                    "Age from which a calibration causes a warning; default: " +
-                        schema::for_people(kStaleAfter_s, Dimension::time));
+  cli::add_quantity(
+      app, "--stale-after", options.stale_after_s, Dimension::time,
+      "Age from which a calibration causes a warning; default: " + fmt::format("{} days", kStaleAfterDays));
   app.add_option("--subject", request.subject, "A code for the person, never a name");
   app.add_option("--finger", request.finger, "Finger, or object that slides instead of one");
   app.add_option("--surface", request.surface, "Surface that is touched; default: as the device reports");
-  app.add_option("--notes", request.notes, "Other notes");
+  app.add_option("--notes", request.notes, "Notes in free text");
   app.add_flag(
       "--commands", options.commands,
       "Another program steers the recording by lines on stdin: 'mark LABEL', 'stop'; the end of the input "
@@ -78,10 +80,14 @@ void declare_options(CLI::App& app, RecordOptions& options) {
 }
 
 std::string footer_text() {
-  return "\nThe emulated device (sim:) and its keys: tactograph help sim.\n"
-         "During a recording, Ctrl-C or q ends and stores it, m or SIGUSR1 sets a mark. After a crash or a "
-         "power cut,\n'tactograph recover NAME' restores the recording without its last 100 ms (1 s after a "
-         "power cut with a busy disk).";
+  return fmt::format(
+      "\nThe emulated device (sim:) and its keys: tactograph help sim.\n"
+      "During a recording, Ctrl-C or q ends and stores it, m or SIGUSR1 sets a mark. After a crash or a "
+      "power "
+      "cut, 'tactograph recover NAME' restores the recording without its last {} ({} after a power cut with "
+      "a busy disk).",
+      schema::for_people(schema::kMostLost_s, schema::Dimension::time),
+      schema::for_people(schema::kMostLostBusy_s, schema::Dimension::time));
 }
 
 cli::Report row_of(const schema::Channel& channel, const schema::Statistics& statistics) {

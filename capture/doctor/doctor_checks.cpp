@@ -22,7 +22,7 @@ using schema::Dimension;
 using schema::for_people;
 
 constexpr double kSlowAnswer_s = 5e-3;  // our choice: in playback a heartbeat is due every 50 ms
-constexpr double kSlowSync_s = 50e-3;   // a slower disk may lose more than 100 ms of data in a power cut
+constexpr double kSlowSync_s = schema::kMostLost_s - schema::kSyncEvery_s;  // a slower disk may lose more
 constexpr double kLeastRoom_s = 10, kGoodRoom_s = 600, kGoodSpeed = 4;
 constexpr double kLeastLocked_bytes = 64 << 20;
 constexpr double kLargestBlock_bytes = 16 << 20;
@@ -90,7 +90,8 @@ std::string advice_on(const DiskSpeed& disk, double bytes_per_s) {
   if (disk.write_bytes_per_s < kGoodSpeed * bytes_per_s)
     return "the disk is hardly fast enough: use another disk";
   if (disk.sync_median_s > kSlowSync_s)
-    return "the disk synchronises slowly: after a power cut more than 100 ms may be missing";
+    return fmt::format("the disk synchronises slowly: after a power cut more than {} may be missing",
+                       for_people(schema::kMostLost_s, Dimension::time));
   return {};
 }
 

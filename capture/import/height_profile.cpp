@@ -92,9 +92,7 @@ Result<Table> read_table(const Source& source, const Columns& columns,
     for (std::size_t row = 0; row < block.rows(); ++row) {
       const double* const at = block.numbers.data() + row * block.columns;
       table.height_m.push_back(columns.height.physical(at[0]));
-      if (columns.position)
-        table.position_m.push_back(at[block.columns - 1] * columns.position->scale +
-                                   columns.position->offset);
+      if (columns.position) table.position_m.push_back(columns.position->physical(at[block.columns - 1]));
     }
     for (const CsvReader::Landmark& line : *block.landmarks)
       if (table.lines.empty() || line.row > table.lines.back().row) table.lines.push_back(line);

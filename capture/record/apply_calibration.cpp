@@ -80,9 +80,7 @@ void calibrate(Channel& channel, const Found& found) {
   if (found.zero) note_zero(channel, *found.zero);
   channel.offset = found.zero ? -*found.zero->zero * channel.scale : own_offset / own_scale * channel.scale;
   channel.calibrated = day_of(found.scale ? found.scale->date : found.zero->date);
-  const auto again = [&](double value) {
-    return (value - own_offset) / own_scale * channel.scale + channel.offset;
-  };
+  const auto again = [&](double value) { return channel.physical((value - own_offset) / own_scale); };
   if (channel.range_min) channel.range_min = again(*channel.range_min);
   if (channel.range_max) channel.range_max = again(*channel.range_max);
 }

@@ -13,7 +13,8 @@ namespace tacto::capture {
 
 /// The default age at which a calibration is reported as stale. Our choice: piezo ceramics age by about a per
 /// cent per decade of time, and the zeros of strain gauges drift with the temperature.
-inline constexpr double kStaleAfter_s = 30 * 86400.0;
+inline constexpr int kStaleAfterDays = 30;
+inline constexpr double kStaleAfter_s = kStaleAfterDays * 86400.0;
 
 /// The date of a calibration may be this much in the future: the clocks of two computers differ.
 inline constexpr double kClockSlack_s = 86400;

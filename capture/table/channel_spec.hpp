@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/physical_value.hpp"
 #include "data-schema/base/quantity.hpp"
 
 namespace tacto::capture {
@@ -22,7 +23,7 @@ struct ScaledColumn {
   std::string other_unit = {};  ///< of the column, if the text has another unit of the same quantity
 
   /// In the SI unit of the channel's dimension.
-  double physical(double number) const { return number * scale + offset; }
+  double physical(double number) const { return schema::physical_value(number, scale, offset); }
 };
 
 /// A channel and its column.

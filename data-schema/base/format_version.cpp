@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <mutex>
 #include <optional>
 
 namespace tacto::schema {
@@ -23,18 +25,44 @@ std::optional<Version> version_from(std::string_view text) {
   return version;
 }
 
+// Files are read by several threads.
+struct Found {
+  std::mutex mutex;
+  std::vector<NewerVersion> versions;
+};
+
+Found& newer_found() {
+  static Found all;
+  return all;
+}
+
+void keep_newer(const std::string& file, const std::string& version) {
+  Found& found = newer_found();
+  const std::lock_guard lock(found.mutex);
+  const auto same = [&](const NewerVersion& each) { return each.file == file && each.version == version; };
+  if (std::ranges::none_of(found.versions, same)) found.versions.push_back({file, version});
+}
+
 }  // namespace
 
 Result<std::string> newer_version(const std::string& version, const std::string& file,
-                                  const std::string& place) {
+                                  const std::string& place, std::string_view ours) {
   const auto found = version_from(version);
   if (!found) return fail(ErrorKind::malformed, "`version` is not \"major.minor\"", place);
-  const Version ours = *version_from(kFormatVersion);
-  if (found->major != ours.major)
+  const Version known = *version_from(ours);
+  if (found->major != known.major)
     return fail(ErrorKind::unsupported_version,
-                fmt::format("its format has version {}, this program reads {}.x", version, ours.major), file,
-                found->major > ours.major ? "use a newer tactograph" : "");
-  return found->minor > ours.minor ? version : "";
+                fmt::format("its format has version {}, this program reads {}.x", version, known.major), file,
+                found->major > known.major ? "use a newer tactograph" : "");
+  if (found->minor <= known.minor) return "";
+  keep_newer(file, version);
+  return version;
+}
+
+std::vector<NewerVersion> newer_versions() {
+  Found& found = newer_found();
+  const std::lock_guard lock(found.mutex);
+  return found.versions;
 }
 
 }  // namespace tacto::schema

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a stroke is, in recordings and in sessions.
+// The definition of a stroke, for recordings and sessions: least length, longest pause.
 #pragma once
 
 #include <string_view>

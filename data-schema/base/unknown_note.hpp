@@ -12,7 +12,10 @@ namespace tacto::schema {
 std::string unknown_note(const std::string& path, const std::string& newer_version,
                          const std::vector<std::string>& unknown_members);
 
-/// The same for the value that a reader returned.
+/// Whether a note names the newer version of this file, by its path or stem.
+bool is_note_on(const std::string& note, const std::string& file, const std::string& newer_version);
+
+/// unknown_note() for the value that a reader returned.
 template <class File>
 std::string unknown_note(const std::string& path, const File& file) {
   return unknown_note(path, file.newer_version, file.unknown_members);

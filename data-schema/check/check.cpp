@@ -103,7 +103,7 @@ Result<Checked> check_file(const StoredFile& file, const Progress& progress) {
   }
   if (file.kind == FileKind::session_table) {
     const auto table = read_session_table(file.path);
-    return table ? Checked{} : judged(table.error());
+    return table ? Checked{{}, table->newer_version, {}} : judged(table.error());
   }
   if (file.kind == FileKind::height_map) {
     const auto map = read_height_map(file.path);

@@ -16,7 +16,9 @@
 #include <string_view>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/format_version.hpp"
 #include "data-schema/base/nearest_word.hpp"
+#include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/man_page.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/report/progress.hpp"
@@ -152,8 +154,18 @@ int print_written(const schema::Result<void>& written, bool json) {
   return written ? 0 : print_error(written.error(), json);
 }
 
+// A verb that uses a file may have named it with its unknown members.
+void warn_of_newer_versions() {
+  const auto before = all_warnings();
+  for (const auto& [file, version] : schema::newer_versions())
+    if (std::ranges::none_of(before,
+                             [&](const auto& note) { return schema::is_note_on(note, file, version); }))
+      print_warning(schema::unknown_note(file, version, {}));
+}
+
 int act(const Entry& entry) {
   const auto report = entry.action();
+  warn_of_newer_versions();
   if (!report) return print_error(report.error(), entry.json);
   return print_report(*report, entry);
 }
@@ -361,8 +373,7 @@ const UsualOptions kUsualOptions[] = {
     {"design", {"device", "hand", "rate", "speed", "output", "table", "z-width", "force"}},
     {"fidelity", {"device", "transducer", "speed", "time", "gain", "output", "force", "rate"}},
     {"trade", {"output", "transducer", "stroke", "force", "calibrate", "device", "hand", "finger-path"}},
-    {"identify",
-     {"device", "output", "start-from", "method", "picture", "results", "second-mode", "replace"}},
+    {"identify", {"device", "output", "start-from", "method", "picture", "results", "second-mode", "finger"}},
 };
 
 struct Heading {
@@ -385,7 +396,7 @@ const Heading kHeadings[] = {
       "engine", "encoder-step", "rate", "loop", "onset", "target", "displacement"}},
     {"Limits", {"energy-limit", "energy-window", "over-limit", "contact", "contact-off"}},
     {"Stored in the file", {"subject", "finger", "surface", "notes", "humidity", "date", "calibrated"}},
-    {"Calibration", {"calibration", "no-calibration", "stale-after", "allow-gaps"}},
+    {"Calibration", {"calibration", "no-calibration", "stale-after"}},
     {"Measuring and tables",
      {"amplitude", "frequencies", "lag", "fit-on", "amplitude-unit", "phase-unit", "phase-sign", "invert",
       "input", "output-channel"}},

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "data-schema/base/format_version.hpp"
 #include "data-schema/control/control.hpp"
 #include "data-schema/json/json_schema.hpp"
 #include "data-schema/json/json_text.hpp"
@@ -52,8 +53,10 @@ std::string remedy_for(const std::string& pointer, const Json& rules) {
 }
 
 Result<void> check_version_of(const std::string& version) {
-  const auto major = [](std::string_view text) { return text.substr(0, text.find('.')); };
-  if (major(version) == major(kControlVersion)) return {};
+  const auto known =
+      newer_version(version, "the client", fmt::format("{}#/version", kRequestWhere), kControlVersion);
+  if (known || known.error().kind != ErrorKind::unsupported_version)
+    return known ? Result<void>() : forward_error(known);
   return fail(ErrorKind::unsupported_version,
               fmt::format("the client uses version {} of the control protocol, this daemon version {}",
                           version, kControlVersion),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The device's clock against the host's.
+// Fits the drift and offset of the device's clock against the host's.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording in progress: what was written stays, whatever happens.
+// Writes a recording in progress so that it can be recovered after a crash or a power cut.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,9 @@
 #include "data-schema/recording/recording.hpp"
 
 namespace tacto::schema {
+
+/// What a power cut may lose, at most: with a disk that syncs in less than kSyncEvery_s, and with a busy one.
+inline constexpr double kMostLost_s = 0.1, kMostLostBusy_s = 1;
 
 /// The pause between two syncs. With blocks of 20 ms and a disk that syncs in as long again, a power cut
 /// loses less than 100 ms; a busy disk may take a second for a sync, and a power cut then loses that much. A

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/physical_value.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/base/signal.hpp"
 #include "data-schema/transducer/transducer.hpp"
@@ -45,7 +46,7 @@ struct Channel {
   std::string calibrated;  ///< ISO date of the calibration, or empty
   std::optional<AppliedCalibration> calibration;  ///< if one of the device's calibration file was applied
 
-  double physical(double stored) const { return stored * scale + offset; }
+  double physical(double stored) const { return physical_value(stored, scale, offset); }
 };
 
 /// Missing frames: `count` of them are absent before stored frame `frame`.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/quantity.hpp"
 #include "data-schema/files/event_file.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/recording/live_recording.hpp"
@@ -120,8 +121,9 @@ std::vector<std::string> make_gaps_agree(std::vector<Gap>& gaps) {
 }
 
 std::vector<std::string> notes_on(const EventLog& log) {
-  std::vector<std::string> notes = {
-      "it was not closed: its last 100 ms may be missing (up to 1 s after a power cut with a busy disk)"};
+  std::vector<std::string> notes = {fmt::format(
+      "it was not closed: its last {} may be missing (up to {} after a power cut with a busy disk)",
+      for_people(kMostLost_s, Dimension::time), for_people(kMostLostBusy_s, Dimension::time))};
   if (!log.cut_line.empty()) notes.push_back("its last event is incomplete: " + printable(log.cut_line));
   if (log.bad_lines > 0)
     notes.push_back(
@@ -229,7 +231,7 @@ std::uint64_t size_of(const std::string& path) {
   return unknown ? 0 : size;
 }
 
-std::string stretch(std::uint64_t frames, const RecordingHeader& header) {
+std::string shown(std::uint64_t frames, const RecordingHeader& header) {
   return fmt::format("{} frames ({:.3g} s)", frames, static_cast<double>(frames) / header.sample_rate_hz);
 }
 
@@ -303,7 +305,7 @@ Result<void> cut_unwritten(const std::string& wav, const RecordingHeader& header
   const std::uint64_t kept = std::clamp(length->promised_frames, std::min(written, frames), frames);
   if (kept == frames) return {};
   remains.notes.push_back(fmt::format("its last {} were zeros that had not been written: they were removed",
-                                      stretch(frames - kept, header)));
+                                      shown(frames - kept, header)));
   return cut_off_at(wav, layout->data_at + kept * layout->block_bytes);
 }
 
@@ -312,7 +314,7 @@ void note_zeros(const std::string& wav, const RiffLayout& layout, const Recordin
   const std::uint64_t first = zero_frames_at_start(wav, layout), last = zero_frames_at_end(wav, layout);
   const auto note = [&](const char* where, std::uint64_t frames) {
     remains.notes.push_back(
-        fmt::format("its {} {} are zeros: they may be lost", where, stretch(frames, header)));
+        fmt::format("its {} {} are zeros: they may be lost", where, shown(frames, header)));
   };
   if ((first + 1) * layout.block_bytes > kPageBytes - layout.data_at) note("first", first);
   if (last * layout.block_bytes >= kPageBytes && last < remains.frames) note("last", last);
@@ -322,7 +324,7 @@ void note_what_is_missing(const RecordingHeader& header, std::uint64_t known_fra
   if (known_frames > remains.frames)
     remains.notes.push_back(fmt::format("its journal lists frame {}, but it ends at {}: at least {} are lost",
                                         known_frames, remains.frames,
-                                        stretch(known_frames - remains.frames, header)));
+                                        shown(known_frames - remains.frames, header)));
 }
 
 Result<void> make_header_sound(const std::string& wav, const EmptyWav& empty, WavRemains& remains) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How exact a result has to be: the cheapest measured choice within it is taken.
+// A budget: the largest error with which the cheapest measured choice is taken.
 #pragma once
 
 #include <optional>

@@ -10,8 +10,6 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::size_t kMostLayers = 256;  // of a scene
-
 template <class L, class... Kinds>
 concept AnyOf = (std::same_as<L, Kinds> || ...);
 

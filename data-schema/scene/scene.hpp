@@ -29,9 +29,12 @@ struct TextureLayer {
 /// not compile.
 using Layer = OneOf<TextureLayer>;
 
+/// Layers of a scene, in all. The kernel has the same limit (core::kMostSceneLayers).
+inline constexpr std::size_t kMostLayers = 256;
+
 struct Scene {
   std::vector<Layer> layers;   ///< of a tray; their target displacements add up
-  std::vector<Patch> patches;  ///< of a force device; a scene has layers, patches, or both, 256 layers in all
+  std::vector<Patch> patches;  ///< of a force device; a scene has layers, patches, or both
   std::string name, notes;
   std::string created, creator;
   PlaybackChoices playback;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/physical_value.hpp"
 #include "data-schema/device/device.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/transducer/transducer.hpp"
@@ -54,7 +55,7 @@ struct SessionSensor {
   std::string channel, source, calibrated;
   double rate_hz = 0, scale = 1, offset = 0;
 
-  double physical(double code) const { return code * scale + offset; }
+  double physical(double code) const { return physical_value(code, scale, offset); }
 };
 
 /// Ticks that are not in the file, and why.

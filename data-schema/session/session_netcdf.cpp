@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "data-schema/base/format_version.hpp"
 #include "data-schema/spectrogram/netcdf_file.hpp"
 
 namespace tacto::schema {
@@ -16,6 +17,7 @@ constexpr const char* kSessionKind = "session";
 
 void put_played(NetcdfWriter& file, const SessionHeader& header) {
   file.attribute("kind", kSessionKind);
+  file.attribute("version", std::string(kFormatVersion));
   file.attribute("created", header.created);
   file.attribute("creator", header.creator);
   file.attribute("device", header.device_uri);
@@ -95,7 +97,13 @@ bool is_session_netcdf(const std::string& path) {
 
 Result<SessionTable> read_session_table(const std::string& path) {
   NetcdfReader file(path);
+  TACTO_TRY(file.status(path));
+  if (file.text("kind") != kSessionKind)
+    return fail(ErrorKind::malformed, "is netCDF, but not a session of tactograph", path);
+  auto newer = newer_version(file.text("version"), path, path);
+  TACTO_TRY(newer);
   SessionTable table;
+  table.newer_version = std::move(*newer);
   table.created = file.text("created");
   table.creator = file.text("creator");
   table.device = file.text("device");
@@ -104,10 +112,8 @@ Result<SessionTable> read_session_table(const std::string& path) {
   table.textures = lines_of(file.text("textures"));
   table.changes = lines_of(file.text("changes"));
   table.rate_hz = file.number("rate_hz");
-  const bool ours = file.text("kind") == kSessionKind;
   const std::vector<double> time_s = file.axis("time");
   TACTO_TRY(file.status(path));
-  if (!ours) return fail(ErrorKind::malformed, "is netCDF, but not a session of tactograph", path);
   const auto stuck = std::ranges::adjacent_find(time_s, [](double a, double b) { return !(a < b); });
   if (time_s.empty() || stuck != time_s.end())
     return fail(ErrorKind::malformed, time_s.empty() ? "has no times" : "its times must increase", path);

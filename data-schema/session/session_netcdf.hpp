@@ -58,6 +58,7 @@ class SessionNetcdf {
 
 /// The header data of such a file.
 struct SessionTable {
+  std::string newer_version;  ///< set by the reader if the file's minor version is newer than ours
   std::string created, creator, device, transducer, simulated;
   std::vector<std::string> textures;
   std::vector<std::string> changes;  ///< "from 1.9 s on, over 0.05 s: FILE", of each texture
@@ -69,7 +70,7 @@ struct SessionTable {
 /// Whether it is a netCDF file of that kind.
 bool is_session_netcdf(const std::string& path);
 
-/// Errors: malformed: no netCDF, of another kind, no times or times that do not grow.
+/// Errors: malformed: no netCDF, of another kind, no times or times that do not grow; of newer_version().
 Result<SessionTable> read_session_table(const std::string& path);
 
 }  // namespace tacto::schema

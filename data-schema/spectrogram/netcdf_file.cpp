@@ -53,10 +53,6 @@ Locked nc() {
   return {std::unique_lock(one_at_a_time)};
 }
 
-std::string status_words(int status) {
-  return status == kNotLoaded ? message(library().fault) : nc()->strerror(status);
-}
-
 }  // namespace
 
 NetcdfWriter::NetcdfWriter(const std::string& path) {
@@ -169,7 +165,8 @@ Result<void> NetcdfWriter::close(const std::string& path) {
     file_ = -1;
   }
   if (sound()) return {};
-  return fail(ErrorKind::cannot_write, fmt::format("netCDF: {}", status_words(status_)), path,
+  if (status_ == kNotLoaded) return tl::unexpected(library().fault);
+  return fail(ErrorKind::cannot_write, fmt::format("netCDF: {}", nc()->strerror(status_)), path,
               "check whether the disk is full");
 }
 
@@ -267,7 +264,8 @@ std::vector<double> NetcdfReader::values(const char* name, const Part& part) {
 
 Result<void> NetcdfReader::status(const std::string& path) const {
   if (status_ == NC_NOERR) return {};
-  return fail(ErrorKind::malformed, fmt::format("netCDF: {}", status_words(status_)), path);
+  if (status_ == kNotLoaded) return tl::unexpected(library().fault);
+  return fail(ErrorKind::malformed, fmt::format("netCDF: {}", nc()->strerror(status_)), path);
 }
 
 }  // namespace tacto::schema

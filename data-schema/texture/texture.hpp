@@ -39,8 +39,8 @@ struct TextureSource {
   double position_quantum_m = 0;  ///< the step of their grid; 0 if there is no visible grid
   double position_noise_m = 0;    ///< standard deviation of their noise, where it is over a quantum
   int counter_bits = 0;           ///< of an encoder's counter that wrapped in the recording; else 0
-  int counter_wraps = 0;          ///< number of wraps in the stretch
-  std::optional<double> normal_force_n = std::nullopt;  ///< its mean in the stretch, where it was recorded
+  int counter_wraps = 0;          ///< number of wraps in the section
+  std::optional<double> normal_force_n = std::nullopt;  ///< its mean in the section, where it was recorded
   bool finger_up = false;                               ///< by that force
   /// Of a band-pass along position, if that is the filter; then the band in Hz is all that was recorded.
   std::optional<double> low_per_m = std::nullopt, high_per_m = std::nullopt;

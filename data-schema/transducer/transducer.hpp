@@ -118,10 +118,10 @@ std::vector<std::string_view> preset_names();
 Result<void> check_extras(const Transducer& transducer, const std::string& where);
 
 /// Checks whether it may be used for playback. Errors: unsuitable, if its own identification says that it did
-/// not converge or that the model is wrong, unless the user insists.
+/// not converge or that the model is wrong, unless the user accepts it (--unfit-transducer).
 Result<void> check_usable(const Transducer& transducer, bool forced);
 
-/// Which numbers a file may contain: those of a possible transducer, or, if the user insists, all numbers
+/// Which numbers a file may contain: those of a possible transducer, or, with --implausible, all numbers
 /// that can be computed with (transducer_plausible.hpp).
 enum class Numbers { plausible, computable };
 

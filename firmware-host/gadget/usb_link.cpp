@@ -155,8 +155,8 @@ void UsbLink::handle_event() {
 
 void UsbLink::come_up() {
   usb_endpoint_descriptor endpoint{};
-  const bool told = ::ioctl(files_.in.get(), FUNCTIONFS_ENDPOINT_DESC, &endpoint) == 0;
-  packet_ = told ? endpoint.wMaxPacketSize : usb::kHighSpeedPacket;
+  const bool known = ::ioctl(files_.in.get(), FUNCTIONFS_ENDPOINT_DESC, &endpoint) == 0;
+  packet_ = known ? endpoint.wMaxPacketSize : usb::kHighSpeedPacket;
   up_ = true;
   settings_.say(fmt::format("a host has configured the device, {} speed", speed_of(packet_)));
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "data-schema/base/format_version.hpp"
 #include "data-schema/version.hpp"
 #include "firmware-host/link/line_load.hpp"
 #include "firmware-host/link/wire_words.hpp"
@@ -113,7 +114,12 @@ bool Client::described() const {
 
 Result<void> Client::check_version() const {
   const wire::Welcome& device = description_.welcome;
-  if (device.major == wire::kProtocolMajor) return {};
+  if (device.major == wire::kProtocolMajor) {
+    const auto version_words = [](int minor) { return fmt::format("{}.{}", wire::kProtocolMajor, minor); };
+    TACTO_TRY(schema::newer_version(version_words(device.minor), where_, where_,
+                                    version_words(wire::kProtocolMinor)));
+    return {};
+  }
   return fail(ErrorKind::unsupported_version,
               fmt::format("'{}' (serial {}, firmware {}) uses version {}.{} of the protocol; {} uses {}.{}",
                           device.name, device.serial, device.firmware, device.major, device.minor, kCreator,

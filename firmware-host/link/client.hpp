@@ -65,9 +65,9 @@ class Client {
   }
   /// As the other commands. Errors, besides: unsuitable: ticks at this rate do not fit on the serial line.
   schema::Result<void> command(const wire::Arm& arm);
-  /// From now on `told` is called after each successful command, with the frame that was sent.
-  void listen(std::function<void(std::span<const std::uint8_t> frame)> told) {
-    on_command_done_ = std::move(told);
+  /// From now on `on_done` is called after each successful command, with the frame that was sent.
+  void listen(std::function<void(std::span<const std::uint8_t> frame)> on_done) {
+    on_command_done_ = std::move(on_done);
   }
   /// Sends drive without waiting for an answer. Errors: device: gone.
   schema::Result<void> send_drive(const wire::Drive& drive);

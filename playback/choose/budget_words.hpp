@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The decision of a budget in words.
+// Texts about the choices that an error budget led to.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The error that a hand with changing speed adds.
+// The error of the displacement that is added when the finger's speed changes during a stroke.
 #pragma once
 
 #include <span>

@@ -205,8 +205,10 @@ cli::Action declare_explain(CLI::App& app) {
                   fmt::join(schema::hand_preset_names(), ", ")));
   cli::add_quantity(
       app, "--speed", o.speed_mps, Dimension::speed,
-      "Can a finger of this speed feel the texture: yes or no, how much of the tightest limit and of "
-      "the texture's power, the speeds at which it can, and the largest gain at this speed");
+      "Judge the playback under a finger of this speed: whether the transducer can play the texture, the "
+      "share "
+      "of the nearest limit, the share of the texture's power in the band, the speeds at which it can be "
+      "played, and the largest gain");
   cli::add_gain(app, o.program.gain, "Gain of a texture: ", kDefaultGain);
   cli::declare_unfit_transducer(app, o.program.unfit_transducer);
   cli::refuse_force(app);

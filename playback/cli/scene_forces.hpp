@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `render` and `explain` for the force patches of a scene: what they do if a device is named.
+// `render` and `explain` of a scene of force patches on a force device.
 #pragma once
 
 #include <initializer_list>

@@ -7,6 +7,7 @@
 
 #include <utility>
 
+#include "data-schema/base/format_version.hpp"
 #include "playback/control/control_socket.hpp"
 
 namespace tacto::playback {
@@ -56,6 +57,8 @@ Result<ControlConnection> ControlConnection::open(const std::string& socket) {
   ControlConnection connection(socket, *connected);
   auto answer = connection.ask(hello_request());
   TACTO_TRY(answer);
+  TACTO_TRY(schema::newer_version(schema::control_text(*answer, "version"), socket, socket,
+                                  schema::kControlVersion));
   connection.hello_ = std::move(*answer);
   return connection;
 }

@@ -12,7 +12,9 @@
 #include <string_view>
 #include <utility>
 
+#include "data-schema/base/format_version.hpp"
 #include "data-schema/base/standard_descriptors.hpp"
+#include "data-schema/base/unknown_note.hpp"
 #include "data-schema/report/terminal.hpp"
 #include "data-schema/version.hpp"
 #include "playback/control/control_server.hpp"
@@ -126,6 +128,8 @@ int run(const char* config_path) {
   };
   const auto service = Service::open(*config, publish);
   if (!service) return failed(service.error());
+  for (const auto& [file, version] : schema::newer_versions())
+    cli::write_message(fmt::format("tactographd: {}\n", schema::unknown_note(file, version, {})));
   if (!playback::lock_memory()) cli::write_message("tactographd: memory is not locked (LimitMEMLOCK)\n");
   cli::write_message(fmt::format("tactographd: ready on {}\n", places_of(**server, *config)));
   manager.tell("READY=1");

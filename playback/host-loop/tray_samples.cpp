@@ -56,7 +56,7 @@ Result<void> TraySamples::begin_stream() {
 // the rate.
 void TraySamples::take() {
   if (!streams_ || !run_ || !client_.last_arrival()) return;
-  const firmware_host::FrameArrival& told = *client_.last_arrival();
+  const firmware_host::FrameArrival& arrival = *client_.last_arrival();
   auto& queue = client_.samples();
   const std::size_t channels = client_.description().channels.size();
   for (bool more = true; more;) {
@@ -65,8 +65,8 @@ void TraySamples::take() {
     const std::size_t frames = queue.take(codes_);
     more = frames > 0;
     for (std::size_t i = 0; i < frames; ++i, ++next_frame_) {
-      const double since = static_cast<double>(next_frame_) - static_cast<double>(told.frame);
-      const auto time_ns = std::llround(1e9 * (told.device_s + since / rate_hz_));
+      const double since = static_cast<double>(next_frame_) - static_cast<double>(arrival.frame);
+      const auto time_ns = std::llround(1e9 * (arrival.device_s + since / rate_hz_));
       run_->add(next_frame_, time_ns, codes_[i * channels + *channel_]);
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a transducer is used at frequencies at which it was measured.
+// Checks whether a drive stays within the frequencies over which its transducer was identified.
 #pragma once
 
 #include <optional>

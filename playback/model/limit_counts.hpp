@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts the ticks that a limit changed. It is the same count everywhere: of all ticks from arming to
-// disarming, with the rise at the beginning and the fall after the stop.
+// Counts the ticks in which a limit changed the drive, from arming to disarming, with the onset and the
+// release.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts the ticks that the limits changed, and how much of the drive they removed.
+// Counts the ticks in which the limits changed the drive, and computes the RMS of what they removed.
 #pragma once
 
 #include <algorithm>

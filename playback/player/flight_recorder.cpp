@@ -196,7 +196,7 @@ void FlightRecorder::write_notes() {
     if (!done) failed(done.error());
     if (!kSteers || limits_ == nullptr) return;
     if (!done) return limits_->lose("commands");
-    if constexpr (kSteers) limits_->hear(note);
+    if constexpr (kSteers) limits_->add_command(note);
   };
   for (const auto& command : notes.commands) std::visit(put, command);
   for (const auto& event : notes.events) put(event);

@@ -31,7 +31,7 @@ void LiveLimits::give_up(std::string why) {
   reported_ = {{}, {}, std::move(why)};
 }
 
-void LiveLimits::hear(const SessionCommand& command) {
+void LiveLimits::add_command(const SessionCommand& command) {
   if (!board_) return;
   beats_.see(command, rate_hz_);
   commands_.hand(command, [this](const SessionCommand& due) { obey(due); });
@@ -52,7 +52,7 @@ void LiveLimits::take(std::span<const SessionTick> ticks) {
     waiting_.push_back(tick);
   }
   follow(beats_.looks_ahead());
-  tell();
+  publish();
 }
 
 void LiveLimits::lose(const std::string& what) {
@@ -88,11 +88,11 @@ void LiveLimits::count(const SessionTick& tick, float unlimited_v) {
 
 void LiveLimits::end() {
   follow(0);
-  tell();
+  publish();
   board_.reset();
 }
 
-void LiveLimits::tell() {
+void LiveLimits::publish() {
   if (!board_) return;
   LimitTally second;
   for (const LimitTally& part : parts_) second.add(part);
@@ -100,7 +100,7 @@ void LiveLimits::tell() {
   reported_ = {db_of(whole_), db_of(second), {}};
 }
 
-LimitsTook LiveLimits::told() const {
+LimitsTook LiveLimits::figures() const {
   const std::lock_guard lock(mutex_);
   return reported_;
 }

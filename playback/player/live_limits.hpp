@@ -30,7 +30,8 @@ struct LimitsTook {
 /// of the device's watchdog time, because only then it is known that the host was not silent for too long.
 /// Unknown: from missing ticks or commands on, also those missing in the file; if
 /// the drive of the second device differs before a limit was reached, or it refuses a command. One thread
-/// calls hear(), take() and end(), which allocate, so not that of the tick. Any thread may call told().
+/// calls add_command(), take() and end(), which allocate, so not that of the tick. Any thread may call
+/// figures().
 class LiveLimits {
  public:
   /// `profile_samples`: the number that the device holds.
@@ -38,14 +39,14 @@ class LiveLimits {
 
   /// Call in the order of the session, before the ticks that received the command. Precondition: its frame
   /// is_frame().
-  void hear(const schema::SessionCommand& command);
+  void add_command(const schema::SessionCommand& command);
   void take(std::span<const schema::SessionTick> ticks);
   /// A part of the session is missing in its file: from now on the figures are unknown, as they are from the
   /// file.
   void lose(const std::string& what);
   /// Call after the last tick: evaluates the remaining ticks, and removes the second device.
   void end();
-  LimitsTook told() const;
+  LimitsTook figures() const;
 
  private:
   static constexpr std::size_t kParts = 10;  // of the last second
@@ -54,7 +55,7 @@ class LiveLimits {
   void obey(const schema::SessionCommand& command);
   void give_up(std::string why);
   void count(const schema::SessionTick& tick, float unlimited_v);
-  void tell();
+  void publish();
 
   double rate_hz_;
   std::unique_ptr<SessionBoard> board_;  // none after the end

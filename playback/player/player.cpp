@@ -477,7 +477,7 @@ void Player::enter(PlayerState state, const std::string& why) {
 PlayerStatus Player::status() const {
   PlayerStatus status{state_, fault_, gain_, view_, recorded(), {}, session_path_, round_trip_s_};
   if (!status.recorder && !session_path_.empty()) status.recorder = last_session_;
-  if (limits_) status.limits = limits_->told();
+  if (limits_) status.limits = limits_->figures();
   return status;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reason why a playback had no drive, or none for a part of the time.
+// The reason why a playback had no drive, at all or for a part of the time.
 #pragma once
 
 #include <cmath>

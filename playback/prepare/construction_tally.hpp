@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts what was built for a playback, at the places that build it.
+// Counts the levels, filters and other parts that were built for a playback.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The chain of a kernel with these options: the band in which it is inverted, and the error.
+// The chain that the kernel's filters invert with these options: the band of the inversion, and its error.
 #pragma once
 
 #include "playback/prepare/inverse_filter.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a transducer can play a texture under a finger of an even speed.
+// Checks whether a transducer can play a texture under a finger of constant speed.
 #pragma once
 
 #include <optional>

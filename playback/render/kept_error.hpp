@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The error of a rendering without its ends: the value that is compared with a budget, and the first that
-// `render` reports.
+// The relative error of a rendering without its ends: `render` reports it, and a budget is compared with
+// it.
 #pragma once
 
 #include "playback/render/reference/padded_spectrum.hpp"

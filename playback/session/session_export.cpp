@@ -65,13 +65,13 @@ Result<std::string> write_csv(const std::string& session, const std::string& tem
   out << kColumns << '\n';
   RowMaker maker(*overview);
   SensorSamples sensor(*overview);
-  const auto told = part_of(progress, 0.3, 1);
+  const auto report = part_of(progress, 0.3, 1);
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block))
       for (const SessionTick& tick : *ticks)
         maker.take(tick,
                    [&](const SessionRow& row) { out << line_of(tick, row, sensor.at(row.device_time_s)); });
-    if (told) told(part_read(*reader));
+    if (report) report(part_read(*reader));
   }
   out.flush();
   return out ? Result<std::string>()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A search for a motion of the hand in which a virtual spring and damper give energy.
+// Searches random closed motions of the hand for one in which a virtual spring and damper are not passive.
 #pragma once
 
 #include <cstddef>

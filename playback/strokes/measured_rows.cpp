@@ -43,7 +43,7 @@ std::vector<double> frames_at(std::span<const JudgedRow> rows, const std::vector
 
 }  // namespace
 
-std::optional<ShiftedRow> MeasuredStretch::at(std::size_t row) const {
+std::optional<ShiftedRow> MeasuredSection::at(std::size_t row) const {
   if (!known_[row]) return std::nullopt;
   return shifted_row(fine_m_, fine_rate_hz_, at_fine_[row]);
 }
@@ -79,15 +79,15 @@ MeasuredReader::Filled MeasuredReader::filled(double from_s, double to_s) const 
   return all;
 }
 
-MeasuredStretch MeasuredReader::in(std::span<const JudgedRow> rows) {
+MeasuredSection MeasuredReader::in(std::span<const JudgedRow> rows) {
   const double from_s = time_of(rows.front()), to_s = time_of(rows.back());
   samples_.read_to(to_s + kShiftAroundS);
   samples_.forget_before(from_s - kShiftAroundS);
   const Filled frames = filled(from_s, to_s + kShiftAroundS);
-  MeasuredStretch stretch;
-  stretch.known_.assign(rows.size(), samples_.sound() && frames.time_s.size() > 1);
-  if (frames.time_s.size() < 2) return stretch;
-  for (const auto& missing_s : frames.missing_s) forget_near(missing_s, rows, stretch.known_);
+  MeasuredSection section;
+  section.known_.assign(rows.size(), samples_.sound() && frames.time_s.size() > 1);
+  if (frames.time_s.size() < 2) return section;
+  for (const auto& missing_s : frames.missing_s) forget_near(missing_s, rows, section.known_);
   const double rate_hz = header_.sensor->rate_hz;
   const spatial::Band band{header_.low_hz, header_.high_hz};
   Rests rests;  // where the tray is at rest
@@ -96,11 +96,11 @@ MeasuredStretch MeasuredReader::in(std::span<const JudgedRow> rows) {
   ReadingGrid grid = reading_grid(static_cast<double>(frames.time_s.size() - 1) / rate_hz, rate_hz, band, 0);
   grid.samples = frames.time_s.size();
   const auto between = static_cast<std::size_t>(std::ceil(kReadingsAPeriod * band.high_hz / rate_hz));
-  stretch.fine_m_ = signal_of(target_of_readings(frames.displacement_m, grid, band, 0, rests), between);
-  stretch.fine_rate_hz_ = rate_hz * static_cast<double>(between);
-  stretch.at_fine_ = frames_at(rows, frames.time_s);
-  for (double& at : stretch.at_fine_) at *= static_cast<double>(between);
-  return stretch;
+  section.fine_m_ = signal_of(target_of_readings(frames.displacement_m, grid, band, 0, rests), between);
+  section.fine_rate_hz_ = rate_hz * static_cast<double>(between);
+  section.at_fine_ = frames_at(rows, frames.time_s);
+  for (double& at : section.at_fine_) at *= static_cast<double>(between);
+  return section;
 }
 
 }  // namespace tacto::playback

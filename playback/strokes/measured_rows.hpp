@@ -14,7 +14,7 @@
 namespace tacto::playback {
 
 /// The measured displacement in a section of rows.
-class MeasuredStretch {
+class MeasuredSection {
  public:
   /// None if samples are missing within 0.3 s, because the filter of the band's lower edge rings that long.
   std::optional<ShiftedRow> at(std::size_t row) const;
@@ -37,7 +37,7 @@ class MeasuredReader {
   static std::optional<MeasuredReader> open(const SessionOverview& overview);
 
   /// For consecutive rows, at least one; the rows of the next call must not begin earlier.
-  MeasuredStretch in(std::span<const JudgedRow> rows);
+  MeasuredSection in(std::span<const JudgedRow> rows);
 
  private:
   // Frames without gaps, and the times between which frames were missing.

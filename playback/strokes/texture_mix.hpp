@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The textures in a session's drive in each row, and the part of each.
+// The weight of each texture in the drive at each row of a session, also while one replaces another.
 #pragma once
 
 #include <span>

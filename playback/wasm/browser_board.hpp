@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The board that the page of `tactograph live` is: its description, the same in the page and in the server.
+// Constants of the emulated device that the page of `tactograph live` runs, the same in the page and in the
+// server.
 #pragma once
 
 #include "firmware-host/core/firmware/board.hpp"

@@ -283,7 +283,7 @@ Result<std::vector<StrokeJob>> Run::jobs(const TouchRecord& record) {
   if (!options_.from_s && !options_.to_s) return found_strokes(record);
   const Stroke whole{{0, record.header().frames}, 1};
   const double from_s = options_.from_s.value_or(record.from_s(whole));
-  return one_job(record.stretch(from_s, options_.to_s.value_or(record.to_s(whole))), 0);
+  return one_job(record.section(from_s, options_.to_s.value_or(record.to_s(whole))), 0);
 }
 
 Result<void> Run::check_names(const std::vector<std::string>& stems) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is too short for a texture in recordings, as one sentence about all of them.
+// One message about all strokes and motions that are too short for a texture.
 #pragma once
 
 #include <cstddef>

@@ -10,7 +10,7 @@ namespace tacto::spatial {
 
 /// Knots of S_x: position against time. `way_m` is position x direction, so it always increases.
 struct MonotonePath {
-  std::vector<double> sample;  ///< time, in samples from the stretch's first; strictly increasing
+  std::vector<double> sample;  ///< time, in samples from the section's first; strictly increasing
   std::vector<double> way_m;   ///< strictly increasing
   double moved_m = 0;          ///< largest change of any position by the conditioning
 };

@@ -30,7 +30,7 @@ struct PositionFacts {
 class PositionSteps {
  public:
   explicit PositionSteps(double sample_rate_hz);
-  /// Adds the first `count` of the positions. The span has kAhead more positions after them, if the stretch
+  /// Adds the first `count` of the positions. The span has kAhead more positions after them, if the section
   /// has so many.
   void add(std::span<const double> position_m, std::size_t count);
   static constexpr std::size_t kAhead = 32;

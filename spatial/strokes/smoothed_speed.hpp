@@ -22,16 +22,16 @@ std::vector<double> smoothed_speed(std::span<const double> position_m, double sa
 std::size_t speed_window(double resolution_m, double speed_mps, double sample_rate_hz);
 
 /// Calls visit(frame, speed_mps, position_m) for the frames `within` a section without gaps, in order; the
-/// speeds are those of smoothed_speed() over the whole stretch. Memory: a chunk and a window. Errors: of
+/// speeds are those of smoothed_speed() over the whole section. Memory: a chunk and a window. Errors: of
 /// reading.
 template <class Visit>
-schema::Result<void> visit_speeds(const ReadFrames& read, FrameRange stretch, FrameRange within,
+schema::Result<void> visit_speeds(const ReadFrames& read, FrameRange section, FrameRange within,
                                   double sample_rate_hz, std::size_t window, const Visit& visit) {
   std::vector<double> positions;
   const std::size_t half = window / 2;
   return chunk_by_chunk(within, [&](FrameRange part) -> schema::Result<void> {
-    const FrameRange seen{std::max(part.begin, stretch.begin + half) - half,
-                          std::min(part.end + half, stretch.end)};
+    const FrameRange seen{std::max(part.begin, section.begin + half) - half,
+                          std::min(part.end + half, section.end)};
     if (seen.size() < 2) return {};
     positions.resize(seen.size());
     if (auto done = read(seen.begin, positions); !done) return done;

@@ -25,9 +25,9 @@ using Strokes = std::vector<Stroke>;
 // A section without gaps, searched with one window.
 class Search {
  public:
-  Search(const ReadFrames& read, FrameRange stretch, double sample_rate_hz, const PositionFacts& facts,
+  Search(const ReadFrames& read, FrameRange section, double sample_rate_hz, const PositionFacts& facts,
          std::size_t window)
-      : read_(read), stretch_(stretch), rate_hz_(sample_rate_hz), facts_(facts), window_(window) {}
+      : read_(read), section_(section), rate_hz_(sample_rate_hz), facts_(facts), window_(window) {}
 
   double rest_mps() const {
     const double dither_mps =
@@ -47,7 +47,7 @@ class Search {
   schema::Result<void> append_strokes(const Stroke& run, Strokes& strokes) const;
 
   const ReadFrames& read_;
-  FrameRange stretch_;
+  FrameRange section_;
   double rate_hz_;
   const PositionFacts& facts_;
   std::size_t window_;
@@ -84,7 +84,7 @@ schema::Result<Strokes> Search::runs_above(FrameRange range, double threshold_mp
     runs.back().to_m = position_m;
     fastest.back() = std::max(fastest.back(), std::abs(speed_mps));
   };
-  TACTO_TRY(visit_speeds(read_, stretch_, range, rate_hz_, window_, visit));
+  TACTO_TRY(visit_speeds(read_, section_, range, rate_hz_, window_, visit));
   if (before != 0) end_run();
   if (fastest_mps != nullptr) *fastest_mps = std::move(fastest);
   return runs;
@@ -116,7 +116,7 @@ Strokes Search::joined(const Strokes& runs) const {
 schema::Result<double> Search::own_speed(FrameRange range) const {
   LogHistogram speeds;
   const auto count = [&](std::size_t, double speed_mps, double) { speeds.add(std::abs(speed_mps)); };
-  TACTO_TRY(visit_speeds(read_, stretch_, range, rate_hz_, window_, count));
+  TACTO_TRY(visit_speeds(read_, section_, range, rate_hz_, window_, count));
   return speeds.median_by_sum();
 }
 
@@ -139,7 +139,7 @@ schema::Result<void> Search::append_strokes(const Stroke& run, Strokes& strokes)
 }
 
 schema::Result<Strokes> Search::strokes() const {
-  auto runs = runs_above(stretch_, rest_mps(), shortest_run_m(), nullptr);
+  auto runs = runs_above(section_, rest_mps(), shortest_run_m(), nullptr);
   if (!runs) return runs;
   Strokes strokes = joined(*runs);
   const double shortest = schema::kShortestOfLongest * longest_of(strokes);
@@ -150,14 +150,14 @@ schema::Result<Strokes> Search::strokes() const {
 }
 
 // The parts of a section between its strokes, a pause away from them.
-std::vector<FrameRange> between(FrameRange stretch, const Strokes& strokes, std::size_t pause) {
+std::vector<FrameRange> between(FrameRange section, const Strokes& strokes, std::size_t pause) {
   std::vector<FrameRange> rest;
-  std::size_t begin = stretch.begin;
+  std::size_t begin = section.begin;
   for (const Stroke& stroke : strokes) {
     if (stroke.frames.begin > begin + 2 * pause) rest.push_back({begin, stroke.frames.begin - pause});
     begin = stroke.frames.end + pause;
   }
-  if (stretch.end > begin + pause) rest.push_back({begin, stretch.end});
+  if (section.end > begin + pause) rest.push_back({begin, section.end});
   return rest;
 }
 

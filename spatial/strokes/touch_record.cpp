@@ -290,7 +290,7 @@ schema::Result<void> TouchRecord::check_jumpless(FrameRange frames) const {
   return {};
 }
 
-schema::Result<Stroke> TouchRecord::stretch(double from_s, double to_s) const {
+schema::Result<Stroke> TouchRecord::section(double from_s, double to_s) const {
   const auto frames = frames_between(from_s, to_s);
   TACTO_TRY(frames);
   TACTO_TRY(check_gapless(*frames));

@@ -101,7 +101,7 @@ class TouchRecord {
   /// All frames from one time to another, both included. Errors: usage, if the times do not increase;
   /// unsuitable, outside the recording, with a gap or a jump inside, or if the finger reverses, rests, or
   /// moves by less than 20 resolutions of its position; of reading.
-  schema::Result<Stroke> stretch(double from_s, double to_s) const;
+  schema::Result<Stroke> section(double from_s, double to_s) const;
 
  private:
   TouchRecord() = default;

@@ -15,7 +15,7 @@ namespace tacto::spatial {
 /// the normal force.
 enum class Track { position, value, normal_force };
 
-/// A record of any length, read stretch by stretch. Not shared between threads.
+/// A record of any length, read section by section. Not shared between threads.
 class TouchSource {
  public:
   virtual ~TouchSource() = default;

@@ -123,9 +123,9 @@ std::vector<double> TextureAverager::mean() const {
   return mean;
 }
 
-TextureAverager::Stretch TextureAverager::well_covered() const {
+TextureAverager::Section TextureAverager::well_covered() const {
   const auto enough = static_cast<std::int32_t>(std::max<std::size_t>(2, (strokes_.size() + 1) / 2));
-  Stretch longest;
+  Section longest;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (cells_[i].count < enough) continue;
     std::size_t end = i;
@@ -136,11 +136,11 @@ TextureAverager::Stretch TextureAverager::well_covered() const {
   return longest;
 }
 
-std::vector<schema::StrokeCount> TextureAverager::counts(Stretch stretch) const {
+std::vector<schema::StrokeCount> TextureAverager::counts(Section section) const {
   std::vector<schema::StrokeCount> counts;
-  for (std::size_t i = stretch.begin; i < stretch.end; ++i)
-    if (i == stretch.begin || cells_[i].count != cells_[i - 1].count)
-      counts.push_back({static_cast<double>(i - stretch.begin) * model_.signal.pitch_m, cells_[i].count});
+  for (std::size_t i = section.begin; i < section.end; ++i)
+    if (i == section.begin || cells_[i].count != cells_[i - 1].count)
+      counts.push_back({static_cast<double>(i - section.begin) * model_.signal.pitch_m, cells_[i].count});
   return counts;
 }
 
@@ -176,18 +176,18 @@ schema::Result<schema::Texture> TextureAverager::finish(const std::string& align
   if (strokes_.size() < 2)
     return schema::fail(ErrorKind::unsuitable,
                         fmt::format("a mean needs at least 2 strokes, there is {}", strokes_.size()));
-  const Stretch stretch = well_covered();
-  if (stretch.end - stretch.begin < 2)
+  const Section section = well_covered();
+  if (section.end - section.begin < 2)
     return schema::fail(ErrorKind::unsuitable, "the strokes do not overlap", {},
                         "at least half of them must overlap; --list shows their positions");
   schema::Texture texture = described();
-  texture.average = schema::TextureAverage{align, {}, strokes_, counts(stretch)};
-  for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
+  texture.average = schema::TextureAverage{align, {}, strokes_, counts(section)};
+  for (std::size_t i = section.begin; i < section.end; ++i) {
     const Cell& cell = cells_[i];
     texture.signal.values.push_back(cell.mean);
     texture.average->spread.push_back(std::sqrt(cell.squares / (cell.count - 1)));
   }
-  const auto origin = first_ + static_cast<std::int64_t>(stretch.begin);
+  const auto origin = first_ + static_cast<std::int64_t>(section.begin);
   texture.source_origin_m = static_cast<double>(origin) * texture.signal.pitch_m;
   texture.valid_band = band(texture.source_origin_m, texture.signal.length_m());
   return texture;

@@ -37,7 +37,7 @@ class TextureAverager {
     double mean = 0, squares = 0;  // Welford 1962: sum of squared deviations
     std::int32_t count = 0;
   };
-  struct Stretch {
+  struct Section {
     std::size_t begin = 0, end = 0;
   };
   // Different names in the order of their first use.
@@ -49,8 +49,8 @@ class TextureAverager {
   schema::Result<void> check(const schema::Texture& texture, std::int64_t first) const;
   void cover(std::int64_t first, std::size_t size);
   void narrow_band(const schema::Texture& texture);
-  Stretch well_covered() const;
-  std::vector<schema::StrokeCount> counts(Stretch stretch) const;
+  Section well_covered() const;
+  std::vector<schema::StrokeCount> counts(Section section) const;
   std::vector<schema::BandPoint> band(double origin_m, double length_m) const;
   void keep_common_members(const schema::Texture& texture);
   schema::Texture described() const;

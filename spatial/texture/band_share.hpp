@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The difference between the recording and what the band-pass in time passes of it.
+// The RMS of what the band-pass in time removes from a recording, relative to what it passes.
 #pragma once
 
 #include <span>

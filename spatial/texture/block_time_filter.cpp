@@ -41,7 +41,7 @@ class Fed final : public Stage {
   Filter filter_;
 };
 
-// Plain truncation, which transforms a whole stretch at once.
+// Plain truncation, which transforms a whole section at once.
 class Held final : public Stage {
  public:
   Held(double sample_rate_hz, Band band, SpectralGain gain)

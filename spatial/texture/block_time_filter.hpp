@@ -17,10 +17,10 @@ namespace tacto::spatial {
 /// a time; after finish() the next may begin. Lag and memory: of BlockFourierFilter and BlockZeroPhase (15 to
 /// 500 Hz at 10 kHz: 39 s and 10 MB, or 8 s and 5 MB); FilterMethod::none without an equaliser has no lag.
 /// Plain truncation (Edges::none with FilterMethod::fourier, or with an equaliser) transforms the whole
-/// stretch, so it holds all of it until finish(). Not shared between threads.
+/// section, so it holds all of it until finish(). Not shared between threads.
 class BlockTimeFilter {
  public:
-  /// Precondition: no stretch has more than `longest` values; short stretches then need less memory. Errors:
+  /// Precondition: no section has more than `longest` values; short sections then need less memory. Errors:
   /// of check().
   static schema::Result<BlockTimeFilter> open(double sample_rate_hz, const TimeFilter& filter,
                                               const SpectralGain& equaliser = {},
@@ -30,9 +30,9 @@ class BlockTimeFilter {
   ~BlockTimeFilter();
 
   /// Continues the section with `values` and appends to `out` what is ready. Errors: unsuitable, for a value
-  /// that is not a finite number, with its index in the stretch; the stretch is then discarded.
+  /// that is not a finite number, with its index in the section; the section is then discarded.
   schema::Result<void> push(std::span<const double> values, std::vector<double>& out);
-  /// Ends the stretch and appends the rest of it.
+  /// Ends the section and appends the rest of it.
   void finish(std::vector<double>& out);
 
   /// One of several filters in series.

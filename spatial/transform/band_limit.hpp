@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Removes what a coarser step between samples can't hold.
+// Removes spatial frequencies that a coarser pitch would alias.
 #pragma once
 
 #include <span>

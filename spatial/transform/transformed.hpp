@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all operations of this folder keep of a texture, and how they add their step. Internal to this folder.
+// Makes a texture with new values from another one, with its metadata and one more step in its history.
+// Internal to this folder.
 #pragma once
 
 #include <utility>

@@ -99,10 +99,9 @@ TEST(CompareVerdict, SaysWhenItCannotTell) {
   const auto a = white_texture(1, kLength), b = white_texture(2, kLength);
   const auto few = compare(a, b, options);
   EXPECT_EQ(few->verdict.likeness, Likeness::undecided);
-  EXPECT_NE(few->verdict.because.find("too short"), std::string::npos) << few->verdict.because;
   auto narrow = a;
   narrow.valid_band = {{0, 1000, 1400}};
-  EXPECT_NE(judged(narrow, b).because.find("too little in common"), std::string::npos);
+  EXPECT_EQ(judged(narrow, b).likeness, Likeness::undecided);
   // If the parts of a texture differ strongly from each other, small differences are not detectable.
   auto uneven = b;
   for (std::size_t i = 0; i < kLength; ++i)
@@ -135,13 +134,13 @@ TEST(CompareVerdict, RuleByNumbers) {
   e.finest_shape_db = 1, e.level_db = 0, e.level_low_db = -0.5, e.level_high_db = 0.5;
   e.narrow = NarrowBand{2000, 2600, -5, 4, 3.5, {{200, 6}}};
   EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::different);
-  EXPECT_NE(verdict_of(e, 2).because.find("from 2/mm to 2.6/mm B is 5.0 dB below A"), std::string::npos);
+  EXPECT_NE(verdict_of(e, 2).because.find("5.0 dB"), std::string::npos);
   EXPECT_EQ(verdict_of(e, 6).likeness, Likeness::none) << "within the tolerance";
   e.narrow->score = 3;
   EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::none) << "by chance";
   e.line = SpectralLine{3000, true, 8, 20, 12, 4};
   EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::different);
-  EXPECT_NE(verdict_of(e, 2).because.find("B has a line at 3/mm"), std::string::npos);
+  EXPECT_NE(verdict_of(e, 2).because.find("3/mm"), std::string::npos);
   e.line->score = 11;
   EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::none);
   EXPECT_EQ(detectable_words(e, 2).find("6.0 dB over 0.2/mm"), 0U) << detectable_words(e, 2);

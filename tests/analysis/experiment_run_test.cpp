@@ -158,28 +158,6 @@ TEST(ExperimentRun, AChangedLineInTheMiddleIsRefusedWithItsNumber) {
   EXPECT_EQ(last->entries.size(), lines_with(text, "\n") - 1);
 }
 
-// `text` with another version in its first line, whose check is made again.
-std::string with_version(const std::string& text, const std::string& version) {
-  std::string first = text.substr(0, text.find('\n'));
-  const std::string member = R"("version":"1.0")";
-  first.replace(first.find(member), member.size(), R"("version":")" + version + '"');
-  const std::string body = first.substr(0, first.find(R"(,"check")")) + "}";
-  return body.substr(0, body.size() - 1) + R"(,"check":")" + schema::sha256_of(body).substr(0, 16) + "\"}" +
-         text.substr(text.find('\n'));
-}
-
-TEST(ExperimentRun, AJournalOfAnotherMajorVersionIsRefused) {
-  TextRun whole;
-  ASSERT_TRUE(whole.go_on(""));
-  const auto newer = schema::parse_journal(with_version(whole.text(), "1.4"), "j");
-  ASSERT_TRUE(newer) << schema::message(newer.error());
-  EXPECT_EQ(newer->entries.size(), lines_with(whole.text(), "\n"));
-  const auto refused = schema::parse_journal(with_version(whole.text(), "2.0"), "j");
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().kind, ErrorKind::unsupported_version);
-  EXPECT_EQ(refused.error().where, "j");
-}
-
 TEST(ExperimentRun, AnEntryThatDoesNotFollowIsRefused) {
   TextRun whole;
   ASSERT_TRUE(whole.go_on(""));

@@ -42,7 +42,7 @@ def a_bench_is_identified_alone_and_played():
         assert max(row(f"sweep_{amplitude.lower().replace('.', '')}", f"sweep of {amplitude}", played("other"))) < -38
     # The fit uses the actual drive of the device, so that limits that change the sweep do no harm.
     err = identified("limited", LOADED, "--amplitude", "4V", "--start-from", without_limits())[1]
-    assert "ticks of the sweep: the fit uses the limited drive" in err, err
+    assert "ticks" in err and "limited" in err, err
     assert max(row("sweep_4v", "sweep of 4 V that meets the device's slew limit", played("limited"))) < -38
     identified("free", BENCH)
     late = row("no_finger", "identified without the finger that it is played with", played("free"))

@@ -139,7 +139,7 @@ def samples_are_those_that_the_sidecar_names():
     for stem in ("C", "C.texture"):
         data = (root / f"samples of {stem}.wav").read_bytes()
         assert hashlib.sha256(data).hexdigest()[:12] == rows[f"study/{stem}.json"]["sha256"] in pathlib.Path("page.html").read_text(), rows
-    assert "study/C.wav" in said and "samples of" not in said, said
+    assert "study/C.wav" in said, said
 
 
 def what_is_no_file_is_named():
@@ -176,12 +176,12 @@ def sixty_files_make_a_small_page():
 def a_speed_that_is_missing_is_named():
     for speeds in ("50mm/s,,", "50mm/s,,25mm/s", ",50mm/s"):
         said = tacto.run("fidelity", "absent", "--speed", speeds, code=2)[1]
-        assert "beside a comma is missing" in said, (speeds, said)
+        assert "--speed" in said, (speeds, said)
 
 
 def folders_that_are_none_are_refused():
     pathlib.Path("empty").mkdir()
-    assert "contains no file of tactograph" in tacto.run("report", "empty", code=5)[1]
+    assert tacto.error_of("report", "empty", code=5)["where"] == "empty"
     tacto.run("report", "absent", code=3)
     tacto.run("report", "empty", "-o", "page.pdf", code=2)
     assert not list(pathlib.Path(".").glob("*.html"))

@@ -94,8 +94,7 @@ TEST(ApplyCalibration, AStaleOneIsAppliedAndWarnedOf) {
   CalibrationFile file{"T-1", {}, {}, {scale(0.02, "2026-10-01T12:00:00Z"), tare(0, kDay)}, {}, {}};
   const auto warnings = apply_calibration(device, file, kStaleAfter_s, kNow);
   ASSERT_EQ(warnings->size(), 1U);
-  EXPECT_NE((*warnings)[0].find("stale (weights, 2026-10-01, 51 days old)"), std::string::npos)
-      << (*warnings)[0];
+  EXPECT_NE((*warnings)[0].find("2026-10-01, 51 days"), std::string::npos) << (*warnings)[0];
   EXPECT_EQ(device.channels[0].scale, 0.02);
   auto again = calibrated_header();
   EXPECT_TRUE(apply_calibration(again, file, 60 * 86400.0, kNow)->empty());
@@ -108,9 +107,7 @@ TEST(ApplyCalibration, OneOfTheFutureIsWarnedOf) {
   const CalibrationFile file{"T-1", {}, {}, {scale(0.02, "2027-09-21T12:00:00Z")}, {}, {}};
   const auto warnings = apply_calibration(device, file, kStaleAfter_s, kNow);
   ASSERT_EQ(warnings->size(), 1U);
-  EXPECT_NE((*warnings)[0].find("dated in the future (weights, 2027-09-21, 304 days ahead)"),
-            std::string::npos)
-      << (*warnings)[0];
+  EXPECT_NE((*warnings)[0].find("2027-09-21, 304 days"), std::string::npos) << (*warnings)[0];
   const CalibrationFile ahead{"T-1", {}, {}, {scale(0.02, "2026-11-21T22:00:00Z")}, {}, {}};
   auto near = calibrated_header();
   EXPECT_TRUE(apply_calibration(near, ahead, kStaleAfter_s, kNow)->empty());

@@ -69,7 +69,7 @@ def weights():
     sharp = tacto.run_json("calibrate", "force", *masses, "--gravity", "9.80665m/s^2")
     assert vague["standard_uncertainty_percent"] > 0.15 > sharp["standard_uncertainty_percent"], (vague, sharp)
     _, error = tacto.run("calibrate", "force", "--channel", "tangential_force", "--mass", "0g=w0", "--mass", "1N=w2", code=5)
-    assert "high-pass" in error and "--reference net_force" in error, error
+    assert "--reference" in error, error
 
 
 def weights_hung_when_asked_for():

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/capture/read_text.hpp"
+#include "tests/faults.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -91,12 +92,12 @@ TEST(CsvErrors, AHeaderWhoseRowsAreAllCommentsHasNoRow) {
   ASSERT_TRUE(layout);
   CsvReader reader(*layout, {0}, "t.csv");
   ASSERT_TRUE(reader.feed("# a\n"));
-  EXPECT_EQ(reader.finish().error().what, "contains no row of numbers");
+  EXPECT_TRUE(tests::fails(reader.finish(), schema::ErrorKind::malformed, "t.csv"));
 }
 
 TEST(CsvErrors, ALongFirstLineIsNoTable) {
   const auto layout = find_csv_layout("1,2,3", false, "t.csv");
-  EXPECT_EQ(layout.error().what, "has no data in its first 5 bytes");
+  EXPECT_TRUE(tests::fails(layout, schema::ErrorKind::malformed, "t.csv"));
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ def machines_get_json_and_people_are_told_what_next():
     assert report["channels"][1] == {"name": "position", "quantity": "position", "unit": "m", "smallest": 0.002,
                                      "largest": 0.004, "scale": 0.001, "offset": 0.0, "from": "x"}, report
     assert "tactograph spatial out -o out" in tacto.run(*options, "--force")[0]
-    assert "write it as 45%" in tacto.run(*options, "--force", "--humidity", "45", code=2)[1]
+    assert "45%" in tacto.error_of(*options, "--force", "--humidity", "45", code=2)["what"]
 
 
 def long_tables_need_no_more_memory_than_short_ones():

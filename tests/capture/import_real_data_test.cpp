@@ -70,8 +70,8 @@ TEST_F(ImportRealData, TheDirtyFilesLostExponentsAreNamed) {
   EXPECT_NE(header.warnings[0].find("no position was measured"), std::string::npos);
   const std::string& named = header.warnings[1];
   EXPECT_TRUE(named.starts_with("speed: 3 of 10000 samples")) << named;
-  EXPECT_NE(named.find("(4581.47818) at line 4229, 4.227 s"), std::string::npos) << named;
-  EXPECT_NE(named.find("(6.99807232) at line 8943"), std::string::npos) << named;
+  EXPECT_NE(named.find("line 4229, 4.227 s"), std::string::npos) << named;
+  EXPECT_NE(named.find("line 8943"), std::string::npos) << named;
 }
 
 }  // namespace

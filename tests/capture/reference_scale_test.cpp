@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/capture/sim_take.hpp"
+#include "tests/faults.hpp"
 #include "tests/sanitized.hpp"
 
 namespace tacto::capture {
@@ -51,11 +52,9 @@ TEST(ReferenceScale, WrongInputsAreNamed) {
   EXPECT_EQ(scale_by_reference(take, "tangential_force", "position", {1, 0}).error().kind, ErrorKind::usage);
   EXPECT_EQ(scale_by_reference(take, "net_force", "normal_force", {1, 0}).error().kind,
             ErrorKind::unsuitable);
-  EXPECT_NE(against_net(sim_take("surface=C,strokes=20", 3)).error().what.find("at least 5 s"),
-            std::string::npos);
+  EXPECT_NE(against_net(sim_take("surface=C,strokes=20", 3)).error().what.find(" 5 s"), std::string::npos);
   const auto quiet = against_net(sim_take("finger=up", 6));
-  ASSERT_FALSE(quiet);
-  EXPECT_NE(quiet.error().what.find("too little coherence"), std::string::npos);
+  EXPECT_TRUE(tests::fails(quiet, ErrorKind::unsuitable, "tangential_force"));
   const double scale = take.header.channels[3].scale;
   const auto turned = scale_by_reference(take, "tangential_force", "net_force", {-scale, 0});
   ASSERT_FALSE(turned);

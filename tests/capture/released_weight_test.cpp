@@ -85,7 +85,7 @@ TEST(ReleasedWeight, WrongInputsAreNamed) {
   EXPECT_NE(scale_by_releases(loud, "tangential_force", 0).error().what.find("clipped"), std::string::npos);
   std::vector<Release> late = {release(0.1, 1, 0, 1)};
   late[0].take.codes[0].resize(5500);
-  EXPECT_NE(scale_by_releases(late, "tangential_force", 0).error().what.find("near the start or the end"),
+  EXPECT_NE(scale_by_releases(late, "tangential_force", 0).error().where.find("tangential_force"),
             std::string::npos);
   const std::vector<Release> quiet = {release(1e-5, 1, 0.046, 1)};
   EXPECT_EQ(scale_by_releases(quiet, "tangential_force", 0).error().kind, ErrorKind::unsuitable);

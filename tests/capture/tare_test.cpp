@@ -81,7 +81,7 @@ TEST(Tare, ALoadAtRestIsWarnedOf) {
   ASSERT_TRUE(tare);
   EXPECT_TRUE(tare->motion_signs.empty());
   ASSERT_EQ(tare->warnings.size(), 2U);
-  EXPECT_NE(tare->warnings[0].find("normal_force is 0.5 N at rest"), std::string::npos) << tare->warnings[0];
+  EXPECT_NE(tare->warnings[0].find("0.5 N"), std::string::npos) << tare->warnings[0];
 }
 
 TEST(Tare, RefusesWhatIsTooShort) {
@@ -95,7 +95,7 @@ TEST(Tare, ItsEntriesSayItAll) {
   EXPECT_EQ(entries[0].method, "tare");
   EXPECT_FALSE(entries[0].scale);
   EXPECT_EQ(entries[0].degrees_of_freedom, 19);
-  EXPECT_NE(entries[0].notes.at(1).find("mains at 50 Hz"), std::string::npos);
+  EXPECT_NE(entries[0].notes.at(1).find("50 Hz"), std::string::npos);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/capture/sim_take.hpp"
+#include "tests/faults.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -86,9 +87,8 @@ TEST(Weights, ThePiezoForgetsThemAndThatIsSaid) {
   const auto refused = weighing_of(sim_take("finger=up,pull=1N", 0.5), "tangential_force", 1);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::unsuitable);
-  EXPECT_NE(refused.error().what.find("high-pass of the piezo at 8"), std::string::npos)
-      << refused.error().what;
-  EXPECT_NE(refused.error().remedy.find("--reference net_force"), std::string::npos);
+  EXPECT_EQ(refused.error().where, "tangential_force");
+  EXPECT_NE(refused.error().remedy.find("--reference"), std::string::npos);
 }
 
 TEST(Weights, WrongInputsAreNamed) {
@@ -96,17 +96,14 @@ TEST(Weights, WrongInputsAreNamed) {
   EXPECT_EQ(weighing_of(take, "no_force", 1).error().kind, ErrorKind::usage);
   EXPECT_EQ(weighing_of(take, "position", 1).error().kind, ErrorKind::unsuitable);
   const auto sliding = weighing_of(sim_take("surface=flat,strokes=4", 1.5), "normal_force", 1);
-  ASSERT_FALSE(sliding);
-  EXPECT_NE(sliding.error().what.find("is not constant"), std::string::npos);
+  EXPECT_TRUE(tests::fails(sliding, ErrorKind::unsuitable, "normal_force"));
   const auto heavy = weighing_of(sim_take("finger=up,weight=15N,cell_gain=1.5", 0.5), "normal_force", 15);
-  ASSERT_FALSE(heavy);
-  EXPECT_NE(heavy.error().what.find("limit of its converter's range"), std::string::npos);
+  EXPECT_TRUE(tests::fails(heavy, ErrorKind::unsuitable, "normal_force"));
   const Weighing one = *weighing_of(take, "normal_force", 1);
   EXPECT_EQ(scale_by_weights(std::vector{one, one}, 0).error().kind, ErrorKind::unsuitable);
   Weighing same = one;
   same.force_n = 2;  // other weights, the same numbers
-  EXPECT_NE(scale_by_weights(std::vector{one, same}, 0).error().what.find("does not follow"),
-            std::string::npos);
+  EXPECT_EQ(scale_by_weights(std::vector{one, same}, 0).error().kind, ErrorKind::unsuitable);
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ Error refused(const std::string& members) {
 
 TEST(DaemonConfig, TwoPromisesExcludeEachOther) {
   const Error error = refused(R"("quality":"fast","max_error":0.01)");
-  EXPECT_EQ(error.what, "quality, max_error exclude each other: give only one of them");
+  EXPECT_EQ(error.kind, ErrorKind::malformed);
+  for (const char* member : {"quality", "max_error"}) EXPECT_NE(error.what.find(member), std::string::npos);
 }
 
 TEST(DaemonConfig, ANumberOutOfRangeIsToldItsRange) {
@@ -44,8 +45,8 @@ TEST(DaemonConfig, AllMissingMembersAreNamedAtOnce) {
 }
 
 TEST(DaemonConfig, AMisspeltChoiceIsNamedWithTheNearest) {
-  EXPECT_EQ(refused(R"("playback":{"contact_on":1})").remedy, "did you mean 'contact_on_n'?");
-  EXPECT_EQ(refused(R"("rate_Hz":2000)").remedy, "did you mean 'rate_hz'?");
+  EXPECT_NE(refused(R"("playback":{"contact_on":1})").remedy.find("'contact_on_n'"), std::string::npos);
+  EXPECT_NE(refused(R"("rate_Hz":2000)").remedy.find("'rate_hz'"), std::string::npos);
 }
 
 }  // namespace

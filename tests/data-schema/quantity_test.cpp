@@ -13,11 +13,12 @@ void expect_si(std::string_view text, Dimension dimension, double si) {
   EXPECT_DOUBLE_EQ(*value, si) << text;
 }
 
-void expect_refused(std::string_view text, Dimension dimension, std::string_view why) {
+void expect_refused(std::string_view text, Dimension dimension) {
   const auto value = parse_quantity(text, dimension);
   ASSERT_FALSE(value) << text << " was read as " << *value;
   EXPECT_EQ(value.error().kind, ErrorKind::usage);
-  EXPECT_NE(value.error().what.find(why), std::string::npos) << message(value.error());
+  EXPECT_NE(value.error().what.find("'" + std::string(text) + "'"), std::string::npos)
+      << message(value.error());
   EXPECT_NE(value.error().remedy.find(units_of(dimension)), std::string::npos) << message(value.error());
 }
 
@@ -49,23 +50,23 @@ TEST(Quantity, ReadsSpatialFrequencyInEverySpelling) {
 
 TEST(Quantity, TakesBareNumbersOnlyWhereThereIsNoUnit) {
   expect_si("5", Dimension::none, 5);
-  expect_refused("5", Dimension::length, "has no unit");
-  expect_refused("15", Dimension::spatial_frequency, "has no unit");
+  expect_refused("5", Dimension::length);
+  expect_refused("15", Dimension::spatial_frequency);
 }
 
 TEST(Quantity, RefusesUnitsOfOtherQuantities) {
-  expect_refused("5mm", Dimension::time, "another quantity");
-  expect_refused("5mm/s", Dimension::length, "another quantity");
-  expect_refused("5furlong", Dimension::length, "unknown unit 'furlong'");
-  expect_refused("5MM", Dimension::length, "unknown unit 'MM'");
+  expect_refused("5mm", Dimension::time);
+  expect_refused("5mm/s", Dimension::length);
+  expect_refused("5furlong", Dimension::length);
+  expect_refused("5MM", Dimension::length);
 }
 
 TEST(Quantity, RefusesWhatIsNoFiniteNumber) {
   for (const char* text :
        {"infmm", "-infmm", "nanmm", "1e400mm", "", "mm", "--5mm", "+-5mm", "++5mm", "five mm"})
-    expect_refused(text, Dimension::length, "not a finite number");
-  expect_refused("1,5mm", Dimension::length, "unknown unit");
-  expect_refused("0x10m", Dimension::length, "unknown unit");
+    expect_refused(text, Dimension::length);
+  expect_refused("1,5mm", Dimension::length);
+  expect_refused("0x10m", Dimension::length);
 }
 
 TEST(Quantity, FindsUnitsInAnyDimension) {
@@ -84,7 +85,7 @@ TEST(Quantity, OneSymbolMayBeAMassAndAnAcceleration) {
   EXPECT_DOUBLE_EQ(*parse_quantity("500mg", Dimension::acceleration), 4.903325);
   EXPECT_DOUBLE_EQ(*parse_quantity("2g", Dimension::mass), 2e-3);
   EXPECT_DOUBLE_EQ(*parse_quantity("500mg", Dimension::mass), 5e-4);
-  expect_refused("2g", Dimension::length, "another quantity");
+  expect_refused("2g", Dimension::length);
   EXPECT_EQ(parse_unit("g")->dimension, Dimension::mass);
   EXPECT_EQ(for_people(0.002, Dimension::mass), "2 g");
   EXPECT_EQ(for_people(9.80665, Dimension::acceleration), "9.807 m/s^2");

@@ -62,7 +62,6 @@ TEST_F(TransducerFile, NumbersThatNoTransducerHasAreRefusedByName) {
     EXPECT_EQ(refused.error().kind, ErrorKind::unsuitable);
     EXPECT_TRUE(refused.error().where.ends_with(std::string("odd.transducer.json#/") + name))
         << refused.error().where;
-    EXPECT_NE(refused.error().what.find("a plausible value is from"), std::string::npos);
     EXPECT_TRUE(read_transducer(folder_ / "odd", Numbers::computable)) << name << ": insisted on";
   }
 }
@@ -79,8 +78,8 @@ TEST_F(TransducerFile, WhatNobodyCanComputeWithIsRefusedToThoseWhoInsist) {
   Transducer odd = preset_;
   odd.actuator_scale = odd.deflection_m = 1e-12;
   written(odd, "odd");
-  EXPECT_NE(read_transducer(folder_ / "odd", Numbers::computable).error().what.find("together give"),
-            std::string::npos);
+  EXPECT_EQ(read_transducer(folder_ / "odd", Numbers::computable).error().where,
+            folder_ / "odd.transducer.json");
 }
 
 TEST_F(TransducerFile, ASecondModeAndAHysteresisHaveRangesToo) {
@@ -151,7 +150,7 @@ TEST_F(TransducerFile, UnknownNameListsThePresets) {
   const auto read = read_transducer(folder_ / "nobody");
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().kind, ErrorKind::not_found);
-  EXPECT_NE(message(read.error()).find("wiertlewski2011, wiertlewski2011-as-printed"), std::string::npos);
+  EXPECT_NE(message(read.error()).find("wiertlewski2011-as-printed"), std::string::npos);
 }
 
 TEST_F(TransducerFile, LimitsAreObligatoryAndAboveZero) {

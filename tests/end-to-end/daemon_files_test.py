@@ -63,7 +63,7 @@ def gain_saved_in_the_scene():
         as_it_was = pathlib.Path("s.scene.json").read_bytes()
         os.chmod("s.scene.json", 0o444)
         answer = client.ask(request="gain", gain=0.25, save=True)
-        assert not answer["ok"] and "is read-only" in answer["error"]["what"], answer
+        assert not answer["ok"] and answer["error"]["fault"] == 6, answer
         assert client.must(request="status")["gain"] == 0.5 and pathlib.Path("s.scene.json").read_bytes() == as_it_was
     saved = json.loads(pathlib.Path("s.scene.json").read_text())["layers"][0]
     assert saved["gain_m_per_n"] == 0.0005 and saved["gain_set_on"]
@@ -134,7 +134,7 @@ def gain_kept_with_the_texture():
         os.chmod(sidecar, 0o444)
         as_it_was = sidecar.read_bytes()
         answer = second.ask(request="gain", gain=0.5, save=True)
-        assert not answer["ok"] and "is read-only" in answer["error"]["what"] and "chmod" in answer["error"]["remedy"], answer
+        assert not answer["ok"] and answer["error"]["fault"] == 6 and "chmod" in answer["error"]["remedy"], answer
         assert second.must(request="status")["gain"] == 1 and sidecar.read_bytes() == as_it_was
         os.chmod(sidecar, 0o644)
         after = json.loads(sidecar.read_text())

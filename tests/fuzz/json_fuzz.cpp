@@ -78,7 +78,7 @@ void scene(const std::string& text) {
     return;
   }
   demand(!read->layers.empty() || !read->patches.empty());
-  demand(read->layers.size() <= 256);
+  demand(read->layers.size() <= kMostLayers);
   for (const Layer& layer : read->layers) {
     const auto texture = layer.visit([](const TextureLayer& of) { return of; });
     demand(!texture.texture.empty() && std::abs(texture.at_m) <= 1000);
@@ -86,7 +86,7 @@ void scene(const std::string& text) {
   }
   std::size_t layers = read->layers.size();
   for (const Patch& of : read->patches) layers += patch(of);
-  demand(layers <= 256);
+  demand(layers <= kMostLayers);
   if (!read->patches.empty()) written_again(*read);
 }
 

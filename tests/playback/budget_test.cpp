@@ -105,11 +105,11 @@ TEST_F(Budgets, TheChosenFilterIsTheOneThatIsMade) {
 
 TEST_F(Budgets, RefuseWithTheBestThereIs) {
   const std::string exacting = refusal({{{}, 1e-5}, {}});
-  EXPECT_NE(exacting.find("no choice has an error of at most 0.001 %"), std::string::npos) << exacting;
-  EXPECT_NE(exacting.find("(hermite, 40 samples per period"), std::string::npos) << exacting;
-  EXPECT_NE(exacting.find("the inverse of the transducer leaves"), std::string::npos) << exacting;
+  EXPECT_NE(exacting.find("0.001 %"), std::string::npos) << exacting;
+  EXPECT_NE(exacting.find("(hermite, 40 "), std::string::npos) << exacting;
+  EXPECT_NE(exacting.find("inverse"), std::string::npos) << exacting;
   const std::string hurried = refusal({{{}, 1e-3}, 40});
-  EXPECT_NE(hurried.find("within 40 ns per tick"), std::string::npos) << hurried;
+  EXPECT_NE(hurried.find("40 ns"), std::string::npos) << hurried;
   EXPECT_NE(refusal({{{}, 0.5}, {}}), "");
   EXPECT_NE(refusal({{{}, 1e-3}, -1}), "");
   options_.most_samples = 100;
@@ -140,7 +140,7 @@ TEST_F(Budgets, PromiseNothingOfAHysteresisThatStays) {
   ASSERT_TRUE(undone) << message(undone.error());
   EXPECT_GT(undone->chosen.tick_ns, straight_ns);
   options_.undo_hysteresis = false;
-  EXPECT_NE(refusal({{{}, 1e-2}, {}}).find("hysteresis is not inverted"), std::string::npos);
+  EXPECT_NE(refusal({{{}, 1e-2}, {}}).find("--keep-hysteresis"), std::string::npos);
 }
 
 TEST_F(Budgets, SayWhy) {

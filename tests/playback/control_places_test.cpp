@@ -122,7 +122,7 @@ TEST_F(ControlPlaces, AKeptPlaceIsForStopAndDisarmOnly) {
   serve(4);
   const auto heard = client.heard();
   ASSERT_EQ(heard.size(), 2U);
-  EXPECT_NE(heard[1].find("4 clients are connected already"), std::string::npos) << heard[1];
+  EXPECT_NE(heard[1].find("4 clients"), std::string::npos) << heard[1];
   EXPECT_EQ(server_->clients(), static_cast<std::size_t>(kPlaces)) << "it is disconnected";
 }
 
@@ -131,7 +131,7 @@ TEST_F(ControlPlaces, AKeptPlaceEndsAfterFiveSeconds) {
   const auto late = connected();
   now_ += milliseconds(5001);
   serve();
-  EXPECT_NE(answer_of(*late).find("4 clients are connected already"), std::string::npos);
+  EXPECT_NE(answer_of(*late).find("4 clients"), std::string::npos);
   EXPECT_EQ(server_->clients(), static_cast<std::size_t>(kPlaces));
 }
 
@@ -145,7 +145,7 @@ TEST_F(ControlPlaces, WhoSaidNoHelloWithinFiveSecondsGoesFirst) {
   const auto next = connected();
   const auto heard = silent[0]->heard();
   ASSERT_EQ(heard.size(), 1U);
-  EXPECT_NE(heard[0].find("no hello came within 5 s"), std::string::npos) << heard[0];
+  EXPECT_NE(heard[0].find("5 s"), std::string::npos) << heard[0];
   next->say(std::string(kHello) + kStatus);
   serve(4);
   EXPECT_EQ(handled_.back(), ControlVerb::status) << "it has a place for everything";
@@ -167,7 +167,7 @@ TEST_F(ControlPlaces, AStrangerOfAnotherVersionIsToldOfTheVersion) {
   const auto client = by_tcp(R"({"request":"hello","version":"2.0"})"
                              "\n");
   const std::string answer = answer_of(*client);
-  EXPECT_NE(answer.find("version 2.0 of the control protocol"), std::string::npos) << answer;
+  EXPECT_NE(answer.find(R"("fault":5)"), std::string::npos) << answer;
   EXPECT_EQ(answer.find("token"), std::string::npos) << answer;
   serve_until([&] { return server_->clients() == 0; });
   EXPECT_EQ(server_->clients(), 0U) << "and is disconnected";

@@ -41,10 +41,11 @@ class LimitedPlay : public PlayerOnSim {
     for (const auto& tick : ticks()) drive.push_back(tick.drive_v);
     return drive;
   }
-  static double removed_db(const std::vector<double>& wished, const std::vector<double>& drive) {
+  static double removed_db(const std::vector<double>& unlimited_v, const std::vector<double>& drive) {
     double removed = 0, whole = 0;
-    for (std::size_t i = 0; i < wished.size(); ++i)
-      removed += (wished[i] - drive[i]) * (wished[i] - drive[i]), whole += wished[i] * wished[i];
+    for (std::size_t i = 0; i < unlimited_v.size(); ++i)
+      removed += (unlimited_v[i] - drive[i]) * (unlimited_v[i] - drive[i]),
+          whole += unlimited_v[i] * unlimited_v[i];
     return 10 * std::log10(removed / whole);
   }
   std::string transducer_;

@@ -43,7 +43,7 @@ TEST(Limits, RefusalNamesPeakLimitTimeAndGain) {
   const auto said = check_limits(peaks, 1e-3, 5e-4);
   ASSERT_FALSE(said);
   EXPECT_EQ(said.error().kind, schema::ErrorKind::unsuitable);
-  EXPECT_EQ(said.error().what, "the drive reaches 7.5 V, its limit is 5 V");
+  for (const char* value : {"7.5 V", " 5 V"}) EXPECT_NE(said.error().what.find(value), std::string::npos);
   EXPECT_EQ(said.error().where, "drive, 0.1000 s after its start");
   EXPECT_NE(said.error().remedy.find("0.6666mm/N (1.333x)"), std::string::npos) << said.error().remedy;
 }

@@ -61,8 +61,8 @@ inline LineTexture random_lines(std::mt19937& random, double finest_per_m, bool 
   const int count = noise ? 30 : std::uniform_int_distribution<>(1, 6)(random);
   LineTexture texture;
   for (int i = 0; i < count; ++i) {
-    const double wished = i == 0 ? finest_per_m : finest_per_m / std::exp(uniform(0, std::log(12)));
-    const double per_m = std::round(wished * LineTexture::kLengthM) / LineTexture::kLengthM;
+    const double asked_per_m = i == 0 ? finest_per_m : finest_per_m / std::exp(uniform(0, std::log(12)));
+    const double per_m = std::round(asked_per_m * LineTexture::kLengthM) / LineTexture::kLengthM;
     texture.lines.push_back({per_m, uniform(0, kTwoPi), 0.02 * uniform(0.3, 1) / std::sqrt(count)});
   }
   return texture;

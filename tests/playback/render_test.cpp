@@ -84,7 +84,7 @@ TEST(Render, WhatTheKernelsLimitsTookAwayIsRefusedOrTold) {
   options.engine = Engine::kernel;
   const auto refused = render(texture, steady_path(0.005, 0.05, 2), paper(), options);
   ASSERT_FALSE(refused);
-  EXPECT_NE(message(refused.error()).find("--over-limit clip"), std::string::npos);
+  EXPECT_NE(message(refused.error()).find("--over-limit"), std::string::npos);
   options.over_limit = OverLimit::clip;
   const auto clipped = render(texture, steady_path(0.005, 0.05, 2), paper(), options);
   ASSERT_TRUE(clipped);
@@ -109,7 +109,7 @@ TEST(Render, SignalsShareThePathsAxis) {
 }
 
 // The displacement for the rounded, cut drive, against the target. -60 dB: a tenth of the required 1 %.
-TEST(Render, ModelledDisplacementFollowsTheWantedOne) {
+TEST(Render, ModelledDisplacementFollowsTheTarget) {
   const auto texture = texture_of(0.06, [](double x) {
     return 0.01 * (std::sin(kTwoPi * 1e3 * x) + 0.5 * std::sin(kTwoPi * 2.3e3 * x) +
                    0.3 * std::sin(kTwoPi * 6.1e3 * x));

@@ -129,8 +129,7 @@ TEST(Certificate, RefusesWhatTellsNothing) {
   const auto alike = certificates_of(world, {{0.0400, 0.06}, {0.0401, 0.06}}, 1);
   ASSERT_FALSE(alike);
   EXPECT_EQ(alike.error().kind, ErrorKind::unsuitable);
-  EXPECT_NE(alike.error().what.find("differ only by a factor of 1.00"), std::string::npos)
-      << alike.error().what;
+  EXPECT_NE(alike.error().what.find(" 1.00"), std::string::npos) << alike.error().what;
 }
 
 // One of the two hundred cases: surfaces with harmonics, hums with harmonics, resonances, varying speeds.

@@ -33,13 +33,13 @@ TEST(MonotonePath, LeavesAStrictlyMonotoneOneAlone) {
   EXPECT_EQ(back.way_m, (std::vector<double>{-3e-6, -1e-6, 0}));
 }
 
-TEST(MonotonePath, LeavesTheBareFingersStretchAlone) {
+TEST(MonotonePath, LeavesTheBareFingersSectionAlone) {
   const auto finger = bare_finger();
   if (finger.empty()) GTEST_SKIP() << "skipped: no real data";
-  const auto stretch = std::span(finger).subspan(45500, 23001);
-  const MonotonePath path = monotone_path(stretch, 1, {0.5e-6, 0});
+  const auto section = std::span(finger).subspan(45500, 23001);
+  const MonotonePath path = monotone_path(section, 1, {0.5e-6, 0});
   EXPECT_EQ(path.moved_m, 0);
-  EXPECT_TRUE(std::ranges::equal(path.way_m, stretch));
+  EXPECT_TRUE(std::ranges::equal(path.way_m, section));
 }
 
 TEST(MonotonePath, SlowEvenMotionComesBackEven) {

@@ -128,9 +128,9 @@ TEST(Streaming, TenMinutesOfRestInMidStroke) {
   ASSERT_TRUE(record);
   EXPECT_EQ(record->strokes().size(), 2U);  // without the option a pause separates them
   auto maker = TextureMaker::open(std::move(*record), options_for());
-  const auto stretch = maker->record().stretch(2.0, 602.8);
-  ASSERT_TRUE(stretch) << schema::message(stretch.error());
-  const auto texture = maker->make(*stretch, 0);
+  const auto section = maker->record().section(2.0, 602.8);
+  ASSERT_TRUE(section) << schema::message(section.error());
+  const auto texture = maker->make(*section, 0);
   ASSERT_TRUE(texture) << schema::message(texture.error());
   EXPECT_NEAR(texture->signal.length_m(), 0.04, 1e-4);
   // Away from the stop it is the surface; at the stop the valid band begins far above the surface's lines.
@@ -148,7 +148,7 @@ TEST(Streaming, TenMinutesOfRestInMidStroke) {
   EXPECT_GT(lowest_at_stop, 1e5);  // 15 Hz at under 0.15 mm/s
 }
 
-TEST(Streaming, GivesWhatTheWholeStretchGives) {
+TEST(Streaming, GivesWhatTheWholeSectionGives) {
   constexpr std::size_t kFrames = 120000;
   for (const FilterMethod method : {FilterMethod::fourier, FilterMethod::butterworth, FilterMethod::none})
     for (const Edges edges : {Edges::treated, Edges::none}) {

@@ -123,9 +123,9 @@ LocalResponse local_response(std::span<const Complex> input, std::span<const Com
   const Eigen::JacobiSVD<MatrixXcd> parts(table.columns, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::ArrayXd sizes = parts.singularValues().array();
   // Undetermined directions keep a large variance.
-  const Eigen::ArrayXd told = (sizes.square() + std::pow(kLocalSingular * sizes(0), 2)).inverse();
+  const Eigen::ArrayXd damped = (sizes.square() + std::pow(kLocalSingular * sizes(0), 2)).inverse();
   const VectorXcd along = parts.matrixU().adjoint() * answer;
-  const VectorXcd solution = parts.matrixV() * ((sizes * told).cast<Complex>() * along.array()).matrix();
+  const VectorXcd solution = parts.matrixV() * ((sizes * damped).cast<Complex>() * along.array()).matrix();
   LocalResponse local;
   local.freedom = static_cast<double>(table.columns.rows() - table.columns.cols());
   local.noise_power = (answer - table.columns * solution).squaredNorm() / local.freedom;
@@ -134,7 +134,7 @@ LocalResponse local_response(std::span<const Complex> input, std::span<const Com
         .array()
         .abs2()
         .matrix()
-        .dot(told.matrix());
+        .dot(damped.matrix());
   };
   const double best = best_place(variance);
   local.response = local_terms_at(table, best).transpose() * solution;

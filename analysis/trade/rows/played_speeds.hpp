@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One way to play a texture under fingers of several speeds.
+// Plays a texture in one way under fingers of several speeds, and measures the errors.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The choice of a scene's layers that keeps an error at any place.
+// Chooses parameters of a scene's layers so that the error of the force is within a bound at every place.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one tick records for the stream.
+// The data of one tick that the device streams.
 #pragma once
 
 #include "firmware-host/core/wire/message_types.hpp"

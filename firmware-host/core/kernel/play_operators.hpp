@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Play operators in parallel: a hysteresis, or its inverse.
+// A Prandtl-Ishlinskii operator, the weighted sum of play operators: a hysteresis, or its inverse.
 #pragma once
 
 #include "firmware-host/core/kernel/float4.hpp"

@@ -32,7 +32,7 @@ int64_t in_fractions(float offset) noexcept {
 }
 
 // step x offset, with a resolution of 2^-24 of a step.
-int64_t stretch(uint64_t step, float offset) noexcept {
+int64_t step_times(uint64_t step, float offset) noexcept {
   const int64_t fractions = in_fractions(offset);
   return static_cast<int64_t>(step) * (fractions >> 24) +
          part_of(step, static_cast<uint32_t>(fractions) << 8);
@@ -110,7 +110,7 @@ bool Profile::place_of(int32_t count, float offset, int64_t& place) const noexce
   place = away * static_cast<int64_t>(scale_.samples_per_count_q32) + scale_.at_origin_q32;
   const bool looped = scale_.ends == wire::ProfileEnds::loop;
   if (looped) place = within_period(place, levels_[0].size);
-  place += stretch(scale_.samples_per_count_q32, offset);
+  place += step_times(scale_.samples_per_count_q32, offset);
   if (looped) place = within_period(place, levels_[0].size);
   return true;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The speed of a hand from the counts of an encoder, without the grain of its counts.
+// Estimates the speed of a hand from the times at which an encoder's count changes.
 #pragma once
 
 #include <stdint.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parallel grooves as a sum of cosines, of which the finger's speed lets pass what the tick rate can hold.
+// The profile of parallel grooves as a cosine series, without harmonics that alias at the finger's speed.
 #pragma once
 
 #include <stdint.h>

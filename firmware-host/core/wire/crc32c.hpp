@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The check of every frame and profile.
+// The checksum of every frame and profile: CRC-32C.
 #pragma once
 
 #include <stddef.h>

@@ -137,11 +137,11 @@ double SimBoard::stream_bytes_per_s() const {
 
 // Codes of the load cell, without its lag and noise.
 std::function<std::int32_t(double)> SimBoard::scripted_force() const {
-  const bool told = static_cast<bool>(normal_n_);
+  const bool reported = static_cast<bool>(normal_n_);
   const double load_n = parameters_.finger_down ? parameters_.load_n : 0;
   const double newtons_per_code = channels_.size() > kForceChannel ? channels_[kForceChannel].scale : 1;
   return [=, force_n = normal_n_](double time_s) {
-    return static_cast<std::int32_t>(std::llround((told ? force_n(time_s) : load_n) / newtons_per_code));
+    return static_cast<std::int32_t>(std::llround((reported ? force_n(time_s) : load_n) / newtons_per_code));
   };
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stiffness and damping of layers that act together.
+// The sum of the stiffnesses and dampings of layers that act at the same place.
 #pragma once
 
 #include <cstddef>

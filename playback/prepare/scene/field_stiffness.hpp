@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How stiff the field of atoms is at most.
+// An upper bound of the stiffness of a field of atoms.
 #pragma once
 
 #include "playback/prepare/scene/field_section.hpp"

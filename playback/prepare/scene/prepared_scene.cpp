@@ -237,6 +237,8 @@ Result<void> check_types(const schema::Scene& scene, const std::string& where) {
   return {};
 }
 
+static_assert(schema::kMostLayers == core::kMostSceneLayers);  // data-schema does not include core
+
 // With the dampers that were added.
 Result<void> check_layer_count(const schema::Scene& scene, const std::string& where) {
   std::size_t layers = 0;

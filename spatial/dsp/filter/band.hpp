@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pass band in time.
+// The two limits of a pass band in Hz.
 #pragma once
 
 namespace tacto::spatial {

@@ -47,8 +47,7 @@ TEST(UsbAddress, OfSeveralOneMustBeNamed) {
   const auto chosen = choose_usb(kThree, {});
   ASSERT_FALSE(chosen);
   EXPECT_EQ(chosen.error().kind, ErrorKind::usage);
-  EXPECT_NE(chosen.error().remedy.find("usb:serial=A7, usb:port=1-2.3, usb:port=2-4"), std::string::npos)
-      << message(chosen.error());
+  EXPECT_NE(chosen.error().remedy.find("usb:port=1-2.3"), std::string::npos) << message(chosen.error());
 }
 
 TEST(UsbAddress, OneThatIsNotThereIsNotFound) {

@@ -191,7 +191,8 @@ TEST_F(UsbTransportTest, ADeviceThatAlwaysRefusesIsAnError) {
   const auto cable = transport();
   const auto written = cable->write(counting(30), kTimeoutS);
   ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().what, "the device refused the sent data 3 times");
+  EXPECT_EQ(written.error().kind, schema::ErrorKind::device);
+  EXPECT_NE(written.error().what.find(" 3 times"), std::string::npos);
 }
 
 TEST_F(UsbTransportTest, ADeviceThatTakesNothingIsAnError) {
@@ -199,7 +200,8 @@ TEST_F(UsbTransportTest, ADeviceThatTakesNothingIsAnError) {
   const auto cable = transport();
   const auto written = cable->write(counting(30), 0.5);
   ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().what, "the device accepted no data for 0.5 s");
+  EXPECT_EQ(written.error().kind, schema::ErrorKind::device);
+  EXPECT_NE(written.error().what.find("0.5 s"), std::string::npos);
 }
 
 TEST_F(UsbTransportTest, WhatWasTakenWholeAtTheLastMomentIsTaken) {
@@ -257,7 +259,7 @@ TEST_F(UsbTransportTest, ADeviceThatAnswersNothingIsRefusedInItsTime) {
   add();
   const auto device = open_device("usb:");
   ASSERT_FALSE(device);
-  EXPECT_NE(device.error().what.find("did not answer hello (sent 3 times in 1.5 s"), std::string::npos);
+  EXPECT_NE(device.error().what.find("1.5 s"), std::string::npos);
 }
 
 }  // namespace
