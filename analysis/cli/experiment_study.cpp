@@ -413,7 +413,7 @@ cli::Action declare_run_study(CLI::App& app) {
   app.add_option("--answers", options->answers, kAnswersHelp)->excludes(observer);
   app.footer(
       "Each step is in STUDY-P07.trials.jsonl before the next one begins. Whether a trial was delivered is "
-      "decided before its\nanswer is read; what was not delivered comes again at the end. Ctrl-C ends the "
+      "decided before its answer is read; what was not delivered comes again at the end. Ctrl-C ends the "
       "run; "
       "'resume' continues it, also after a crash.");
   return [options] { return run_run_study(*options); };
@@ -435,12 +435,12 @@ cli::Action declare_prove_run(CLI::App& app) {
                  "Of a session: the limits of this protocol; default: those of 'new stretch'");
   app.footer(
       "Decides again from the sessions what was delivered, and computes each session's drive again. Proven "
-      "are ticks and drive;\nthe displacement is predicted by the transducer's model, and the normal force "
+      "are ticks and drive; the displacement is predicted by the transducer's model, and the normal force "
       "is "
       "in no session. Exit code 5: not proven.\n"
       "Of a session it judges each interval from a mark ('ctl mark TEXT') to the next one, or to the end of "
-      "the session;\nafter the mark 'end' there is no interval until the next mark. Exit code 5: the drive, "
-      "computed again, is not the same\nto the bit. Exit code 0 does not say that an interval was delivered: "
+      "the session; after the mark 'end' there is no interval until the next mark. Exit code 5: the drive, "
+      "computed again, is not the same to the bit. Exit code 0 does not say that an interval was delivered: "
       "see 'delivered' (yes, no, unknown) of each interval.");
   return [options] { return run_prove_run(*options); };
 }
@@ -462,7 +462,7 @@ cli::Action declare_study_power(CLI::App& app) {
   app.footer(
       "People are simulated with the levels and repetitions of the protocol, and fitted as 'analyse' does; "
       "the power is "
-      "the share of\nsimulated studies in which Student's t test of ln W finds the difference. Lapses that "
+      "the share of simulated studies in which Student's t test of ln W finds the difference. Lapses that "
       "have to be "
       "fitted cost power: try --lapse 2%.");
   return [options] { return run_study_power(*options); };
@@ -478,9 +478,9 @@ cli::Action declare_export_study(CLI::App& app) {
   app.footer(
       "trials.csv has a row for each attempt of all participants; analysis.R fits a generalised linear mixed "
       "model "
-      "(probit) to it\nwith lme4, and to other tables: its first lines say how. The folder is a data set "
+      "(probit) to it with lme4, and to other tables: its first lines say how. The folder is a data set "
       "after BIDS: "
-      "participants.tsv,\nsub-P07/beh/sub-P07_task-STUDY_beh.tsv and .json.");
+      "participants.tsv, sub-P07/beh/sub-P07_task-STUDY_beh.tsv and .json.");
   return [options] { return run_export_study(*options); };
 }
 
@@ -491,9 +491,9 @@ cli::Action declare_withdraw(CLI::App& app) {
   app.add_flag("--yes", options->yes, "Delete without a question");
   app.footer(
       "Deletes journal, table and sessions of the participant, and the outputs of 'analyse' and 'export' in "
-      "the study's folder,\nwhich can be made again without this participant. A symbolic link among them is "
+      "the study's folder, which can be made again without this participant. A symbolic link among them is "
       "refused before anything is deleted.\nSTUDY.withdrawn.txt keeps the code and the date. If it is "
-      "interrupted, repeat it. What else in the study's folder has the code\nin its name (sub-P07, "
+      "interrupted, repeat it. What else in the study's folder has the code in its name (sub-P07, "
       "STUDY-P07), or as a word in a csv, tsv or json file of at most 4 MB, is named and not deleted.");
   return [options] { return run_withdraw(*options); };
 }

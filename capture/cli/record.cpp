@@ -80,7 +80,7 @@ void declare_options(CLI::App& app, RecordOptions& options) {
 std::string footer_text() {
   return "\nThe emulated device (sim:) and its keys: tactograph help sim.\n"
          "During a recording, Ctrl-C or q ends and stores it, m or SIGUSR1 sets a mark. After a crash or a "
-         "power cut,\n'tactograph recover NAME' restores the recording without its last 100 ms (1 s after a "
+         "power cut, 'tactograph recover NAME' restores the recording without its last 100 ms (1 s after a "
          "power cut with a busy disk).";
 }
 

@@ -206,6 +206,9 @@ def what_cannot_be_read_is_named():
     refusal(tactograph.read_texture, "ridge", "frames")
     pathlib.Path("ridge.texture.wav").unlink()
     refusal(tactograph.read_texture, "ridge", "samples are missing")
+    for stroke in ("several-02", "several-01"):
+        pathlib.Path(f"{stroke}.texture.json").write_text("{}")
+    refusal(tactograph.read_texture, "several", "several-01, several-02")
     pathlib.Path("empty.session").write_bytes(b"")
     refusal(tactograph.read_session, "empty", "header")
     pathlib.Path("text.nc").write_text("no netCDF")
