@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/cli/identify_options.hpp"
@@ -434,6 +435,18 @@ schema::Result<void> check_named(const std::string& stem, const std::string& res
                       fmt::format("add -o {} for {}.transducer.json{}", name, name, beside));
 }
 
+// --method contact describes taps and writes no file.
+Result<void> check_contact_options(const CLI::App& app) {
+  constexpr std::string_view kUsed[] = {"FILE", "device", "method", "rate",    "fit-on",
+                                        "help", "json",   "rows",   "progress"};
+  for (const CLI::Option* option : app.get_options())
+    if (option->count() > 0 && std::ranges::find(kUsed, option->get_single_name()) == std::end(kUsed))
+      return fail(ErrorKind::usage,
+                  "has no use with --method contact, which describes taps and writes no file",
+                  "--" + option->get_single_name(), "omit it; --json prints everything for programs");
+  return {};
+}
+
 Result<Report> run_identify(const IdentifyOptions& o) {
   if (o.method == IdentifyMethod::contact) return identify_contact(o);
   TACTO_TRY(check_named(o.stem, o.results, o.picture));
@@ -453,7 +466,8 @@ cli::Action declare_identify(CLI::App& app) {
   declare_model(app, *options);
   declare_measuring(app, *options);
   declare_tables(app, *options);
-  return [options] {
+  return [options, &app]() -> Result<Report> {
+    if (options->method == IdentifyMethod::contact) TACTO_TRY(check_contact_options(app));
     ModelChoice& model = options->model;
     model.open = !(model.second_mode || model.lag || model.finger);
     return run_identify(*options);

@@ -19,7 +19,7 @@ using schema::Result;
 
 constexpr double kPercent = 100;
 
-// The last fit has all inputs of the table.
+// The last fit has all inputs that can be fitted.
 bool has_input(const std::vector<ContactFit>& fits, std::string_view input) {
   return fits.back().inputs.find(input) != std::string::npos;
 }
@@ -33,15 +33,21 @@ void warn_of_negative_mass(const ContactFit& fit) {
                       fit.inputs, term.value, term.low, term.high));
 }
 
-Report fits_report(const std::vector<ContactFit>& fits, std::size_t taps) {
+Report fits_report(const ContactFits& found, std::size_t taps) {
   Report report;
+  const std::vector<ContactFit>& fits = found.fits;
   const ContactFit& best =
       *std::ranges::min_element(fits, {}, [](const ContactFit& fit) { return fit.left_out_n; });
   report.add("best_inputs", best.inputs)
       .add("because",
            fmt::format("the peak of a tap that is left out of the fit is predicted within {:.3g} N "
-                       "(RMS, {} taps), the smallest error of {} fits",
-                       best.left_out_n, taps, fits.size()));
+                       "(RMS, {} taps){}",
+                       best.left_out_n, taps,
+                       fits.size() == 1 ? "" : fmt::format(", the smallest error of {} fits", fits.size())));
+  for (const std::string& column : found.unused_columns)
+    cli::warn(fmt::format(
+        "column {} is constant or a linear function of the columns before it: no fit has it", column));
+  if (!found.unused_columns.empty()) report.add("columns_not_fitted", found.unused_columns);
   std::vector<Report> rows;
   for (const ContactFit& fit : fits) warn_of_negative_mass(fit);
   for (const ContactFit& fit : fits)
@@ -106,12 +112,6 @@ Result<Report> identify_contact(const IdentifyOptions& o) {
   if (o.file.empty() || !o.device_uri.empty())
     return fail(ErrorKind::usage, "taps come from a table", "--method contact",
                 "identify taps.csv --method contact");
-  for (const auto& [option, value] : {std::pair<const char*, const std::string&>{"--output", o.stem},
-                                      {"--picture", o.picture},
-                                      {"--results", o.results}})
-    if (!value.empty())
-      return fail(ErrorKind::usage, "this method describes taps and writes no file", option,
-                  "omit it; --json prints everything for programs");
   const auto table = read_numbers(o.file);
   TACTO_TRY(table);
   if (has_peaks(table->names)) {

@@ -363,6 +363,7 @@ std::optional<NarrowBand> strongest_band(const SegmentSpectra& spectra, double l
   const BandAxis axis{spectra.step, spectra.frequency(first) - 0.5 * spectra.step};
   for (const std::size_t width : kWidths)
     if (width <= cells / 2) scan_width(best, a, b, !spectra.ab.empty(), width, axis, tolerance_db);
+  if (best.high_per_m == 0) best.high_per_m = high;  // of equal spectra no band has a score: the whole one
   // The outer cells extend half a cell beyond the band.
   best.low_per_m = std::max(best.low_per_m, low);
   best.high_per_m = std::min(best.high_per_m, high);

@@ -105,8 +105,8 @@ std::string section(const Project& project, std::size_t number) {
 std::string counted(const Project& project) {
   const auto simulated =
       std::ranges::count_if(project.files, [](const auto& f) { return !f.simulated.empty(); });
-  return fmt::format("{} files, {} of them simulated; {} can't be used", project.files.size(), simulated,
-                     project.broken.size());
+  return fmt::format("{} {}, {} of them simulated; {} can't be used", project.files.size(),
+                     project.files.size() == 1 ? "file" : "files", simulated, project.broken.size());
 }
 
 }  // namespace

@@ -74,13 +74,23 @@ std::size_t example_column(const Source& source) {
   return static_cast<std::size_t>(longest - source.mat->columns.begin());
 }
 
-// The first column with a unit of force, which needs no unit in the option; otherwise an example.
-std::string force_example(const Source& source) {
+// The first column with such a unit.
+std::optional<std::size_t> column_in(const Source& source, schema::Dimension dimension) {
   for (std::size_t i = 0; i < source.units.size(); ++i) {
-    const auto unit = schema::known_unit(source.units[i], schema::Dimension::force);
-    if (unit && unit->dimension == schema::Dimension::force) return "tangential_force=" + typed(source, i);
+    const auto unit = schema::known_unit(source.units[i], dimension);
+    if (unit && unit->dimension == dimension) return i;
   }
-  return fmt::format("tangential_force={}*1N", typed(source, example_column(source)));
+  return std::nullopt;
+}
+
+// The columns with a unit of force and of length, which need no unit in the option; without a force an
+// example.
+std::string channels_example(const Source& source) {
+  const auto force = column_in(source, schema::Dimension::force);
+  const auto position = column_in(source, schema::Dimension::length);
+  return fmt::format("--channel 'tangential_force={}'{}",
+                     force ? typed(source, *force) : typed(source, example_column(source)) + "*1N",
+                     position ? fmt::format(" --channel 'position={}'", typed(source, *position)) : "");
 }
 
 tl::unexpected<schema::Error> no_channels(const Source& source) {
@@ -203,15 +213,11 @@ std::string example_options(const Source& source) {
   const std::string clock = source.rate_hz           ? ""
                             : time_column_of(source) ? clock_example(source) + " "
                                                      : "--rate 10kHz ";
-  return fmt::format("{}--channel '{}'", clock, force_example(source));
+  return clock + channels_example(source);
 }
 
 std::optional<std::size_t> time_column_of(const Source& source) {
-  for (std::size_t i = 0; i < source.units.size(); ++i) {
-    const auto unit = schema::known_unit(source.units[i], schema::Dimension::time);
-    if (unit && unit->dimension == schema::Dimension::time) return i;
-  }
-  return std::nullopt;
+  return column_in(source, schema::Dimension::time);
 }
 
 std::vector<std::size_t> columns_of(const ImportPlan& plan) {

@@ -542,7 +542,13 @@ Result<Source> open_source(const std::string& file, std::size_t skip) {
   if (schema::is_mat(head) && !is_sound_in_mat(head)) return open_mat(file, skip);
   if (schema::is_mat(head)) return open_audio(file);
   if (const auto foreign = foreign_format(file, head)) return open_foreign(file, *foreign, head);
-  return is_binary(head) ? open_sound(file, skip) : open_table(file, head, whole, skip);
+  if (is_binary(head)) return open_sound(file, skip);
+  if (lower_case(file).ends_with(".mat"))
+    return fail(
+        ErrorKind::malformed, "is no MATLAB file of version 5 or 7.3", file,
+        "if it was cut, copy it again; in MATLAB or Octave save it with -v7; a table of text needs another "
+        "ending, such as .txt");
+  return open_table(file, head, whole, skip);
 }
 
 namespace {

@@ -35,8 +35,7 @@ namespace {
 std::string footer() {
   std::string text = "Exit codes:";
   for (std::size_t code = 0; code < std::size(kExitCodes); ++code)
-    text += fmt::format("{}{} {}{}", code == 5 ? "\n" : " ", code, kExitCodes[code],
-                        code + 1 < std::size(kExitCodes) ? "," : ".");
+    text += fmt::format(" {} {}{}", code, kExitCodes[code], code + 1 < std::size(kExitCodes) ? "," : ".");
   return text + "\nQuantities have a unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
 }
 

@@ -10,8 +10,9 @@ namespace tacto::cli {
 
 schema::Result<void> check_ending(const std::string& output, std::initializer_list<std::string_view> endings,
                                   const std::string& remedy) {
-  constexpr std::string_view kEndings[] = {".csv", ".html",    ".json", ".nc",  ".pdf",
-                                           ".png", ".session", ".svg",  ".txt", ".wav"};
+  constexpr std::string_view kEndings[] = {".csv", ".h5",  ".html", ".json", ".mat",
+                                           ".nc",  ".ods", ".pdf",  ".png",  ".session",
+                                           ".svg", ".txt", ".wav",  ".xls",  ".xlsx"};
   const std::string ending = std::filesystem::path(output).extension().string();
   if (std::ranges::find(endings, ending) != endings.end() ||
       std::ranges::find(kEndings, ending) == std::end(kEndings))

@@ -16,7 +16,7 @@ namespace tacto::cli {
 void declare_force(CLI::App& app, schema::Existing& existing);
 
 /// Checks the ending of an output's name before any work is done: it is one of `endings`, or none of those
-/// that files of tactograph have. Errors: usage, with `remedy`.
+/// that name another format (a name may contain a dot: "trial.3"). Errors: usage, with `remedy`.
 schema::Result<void> check_ending(const std::string& output, std::initializer_list<std::string_view> endings,
                                   const std::string& remedy);
 

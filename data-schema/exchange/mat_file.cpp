@@ -148,6 +148,32 @@ std::string refusal_of(const matvar_t& array) {
   return {};
 }
 
+// Whether each number that is stored so is one of the class (a 64-bit integer is no exact double).
+bool holds(const std::string& class_name, const StoredNumbers& stored) {
+  if (stored.bytes == 0) return false;
+  if (class_name == "double") return stored.bytes <= (stored.floating ? 8 : 4);
+  if (class_name == "single") return stored.bytes <= (stored.floating ? 4 : 2);
+  if (stored.floating) return false;
+  if (class_name == "logical") return stored.bytes == 1;
+  const bool has_sign = class_name.starts_with("int");
+  const auto bytes = static_cast<std::size_t>(std::stoi(class_name.substr(has_sign ? 3 : 4)) / 8);
+  return stored.has_sign == has_sign ? stored.bytes <= bytes : has_sign && stored.bytes < bytes;
+}
+
+// Why an array of a file of version 7.3 has no columns although its class has some.
+std::string contradiction(const MatioFunctions& functions, const std::string& path, std::string array,
+                          const std::string& class_name) {
+  std::ranges::replace(array, '.', '/');
+  const StoredNumbers stored = functions.hdf5_numbers(path.c_str(), ("/" + array).c_str());
+  if (holds(class_name, stored)) return {};
+  if (stored.bytes == 0) return "has no numbers that can be read";
+  return fmt::format("is of the class {}, but stored as {} numbers of {} bits", class_name,
+                     stored.floating   ? "floating-point"
+                     : stored.has_sign ? "whole"
+                                       : "unsigned",
+                     8 * stored.bytes);
+}
+
 // Calls `visit` for each array that is not a single struct, with its dotted path.
 void for_each_array(const MatioFunctions& functions, matvar_t& array, const std::string& path,
                     const std::function<void(const std::string&, matvar_t&)>& visit) {
@@ -308,7 +334,10 @@ Result<MatContents> mat_contents(const std::string& path) {
       TACTO_TRY(check_fields(**functions, *next, path, std::string("/") + next->name));
     for_each_array(**functions, *next, next->name, [&](const std::string& name, const matvar_t& array) {
       contents.arrays.push_back({name, class_of(array), size_words(array), refusal_of(array)});
-      if (contents.arrays.back().refusal.empty()) add_columns(contents, name, array);
+      MatArray& added = contents.arrays.back();
+      if (contents.format == kMat73 && added.refusal.empty())
+        added.refusal = contradiction(**functions, path, name, added.class_name);
+      if (added.refusal.empty()) add_columns(contents, name, array);
     });
   }
   if (contents.format == kMat73 && variables != (*functions)->hdf5_members(path.c_str(), "/"))

@@ -44,7 +44,8 @@ inline constexpr std::uint64_t kMostMatBytes = std::uint64_t{2} << 30;
 bool is_mat(std::string_view beginning);
 
 /// The arrays of a file, without their numbers. Only real, full arrays of numbers have columns; logical ones
-/// are 0 and 1. Errors: not_found; malformed: cut or damaged (check_mat5(), or HDF5's checks).
+/// are 0 and 1. An array whose class cannot hold the numbers that are stored has none. Errors: not_found;
+/// malformed: cut or damaged (check_mat5(), or HDF5's checks).
 Result<MatContents> mat_contents(const std::string& path);
 
 /// Columns of one length, as double. Errors: as mat_contents; unsuitable: of different lengths, larger than

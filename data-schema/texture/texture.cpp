@@ -23,16 +23,40 @@ namespace fs = std::filesystem;
 constexpr std::string_view kTextureKind = "texture";
 constexpr std::string_view kTextureSuffix = ".texture";
 
+// The textures that `spatial` names after a recording with several strokes: oak-01, oak-02, oak-forward.
+std::vector<std::string> textures_after(const std::string& name) {
+  constexpr std::string_view kEnding = ".texture.json";
+  const fs::path stem = stem_of(stem_of(name, kTextureSuffix), "");
+  const std::string begin = stem.filename().string() + "-";
+  std::vector<std::string> found;
+  std::error_code ignored;
+  const fs::path folder = stem.has_parent_path() ? stem.parent_path() : ".";
+  for (fs::directory_iterator at(folder, ignored), end; !ignored && at != end; at.increment(ignored)) {
+    const std::string file = at->path().filename().string();
+    if (file.starts_with(begin) && file.ends_with(kEnding))
+      found.push_back((stem.parent_path() / file.substr(0, file.size() - kEnding.size())).string());
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
 // A recording with this name is the most frequent mistake; it has an error message of its own.
 tl::unexpected<Error> absent(const std::string& name) {
   const auto others = stored_files(name);
+  const std::vector<std::string> textures = textures_after(name);
+  constexpr std::size_t kMostNamed = 6;
+  const std::string choose = textures.size() > kMostNamed
+                                 ? fmt::format("name one of {} textures, {} to {}", textures.size(),
+                                               textures.front(), textures.back())
+                                 : fmt::format("name one of these textures: {}", fmt::join(textures, ", "));
   if (others && others->front().kind == FileKind::recording)
-    return fail(ErrorKind::unsuitable, "is a recording", name, "make a texture with 'tactograph spatial'");
+    return fail(ErrorKind::unsuitable, "is a recording", name,
+                textures.empty() ? "make a texture with 'tactograph spatial'" : choose);
   if (others && others->front().kind != FileKind::texture)
     return fail(ErrorKind::unsuitable, fmt::format("is a {}, not a texture", kind_name(others->front().kind)),
                 name);
   return fail(ErrorKind::not_found, "there is no such texture", name,
-              "a texture is NAME.texture.json and NAME.texture.wav");
+              textures.empty() ? "a texture is NAME.texture.json and NAME.texture.wav" : choose);
 }
 
 Result<void> check_layout(const std::string& wav, const TextureData& data, double pitch_m) {

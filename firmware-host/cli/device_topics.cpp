@@ -8,11 +8,11 @@ namespace {
 
 std::string sim_text() {
   return "sim: is the emulated device, with a simulated finger on a simulated surface. Its keys, with their "
-         "defaults\n"
+         "defaults "
          "(sim:surface=B,speed=50mm/s,seed=1); recordings with equal seeds are equal on every machine:\n" +
          sim_parameters_help() +
          "The finger rests for 0.1 s, moves to the end of the surface, rests, moves back, and so on until "
-         "the recording ends\n(strokes=2: it stops after two strokes). Its load is lower at rest. 40 mm "
+         "the recording ends (strokes=2: it stops after two strokes). Its load is lower at rest. 40 mm "
          "forth and back at 50 mm/s take 1.8 s.\n"
          "Without paced=1 it runs faster than real time, and record needs --time or --strokes.\n"
          "\nsim:planar is an emulated force device, which plays scenes with force patches. Its keys:\n"

@@ -243,8 +243,8 @@ cli::Action declare_play(CLI::App& app) {
   app.footer(
       app.get_footer() +
       "\nCtrl-C ends the playback before its time: the drive falls to zero within 10 ms without a step, "
-      "the session is complete,\nand the report is that of any other end (exit code 0). A second "
-      "Ctrl-C ends the program at once; then the device ramps\nto zero by itself, and 'session' and "
+      "the session is complete, and the report is that of any other end (exit code 0). A second "
+      "Ctrl-C ends the program at once; then the device ramps to zero by itself, and 'session' and "
       "'replay' read the session up to its last ticks.");
   return [options, &app]() -> Result<Report> {
     TACTO_TRY(check_scene_options(app, *options));

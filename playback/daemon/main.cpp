@@ -37,7 +37,8 @@ constexpr const char* kHelp =
     "usage: tactographd --config FILE\n\n"
     "FILE is JSON: device, transducer, socket, sessions ... (defined by "
     "data-schema/schemas/daemon.schema.json).\nFor the emulated device:\n"
-    R"(  {"kind": "daemon", "version": "1.0", "device": "sim:", "socket": "control"})"
+    R"(  {"kind": "daemon", "version": "1.0", "device": "sim:", "transducer": "wiertlewski2011", )"
+    R"("socket": "control", "sessions": "sessions"})"
     "\nSIGTERM, SIGHUP (the terminal was closed) and Ctrl-C ramp the "
     "drive to zero and end the daemon.\nMessages go to stderr; systemd stores them in its journal.\n";
 

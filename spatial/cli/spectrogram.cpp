@@ -83,8 +83,8 @@ Report row_of(const SpectrogramRun::Line& line, const SpectrogramHeader& header,
 
 void add_grid(Report& report, const SpectrogramRun& run) {
   const Decimation& decimation = run.decimation();
-  report.add("resolution", decimation.factor == 1 ? std::string("whole")
-                                                  : fmt::format("every {}th sample", decimation.factor));
+  report.add("samples_used",
+             decimation.factor == 1 ? std::string("all") : fmt::format("every {}th", decimation.factor));
   if (!decimation.whole_because.empty()) report.add("whole_because", decimation.whole_because);
 }
 

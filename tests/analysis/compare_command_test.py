@@ -119,6 +119,14 @@ def a_narrow_difference_is_named():
     assert "8 of 10" in found["detectable"]
 
 
+def one_texture_twice_differs_in_no_band():
+    make_template()
+    write_texture("one", pair()[0])
+    same = tacto.run_json("compare", "one", "one")
+    assert same["beyond_measurement_noise"] == "none" and not same["band_differs"] and same["band_level_db"] == 0, same
+    assert same["low_per_m"] <= same["band_low_per_m"] < same["band_high_per_m"] <= same["high_per_m"], same
+
+
 def with_output_all_is_printed_too():
     make_template()
     a, b = pair()
@@ -356,7 +364,7 @@ def real_fingers_verdicts():
 
 
 if __name__ == "__main__":
-    for test in (figures_agree_with_scipy, files_come_together, a_narrow_difference_is_named, with_output_all_is_printed_too, a_session_is_held_against_its_texture, surfaces_agree_with_numpy, sides_are_lists,
+    for test in (figures_agree_with_scipy, files_come_together, a_narrow_difference_is_named, one_texture_twice_differs_in_no_band, with_output_all_is_printed_too, a_session_is_held_against_its_texture, surfaces_agree_with_numpy, sides_are_lists,
                  a_recording_gives_its_strokes, more_than_two_give_all_pairs, bad_input_is_refused,
                  real_fingers_verdicts):
         tacto.in_folder(test)

@@ -433,6 +433,15 @@ def taps_on_a_surface():
     np.savetxt("plain.csv", np.column_stack([v, peak]), delimiter=",", comments="", fmt="%.17g", header="velocity_mps,peak_n")
     assert "acceleration x" not in tacto.run_json("identify", "plain.csv", "--method", "contact")["model"]
     tacto.run("identify", "-d", "sim:", "--method", "contact", code=2)
+    for unused in (["--picture", "x.svg"], ["--results", "x.results.json"], ["--amplitude", "1V"], ["--second-mode"], ["--start-from", "wiertlewski2011"],
+                   ["--phase-sign", "-1"], ["--invert"], ["--input", "drive"], ["--frequencies", "40"], ["--implausible"], ["--force"]):
+        error = tacto.error_of("identify", "peaks.csv", "--method", "contact", *unused, code=2)
+        assert error["where"] == unused[0], error
+    # One grip for all taps: the fits without it remain.
+    np.savetxt("grip.csv", np.column_stack([v, a, np.full(40, 2.0), peak]), delimiter=",", comments="", fmt="%.17g",
+               header="velocity_mps,acceleration_mps2,grip_n,peak_n")
+    said = tacto.run_json("identify", "grip.csv", "--method", "contact")
+    assert said["columns_not_fitted"] == ["grip_n"] and {row["inputs"] for row in said["fits"]} == {"velocity", "velocity, acceleration"}, said
 
 
 for test in (table_one_comes_back, quick_methods_agree, scipy_finds_the_same, a_misfit_is_refused_unless_forced,

@@ -34,17 +34,20 @@ TEST(ReportProject, LeavesOutWhatCannotBeDrawn) {
   EXPECT_NE(page.find("<h2 id=\"file-1\">"), std::string::npos);
 }
 
-// A twentieth of a recording at ten times the amplitude is an onset, not a spike: no gap, and no words in the
-// title.
+// A twentieth of a recording at a larger amplitude is an onset, not a spike: no gap, and no words in the
+// title. A spike is a gap, not a flat line at the end of the axis, and the title has its value.
 TEST(ReportProject, AnOnsetIsShownWhole) {
   constexpr int kSamples = 20'000;
   for (const int loud : {1, kSamples / 20}) {
     Envelope envelope(kSamples);
-    for (int i = 0; i < kSamples; ++i) envelope.add(i, (i < loud ? 50 : 1) * std::cos(0.1 * i));
+    for (int i = 0; i < kSamples; ++i) envelope.add(i, (i < loud ? 8000 : 1) * std::cos(0.1 * i));
     const schema::ResultPicture picture = envelope.picture("C-1.json", "time (s)", "force (mN)", "mN");
     const bool whole =
         std::ranges::all_of(picture.curves.front().y, [](double y) { return std::isfinite(y); });
     EXPECT_EQ(whole, loud > 1);
+    EXPECT_EQ(std::ranges::all_of(picture.curves.front().y, [](double y) { return !(std::abs(y) > 1); }),
+              loud == 1);
+    EXPECT_EQ(picture.title.find(" 8000 mN") != std::string::npos, loud == 1) << picture.title;
     EXPECT_EQ(picture.title == "C-1.json", loud > 1) << picture.title;
   }
 }

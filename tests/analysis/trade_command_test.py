@@ -150,7 +150,7 @@ def check_budgets(folder):
     assert "--explain" in tacto.error_of("spatial", "C", "-o", "no", "--explain", cwd=folder, code=2)["where"]
     assert tacto.error_of("spatial", "C", "-o", "no", "--quality", "fast", "--band", "off", cwd=folder, code=2)["where"] == "--quality"
     cells = tacto.run_json("spectrogram", "C", "-o", "C.nc", "--quality", "exact", "--explain", cwd=folder)
-    assert cells["resolution"] == "whole" and len(cells["chosen"][0]["tried"]) == 2
+    assert cells["samples_used"] == "all" and len(cells["chosen"][0]["tried"]) == 2
 
 
 def check_calibration(folder):

@@ -159,6 +159,34 @@ def a_class_that_matlab_would_not_write_is_not_empty():
     assert refusals["padded"] in ("", refusals["none"]), refusals
 
 
+def a_class_that_cannot_hold_its_numbers_is_refused():
+    """matio would cut 1.75 to 1 where a class int16 is stored as doubles; it converts where no number changes."""
+    rows = 300
+    stored_as = {"cut": ("int16", np.float64), "wrapped": ("uint8", np.int16), "signed": ("uint16", np.int16), "rounded": ("double", np.int64),
+                 "short": ("single", np.float64), "widened": ("double", np.int32), "up": ("int16", np.uint8), "same": ("int16", np.int16)}
+    with h5py.File("classes.mat", "w", userblock_size=512) as file:
+        for name, (matlab, kind) in stored_as.items():
+            file[name] = (np.arange(rows) * 1.75 % 120).astype(kind).reshape(1, -1)
+            set_class(file[name], matlab)
+    with open("classes.mat", "r+b") as file:
+        file.write(HEAD_73)
+    listed = {row["name"]: row["not_imported"] for row in tacto.run_json("import", "classes.mat")["arrays"]}
+    kept = {"widened", "up", "same"}
+    assert {name for name, refusal in listed.items() if not refusal} == kept, listed
+    words = ["import", "classes.mat", "--rate", "1kHz", "-o", "x", "--force", "--channel"]
+    for name, (_, kind) in stored_as.items():
+        tacto.run(*words, f"signal={name}", code=0 if name in kept else UNSUITABLE)
+        if name in kept:
+            assert np.array_equal(stored("x")[:, 0], (np.arange(rows) * 1.75 % 120).astype(kind)), name
+
+
+def a_cut_name_of_matlab_is_no_table():
+    for text in (b"MATLAB 5.0", b"1,2\n3,4\n", b""):
+        pathlib.Path("small.mat").write_bytes(text)
+        error = tacto.error_of("import", "small.mat", code=MALFORMED)
+        assert error["where"] == "small.mat" and "MATLAB" in error["what"], error
+
+
 def files_of_octave():
     for version in ("-v6", "-v7"):  # both are version 5 of the format, the second compressed
         octave = f"data.force = sin(1:{ROWS})'; data.count = int16(1:{ROWS}); save('{version}', 'octave.mat', 'data');"
@@ -171,5 +199,5 @@ def files_of_octave():
 
 if __name__ == "__main__":
     for test in (numbers_are_those_of_scipy, without_options_it_lists, each_refusal_names_its_array, nan_is_refused_or_becomes_a_gap,
-                 a_cut_file_is_never_silently_short, version_7_3, a_class_that_matlab_would_not_write_is_not_empty, files_of_octave):
+                 a_cut_file_is_never_silently_short, version_7_3, a_class_that_cannot_hold_its_numbers_is_refused, a_cut_name_of_matlab_is_no_table, a_class_that_matlab_would_not_write_is_not_empty, files_of_octave):
         tacto.in_folder(test)

@@ -166,7 +166,8 @@ def wrong_use():
     tacto.run("record", "-d", "sim:", "--time", "0.5s", "-o", "c")
     tacto.run("export", "nothing", code=NOT_FOUND)
     tacto.run("export", "sandpaper-1990", code=UNSUITABLE)
-    tacto.run("export", "c", "-o", "c.txt.wav", code=USAGE)
+    for foreign in ("c.txt.wav", "c.xlsx", "c.h5"):  # a table in a file of that name would open nowhere
+        tacto.run("export", "c", "-o", foreign, code=USAGE)
     tacto.run("export", "c")
     _, said = tacto.run("export", "c", code=USAGE)
     assert "--force" in said, said

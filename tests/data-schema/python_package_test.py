@@ -51,6 +51,24 @@ def the_wheel_plays():
     assert float(rms) > 0.001 and int(ticks) > 1000 and "installed" in place, done.stdout
 
 
+def the_readme_starts_a_daemon():
+    """Its first line writes the configuration with which the second starts the daemon; that of the daemon's help starts it, too."""
+    daemon_test.prepare_files()
+    pathlib.Path("tactographd.json").unlink()
+    write, start = example("Start a daemon").split("\n")
+    assert start == "tactographd --config tactographd.json &", start
+    subprocess.run(["bash", "-c", write], check=True)
+    with daemon_test.daemon():
+        done = subprocess.run(["/usr/bin/python3", "-c", example("Play") + "\nprint(len(played.time))"],
+                              capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(ROOT / "data-schema/python")})
+    assert done.returncode == 0 and int(done.stdout.split()[-1]) > 1000, done
+    shown = subprocess.run([daemon_test.DAEMON, "--help"], capture_output=True, text=True)
+    config, = (line for line in (shown.stdout + shown.stderr).split("\n") if '"kind"' in line)
+    pathlib.Path("tactographd.json").write_text(config)
+    with daemon_test.daemon():
+        pass
+
+
 def problem(call):
     from tactograph import DaemonProblem
     try:
@@ -114,6 +132,6 @@ def over_tcp_with_a_token():
 
 
 if __name__ == "__main__":
-    for test in (the_wheel_plays, refusals_have_the_kinds_of_the_daemon, events_come_over_a_second_connection,
+    for test in (the_wheel_plays, the_readme_starts_a_daemon, refusals_have_the_kinds_of_the_daemon, events_come_over_a_second_connection,
                  a_daemon_that_ends_is_a_connection_error, over_tcp_with_a_token):
         tacto.in_folder(test)

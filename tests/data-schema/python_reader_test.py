@@ -150,6 +150,35 @@ def a_stored_session_is_read():
     assert read.attrs["closed"] == 1 and json.loads(read.attrs["losses"]) == []
 
 
+def a_session_of_forces_equals_its_export():
+    pathlib.Path("pool.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "name": "pool", "patches": [
+        {"name": "pool", "place": {"x_m": -0.04, "y_m": -0.04}, "size": {"width_m": 0.06, "height_m": 0.06},
+         "layers": [{"type": "spring", "stiffness_n_per_m": 50}]}]}))
+    pathlib.Path("hand.csv").write_text("time_s,x_m,y_m\n0,-0.065,-0.04\n0.3,-0.03,-0.05\n")
+    run("play", "pool", "-d", "sim:planar,hand=minsky-radial", "--finger-path", "hand.csv", "-o", "held")
+    run("session", "held", "-o", "held.csv")
+    rows = np.genfromtxt("held.csv", delimiter=",", names=True, comments="#")
+    read = tactograph.read_session("held")
+    assert list(read.axis.values) == ["x", "y"] and len(rows) == len(read.time) > 1000 and read.position.units == "m" and read.force.units == "N"
+    for name in ("tick", "playing", "fault", "late", "limited", "rms_limited"):
+        assert np.array_equal(rows[name], read[name]), name
+    assert np.allclose(rows["time_s"], read.time, rtol=0, atol=1e-9)
+    for axis in ("x", "y"):
+        assert np.allclose(rows[f"{axis}_m"], read.position.sel(axis=axis), rtol=0, atol=1e-12)
+        assert np.array_equal(np.float32(rows[f"force_{axis}_n"]), read.force.sel(axis=axis))
+    assert np.ptp(read.force.values) > 0.5
+
+
+def all_is_in_si_units():
+    """No variable and no attribute of any reader is in millimetres; the file of a spectrogram is."""
+    run("spectrogram", "ridge", "-o", "loud.nc", "--window", "4mm", "--hop", "1mm", "--scaling", "amplitude")
+    for read in (tactograph.read_recording("ridge"), tactograph.read_texture("ridge"), tactograph.read_session("play"),
+                 tactograph.read_spectrogram("ridge"), tactograph.read_spectrogram("loud"), tactograph.read_session("held")):
+        assert read.position.units == "m", read
+        units = [read[name].attrs.get("units", "") for name in read.variables]
+        assert not any("mm" in unit for unit in units) and not any(name.endswith("_mm") for name in read.attrs), (units, read.attrs)
+
+
 def a_session_of_the_daemon_has_its_gains():
     run_daemon.prepare_files(device="sim:paced=0")  # ticks come as fast as the daemon reads, whatever the machine does
     with run_daemon.daemon():
@@ -206,6 +235,9 @@ def what_cannot_be_read_is_named():
     refusal(tactograph.read_texture, "ridge", "frames")
     pathlib.Path("ridge.texture.wav").unlink()
     refusal(tactograph.read_texture, "ridge", "samples are missing")
+    for stroke in ("several-02", "several-01"):
+        pathlib.Path(f"{stroke}.texture.json").write_text("{}")
+    refusal(tactograph.read_texture, "several", "several-01, several-02")
     pathlib.Path("empty.session").write_bytes(b"")
     refusal(tactograph.read_session, "empty", "header")
     pathlib.Path("text.nc").write_text("no netCDF")
@@ -240,6 +272,7 @@ def main():
         make_files()
         for check in (changed_numbers_are_refused, texture_has_its_positions_and_band, clipping_is_masked, recording_is_physical_and_keeps_its_gaps,
                       average_tells_its_spread, spectrogram_is_upright_and_loaded, the_version_is_that_of_the_program, a_stored_session_is_read,
+                      a_session_of_forces_equals_its_export, all_is_in_si_units,
                       a_session_holds_what_the_tray_sensor_measured, a_session_of_the_daemon_has_its_gains, a_session_that_was_cut_is_read_up_to_there,
                       a_newer_minor_version_is_read_with_a_warning, what_cannot_be_read_is_named):
             check()

@@ -244,6 +244,18 @@ TEST_F(TextureFile, ARecordingIsToldApart) {
   }
 }
 
+TEST_F(TextureFile, TexturesOfTheStrokesAreNamedWhereOneIsMissing) {
+  for (const char* name : {"oak-02", "oak-01", "oaks-01"})
+    ASSERT_TRUE(write_texture(folder_ / name, example()));
+  for (const char* name : {"oak", "oak.texture.json", "oak.texture.wav"}) {
+    const Error error = error_of(name);
+    EXPECT_EQ(error.kind, ErrorKind::not_found) << name;
+    EXPECT_NE(error.remedy.find(folder_ / "oak-01" + ", " + folder_ / "oak-02"), std::string::npos)
+        << error.remedy;
+    EXPECT_EQ(error.remedy.find("oaks"), std::string::npos) << error.remedy;
+  }
+}
+
 TEST_F(TextureFile, AbsentBrokenAndDisagreeing) {
   EXPECT_EQ(error_of("nothing").kind, ErrorKind::not_found);
   ASSERT_TRUE(write_texture(folder_ / "oak", example()));

@@ -24,6 +24,21 @@ def every_verb_helps_with_an_example():
     assert "tactograph 0." in tacto.run("--version")[0]
 
 
+def no_sentence_of_a_help_is_broken():
+    """A line that is no row of a list is a whole paragraph: a terminal of any width wraps it."""
+    def check(*names):
+        text = tacto.run(*names, "--help")[0]
+        for line in text.split("\n")[2:]:  # after purpose and usage
+            assert not line or line.startswith(" ") or line.endswith((".", ":")), (names, line)
+        parts = re.search(r"^Subcommands:\n((?:  .*\n)+)", text, re.M)
+        return re.findall(r"^  ([a-z]+)", parts[1], re.M) if parts else []
+    verbs = set(re.findall(r"^  ([a-z-]+) ", tacto.run("--help")[0].split("\nTopics")[0], re.M)) - {"help"}
+    parts = {(verb, part) for verb in verbs for part in check(verb)}
+    assert ("experiment", "power") in parts, parts
+    for names in parts:
+        check(*names)
+
+
 def words_that_are_no_verbs_are_refused():
     for arguments in ([], ["carve"], ["info"], ["info", "--frob"], ["experiment"], ["experiment", "fitt", "x.csv"]):
         _, err = tacto.run(*arguments, code=2)
@@ -176,7 +191,7 @@ def help_begins_with_the_usual_options():
 
 
 if __name__ == "__main__":
-    for test in (every_verb_helps_with_an_example, words_that_are_no_verbs_are_refused, no_default_is_shown_that_is_none, what_is_missing_is_named, the_next_command_can_be_run, json_goes_to_stdout_alone,
+    for test in (every_verb_helps_with_an_example, no_sentence_of_a_help_is_broken, words_that_are_no_verbs_are_refused, no_default_is_shown_that_is_none, what_is_missing_is_named, the_next_command_can_be_run, json_goes_to_stdout_alone,
                  an_emulated_finger_strokes_for_the_time_asked,
                  a_full_output_is_an_error, closed_outputs_get_nothing, bash_completes,
                  completion_offers_values, the_nearest_word_is_named, errors_are_json_where_the_result_is,

@@ -72,20 +72,34 @@ def changed_cells_are_found():
             assert "changed.nc" in report, report
 
 
-def changed_attributes_are_found():
+# Attributes that give no number a meaning.
+ONLY_WORDS = {"Conventions", "title", "source", "long_name", "flag_values", "flag_meanings", "_FillValue"}
+
+
+def another_value(value):
+    return value + "x" if isinstance(value, str) else np.asarray(value) * 2 + 1
+
+
+def each_attribute_with_a_meaning_is_covered():
+    """One of the variables' and of the file's attributes at a time, changed or deleted."""
     make()
-    for name in ("oak.nc", "all.nc"):
-        for variable, attribute, value in ((None, "hop_mm", 2.5), (None, "window_mm", 3), (None, "window", "Hann"), (None, "quantity_unit", "mN"),
-                                           (None, "simulated", "nothing"), ("position", "units", "m"), ("density", "units", "N2 m"),
-                                           ("spatial_frequency", "units", "1/m"), ("density_db", "units", "Np"), ("known_to", "units", "1/m")):
-            shutil.copy(name, "changed.nc")
-            with netCDF4.Dataset("changed.nc", "a") as file:
-                (file[variable] if variable else file).setncattr(attribute, value)
-            assert not tacto.run_json("validate", "changed.nc", code=MALFORMED)["valid"], (variable, attribute)
-        shutil.copy(name, "changed.nc")
-        with netCDF4.Dataset("changed.nc", "a") as file:
-            file.delncattr("simulated")  # measured data have none
-        assert not tacto.run_json("validate", "changed.nc", code=MALFORMED)["valid"]
+    tacto.run("spectrogram", "oak", "-o", "amplitude.nc", "--scaling", "amplitude")
+    for name in ("oak.nc", "all.nc", "amplitude.nc"):
+        with netCDF4.Dataset(name) as file:
+            places = [(variable, attribute) for variable in (None, *file.variables)
+                      for attribute in (file[variable] if variable else file).ncattrs() if attribute not in ONLY_WORDS]
+        assert {(None, "window_mm"), (None, "hop_mm"), (None, "pitch_mm"), (None, "padded_samples"), (None, "decimation"), (None, "window"),
+                ("position", "units"), ("spatial_frequency", "units"), ("known_from", "units"), ("known_to", "units")} < set(places), places
+        for variable, attribute in places:
+            for delete in (False, True):
+                shutil.copy(name, "changed.nc")
+                with netCDF4.Dataset("changed.nc", "a") as file:
+                    item = file[variable] if variable else file
+                    if delete:
+                        item.delncattr(attribute)
+                    else:
+                        item.setncattr(attribute, another_value(item.getncattr(attribute)))
+                tacto.run("validate", "changed.nc", code=MALFORMED)
 
 
 def a_file_without_a_checksum_is_read_and_invalid():
@@ -101,6 +115,6 @@ def a_file_without_a_checksum_is_read_and_invalid():
 
 
 if __name__ == "__main__":
-    for test in (decibels_stand_beside_densities_frequency_first, changed_cells_are_found, changed_attributes_are_found,
+    for test in (decibels_stand_beside_densities_frequency_first, changed_cells_are_found, each_attribute_with_a_meaning_is_covered,
                  a_file_without_a_checksum_is_read_and_invalid):
         tacto.in_folder(test)

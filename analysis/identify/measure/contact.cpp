@@ -47,19 +47,15 @@ Eigen::VectorXd values_of(const NumberTable& table, std::size_t column) {
   return values;
 }
 
-// `columns`: the constant first.
-Result<ContactFit> fit_columns(const Eigen::MatrixXd& columns, const Eigen::VectorXd& peak,
-                               std::span<const ContactInput> inputs, const std::string& source) {
+// `columns`: the constant first. None if a column is constant or a linear function of those before it.
+std::optional<ContactFit> fit_columns(const Eigen::MatrixXd& columns, const Eigen::VectorXd& peak,
+                                      std::span<const ContactInput> inputs) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
   const Index terms = columns.cols(), taps = columns.rows();
   const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(taps, terms);
   const Eigen::MatrixXd r = qr.matrixQR().topRows(terms).triangularView<Eigen::Upper>();
   for (Index k = 1; k < terms; ++k)
-    if (std::abs(r(k, k)) <= kCollinear * columns.col(k).norm())
-      return fail(ErrorKind::unsuitable,
-                  fmt::format("column {} is constant or a linear function of the columns before it",
-                              inputs[static_cast<std::size_t>(k - 1)].column),
-                  source, "vary velocity, acceleration and grip independently, or omit the column");
+    if (std::abs(r(k, k)) <= kCollinear * columns.col(k).norm()) return std::nullopt;
   const Eigen::VectorXd value = qr.solve(peak);
   const Eigen::VectorXd residual = peak - columns * value;
   const double freedom = static_cast<double>(taps - terms);
@@ -149,6 +145,10 @@ Result<ContactPulse> pulse_of(const Tap& tap, double rate_hz) {
   return pulse;
 }
 
+std::string taps_words(const char* begin, std::size_t taps) {
+  return fmt::format("{} {} {}", begin, taps, taps == 1 ? "tap" : "taps");
+}
+
 double mean_force(const ContactPulse& pulse) {
   return pulse.impulse / pulse.duration_s;
 }
@@ -163,13 +163,13 @@ bool has_peaks(const std::vector<std::string>& names) {
   return std::ranges::find(names, "peak_n") != names.end();
 }
 
-Result<std::vector<ContactFit>> fit_contact(const NumberTable& table, const std::string& source) {
+Result<ContactFits> fit_contact(const NumberTable& table, const std::string& source) {
   const auto peak = column_of(table, "peak_n"), velocity = column_of(table, kInputs[0].column);
   if (!peak || !velocity)
     return fail(ErrorKind::malformed, fmt::format("it has no column {}", peak ? "velocity_mps" : "peak_n"),
                 source, "name the columns velocity_mps, peak_n, and if known acceleration_mps2 and grip_n");
   if (table.rows() < kLeastContacts)
-    return fail(ErrorKind::unsuitable, fmt::format("it has {} taps", table.rows()), source,
+    return fail(ErrorKind::unsuitable, taps_words("it has", table.rows()), source,
                 fmt::format("tap {} times or more", kLeastContacts));
   for (std::size_t row = 0; row < table.rows(); ++row)
     if (!(table.at(row, *velocity) < 0))
@@ -178,23 +178,30 @@ Result<std::vector<ContactFit>> fit_contact(const NumberTable& table, const std:
                   "velocity and acceleration are positive away from the surface: change the sign of both");
   Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(static_cast<Index>(table.rows()), 1);
   std::vector<ContactInput> inputs;
-  std::vector<ContactFit> fits;
+  ContactFits found;
   for (const ContactInput& input : kInputs) {
     const auto column = column_of(table, input.column);
     if (!column) continue;
     inputs.push_back(input);
     columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
     columns.rightCols(1) = input.sign * values_of(table, *column);
-    auto fit = fit_columns(columns, values_of(table, *peak), inputs, source);
-    TACTO_TRY(fit);
-    fits.push_back(std::move(*fit));
+    if (auto fit = fit_columns(columns, values_of(table, *peak), inputs)) {
+      found.fits.push_back(std::move(*fit));
+      continue;
+    }
+    if (inputs.size() == 1)
+      return fail(ErrorKind::unsuitable, "the velocity is the same for all taps", source,
+                  "tap at different velocities");
+    inputs.pop_back();
+    columns.conservativeResize(Eigen::NoChange, columns.cols() - 1);
+    found.unused_columns.emplace_back(input.column);
   }
-  return fits;
+  return found;
 }
 
 Result<ContactPulses> contact_pulses(const Taps& taps, std::size_t fitted) {
   if (taps.taps.size() < kLeastContacts)
-    return fail(ErrorKind::unsuitable, fmt::format("there are {} taps", taps.taps.size()), "taps",
+    return fail(ErrorKind::unsuitable, taps_words("found", taps.taps.size()), "taps",
                 fmt::format("tap {} times or more", kLeastContacts));
   ContactPulses found;
   std::vector<double> durations_s;

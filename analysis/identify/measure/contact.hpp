@@ -27,6 +27,12 @@ struct ContactFit {
   double rms_n = 0, left_out_n = 0;
 };
 
+struct ContactFits {
+  std::vector<ContactFit> fits;
+  /// Columns that are constant or a linear function of those before them: no fit has them.
+  std::vector<std::string> unused_columns;
+};
+
 /// The peak force of taps by ordinary least squares on the velocity, then also on the acceleration, then also
 /// on the grip force (Fiene and Kuchenbecker 2007, section 4: (4), (6) and the fit of Fig. 7), each with a
 /// constant:
@@ -35,9 +41,8 @@ struct ContactFit {
 ///
 /// Columns: `velocity_mps` (before contact, positive away from the surface, so that it is negative),
 /// `peak_n`, and if known `acceleration_mps2` and `grip_n`; other columns are ignored. Errors: malformed: a
-/// column is missing, a velocity is not negative; unsuitable: fewer than 10 taps, or an input that is
-/// constant or a linear function of the others.
-schema::Result<std::vector<ContactFit>> fit_contact(const NumberTable& table, const std::string& source);
+/// column is missing, a velocity is not negative; unsuitable: fewer than 10 taps, or a constant velocity.
+schema::Result<ContactFits> fit_contact(const NumberTable& table, const std::string& source);
 
 /// Whether a table has one row for each tap (`peak_n`), not one for each sample.
 bool has_peaks(const std::vector<std::string>& names);

@@ -2,10 +2,12 @@
 // The module tactograph-matio.so.
 #include "data-schema/exchange/matio/matio_functions.hpp"
 
+#include <H5Dpublic.h>
 #include <H5Epublic.h>
 #include <H5Fpublic.h>
 #include <H5Lpublic.h>
 #include <H5Ppublic.h>
+#include <H5Tpublic.h>
 #include <H5public.h>
 
 namespace {
@@ -26,6 +28,23 @@ long hdf5_members(const char* path, const char* group) {
                                          &count, H5P_DEFAULT);
   H5Fclose(file);
   return done < 0 ? -1 : count;
+}
+
+tacto::schema::StoredNumbers hdf5_numbers(const char* path, const char* array) {
+  tacto::schema::StoredNumbers stored;
+  const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t set = file < 0 ? -1 : H5Dopen2(file, array, H5P_DEFAULT);
+  const hid_t type = set < 0 ? -1 : H5Dget_type(set);
+  if (type >= 0) {
+    const H5T_class_t kind = H5Tget_class(type);
+    stored.floating = kind == H5T_FLOAT;
+    stored.has_sign = kind == H5T_FLOAT || H5Tget_sign(type) == H5T_SGN_2;
+    stored.bytes = kind == H5T_FLOAT || kind == H5T_INTEGER ? H5Tget_size(type) : 0;
+    H5Tclose(type);
+  }
+  if (set >= 0) H5Dclose(set);
+  if (file >= 0) H5Fclose(file);
+  return stored;
 }
 
 }  // namespace
@@ -49,6 +68,7 @@ tacto_matio_functions() {
       Mat_VarGetStructFieldnames,
       Mat_VarGetStructFieldByIndex,
       hdf5_members,
+      hdf5_numbers,
   };
   // As in the module of netCDF: HDF5's clean-up at exit crashes after a full disk.
   [[maybe_unused]] static const herr_t no_cleanup = H5dont_atexit();

@@ -5,9 +5,17 @@
 
 #include <matio.h>
 
+#include <cstddef>
+
 namespace tacto::schema {
 
-/// Each member but the last is a function Mat_... of matio.
+/// How a file of version 7.3 stores the numbers of an array. `bytes` is 0 if they are no numbers.
+struct StoredNumbers {
+  bool floating = false, has_sign = false;
+  std::size_t bytes = 0;
+};
+
+/// Each member but the last two is a function Mat_... of matio.
 struct MatioFunctions {
   decltype(&::Mat_Open) open;
   decltype(&::Mat_CreateVer) create;
@@ -27,6 +35,9 @@ struct MatioFunctions {
   /// HDF5 cannot open it, as after the file was cut. matio opens such a file without an error and finds no
   /// variables; of a struct without the attribute MATLAB_fields it leaves fields out.
   long (*hdf5_members)(const char* path, const char* group);
+  /// Of an array as "/data/force". matio converts to the class that the array's attribute names, whatever is
+  /// stored.
+  StoredNumbers (*hdf5_numbers)(const char* path, const char* array);
 };
 
 inline constexpr const char* kMatioModule = "tactograph-matio.so";

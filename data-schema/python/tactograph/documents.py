@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Find a file by its stem, read its JSON document, check kind, version and checksum."""
+import glob
 import hashlib
 import json
 import pathlib
@@ -27,7 +28,9 @@ def find(name, endings):
             break
     path = pathlib.Path(name + endings[0])
     if not path.is_file():
-        raise FileProblem("there is no such file", path, f"give a stem, or a name that ends in {' or '.join(endings)}")
+        others = sorted(str(other)[:-len(endings[0])] for other in path.parent.glob(f"{glob.escape(pathlib.Path(name).name)}-*{endings[0]}"))
+        raise FileProblem("there is no such file", path, f"give a stem, or a name that ends in {' or '.join(endings)}"
+                          + (f"; there are {', '.join(others)}" if others else ""))
     return path
 
 

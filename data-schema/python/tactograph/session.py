@@ -15,12 +15,13 @@ _MARK = 0x31534354  # "TCS1"
 _BLOCK = struct.Struct("<IB3xI8s")
 _LARGEST = 1 << 20
 _TICK = np.dtype([("after_ns", "<u4"), ("encoder_count", "<i4"), ("drive", "<f4"), ("flags", "<u4"), ("lateness_ns", "<i4")])
-_HEADER, _TICKS, _COMMAND, _LOSS, _EVENT, _END, _MEASURED = 0, 1, 2, 3, 4, 5, 7
+_HEADER, _TICKS, _COMMAND, _LOSS, _EVENT, _END, _MEASURED, _AXIS_TICKS = 0, 1, 2, 3, 4, 5, 7, 8
 _NEWEST_MINOR = 1
 _NOT_MEASURED = -2**31
 _GAIN, _ARM = 0x09, 0x0B
 _STEERING = {0x09, 0x0C, 0x0D, 0x0E, 0x17}  # gain, play, stop, disarm, change: counted in a tick's flags
 _FLAGS = {"playing": 2, "fault": 4, "limited": 8 | 16, "late": 32, "energy_limited": 64, "gated": 128, "blind": 256, "touching": 512}
+_FORCE_FLAGS = {name: _FLAGS[name] for name in ("playing", "fault", "limited", "late")} | {"rms_limited": _FLAGS["energy_limited"]}
 _CAUSES = ("link", "recorder", "disk")
 
 
@@ -32,7 +33,9 @@ def read_session(name):
     the amplifier's input), `gain` (factor on the textures' own gains), `lateness` (s, NaN where it was not measured),
     `device_time` (s), `flags`, and one mask a flag: `playing`, `fault`, `limited`, `late`, `energy_limited`, `gated`,
     `blind`, `touching`. `after_gap` is True at the first tick after lost ones. Where the device reports its tray, `measured`
-    (m) holds the sensor's own samples along `measured_time` (s since the first tick). Attributes: the header; `events`
+    (m) holds the sensor's own samples along `measured_time` (s since the first tick). The session of a force device instead has
+    `position` (m), `force` (N, on the hand) and `encoder_count` along `time` and `axis`, `tick`, `device_time` (s), `flags`,
+    `playing`, `fault`, `limited` (a peak or the slew), `late`, `rms_limited` and `after_gap`. Attributes: the header; `events`
     and `losses` as JSON texts; `closed`, 0 where the session ends without its last block. Raises FileProblem.
     """
     path = find(name, [".session"])
@@ -67,7 +70,7 @@ class _Reader:
 
     def read(self, blocks):
         take = {_TICKS: self._take_ticks, _COMMAND: self._take_command, _LOSS: self._take_loss, _EVENT: self._take_event,
-                _END: self._take_end, _MEASURED: self._take_measured}
+                _END: self._take_end, _MEASURED: self._take_measured, _AXIS_TICKS: self._take_axis_ticks}
         for kind, payload in blocks:
             if kind in take:  # later versions may add types
                 take[kind](payload)
@@ -76,6 +79,11 @@ class _Reader:
     def _take_ticks(self, payload):
         first, time_ns, count = struct.unpack_from("<QqI", payload)
         rows = np.frombuffer(payload, _TICK, count, offset=20)
+        self.ticks.append((first + np.arange(count, dtype=np.int64), time_ns + rows["after_ns"].astype(np.int64), rows))
+
+    def _take_axis_ticks(self, payload):
+        first, time_ns, count, axes = struct.unpack_from("<QqII", payload)
+        rows = np.frombuffer(payload, _axis_tick(axes), count, offset=24)
         self.ticks.append((first + np.arange(count, dtype=np.int64), time_ns + rows["after_ns"].astype(np.int64), rows))
 
     def _take_command(self, payload):
@@ -106,16 +114,19 @@ class _Reader:
     def _dataset(self):
         tick = _joined([part[0] for part in self.ticks], np.int64)
         device_ns = _joined([part[1] for part in self.ticks], np.int64)
-        rows = _joined([part[2] for part in self.ticks], _TICK)
+        forces = self.header.get("forces")
+        rows = _joined([part[2] for part in self.ticks], _axis_tick(len(forces["axes"])) if forces else _TICK)
         first_ns = device_ns[0] if len(device_ns) else 0
-        variables = self._columns(tick, rows) | _masks(rows["flags"])
+        variables = _force_columns(tick, rows, forces["axes"]) if forces else self._columns(tick, rows)
+        variables |= _masks(rows["flags"], _FORCE_FLAGS if forces else _FLAGS)
         variables["device_time"] = ("time", 1e-9 * device_ns, {"units": "s", "long_name": "time by the device's clock"})
         variables["after_gap"] = ("time", np.diff(tick, prepend=tick[:1] - 1) > 1, {"long_name": "ticks are missing before this one"})
         variables |= self._measured_since(first_ns)
         time = ("time", 1e-9 * (device_ns - first_ns), {"units": "s", "long_name": "time since the first tick"})
         attributes = plain_attributes(self.header, set())
         attributes |= {"events": json.dumps(self.events), "losses": json.dumps(self.losses), "closed": int(self.closed)}
-        return xarray.Dataset(variables, {"time": time}, attributes)
+        axis = {"axis": [each["name"] for each in forces["axes"]]} if forces else {}
+        return xarray.Dataset(variables, {"time": time} | axis, attributes)
 
     def _measured_since(self, first_ns):
         if "measured" not in self.header:
@@ -164,5 +175,20 @@ def _joined(parts, kind):
     return np.concatenate(parts) if parts else np.empty(0, kind)
 
 
-def _masks(flags):
-    return {name: ("time", (flags & bits) != 0, {"long_name": name.replace("_", " ")}) for name, bits in _FLAGS.items()}
+def _masks(flags, bits_of):
+    return {name: ("time", (flags & bits) != 0, {"long_name": name.replace("_", " ")}) for name, bits in bits_of.items()}
+
+
+def _axis_tick(axes):
+    return np.dtype([("after_ns", "<u4"), ("encoder_count", "<i4", (axes,)), ("force", "<f4", (axes,)), ("flags", "<u4")])
+
+
+def _force_columns(tick, rows, axes):
+    metres_per_count = np.array([axis["metres_per_count"] for axis in axes])
+    return {
+        "tick": ("time", tick, {"long_name": "tick since arming"}),
+        "encoder_count": (("time", "axis"), rows["encoder_count"].copy(), {"long_name": "encoder count"}),
+        "position": (("time", "axis"), rows["encoder_count"] * metres_per_count, {"units": "m", "long_name": "position"}),
+        "force": (("time", "axis"), rows["force"].copy(), {"units": "N", "long_name": "force on the hand"}),
+        "flags": ("time", rows["flags"].copy(), {"long_name": "flags of the wire's ticks"}),
+    }

@@ -67,8 +67,10 @@ ShownRange shown_range(std::span<const double> values) {
 
 std::string out_of_range_text(const ShownRange& range, const std::string& unit) {
   const double percent = 100 * static_cast<double>(range.beyond) / static_cast<double>(range.values);
-  return fmt::format("{:.2g} % of the values are beyond the axis, up to {:.3g} {}", percent, range.furthest,
-                     unit);
+  // Without an exponent: 8000 mN.
+  const std::string furthest = std::abs(range.furthest) < 1000 ? fmt::format("{:.3g}", range.furthest)
+                                                               : fmt::format("{:.0f}", range.furthest);
+  return fmt::format("{:.2g} % of the values are beyond the axis, up to {} {}", percent, furthest, unit);
 }
 
 }  // namespace tacto::spatial
