@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 
 #include "analysis/page/html.hpp"
 #include "analysis/page/picture_svg.hpp"
@@ -38,12 +39,24 @@ std::string layer_name(const JudgedLayer& layer) {
   return fmt::format("{} {} of patch '{}'", layer.type, layer.index, layer.patch);
 }
 
+bool is_limit(std::string_view key) {
+  return key.ends_with("_limit_n_per_m") || key.starts_with("simulated") || key.starts_with("adversary");
+}
+
+bool is_verdict(std::string_view key) {
+  return !is_limit(key);
+}
+
+bool is_layer_or_limit(std::string_view key) {
+  return key == "patch" || key == "layer" || is_limit(key);
+}
+
 // Columns that are empty in all rows are left out.
-std::string rows_table(const std::vector<cli::Report>& rows) {
+std::string rows_table(const std::vector<cli::Report>& rows, bool (*shown)(std::string_view key)) {
   std::vector<std::string> keys;
   for (const cli::Report& row : rows)
     for (const auto& [key, value] : cli::ReportPrinter::entries(row))
-      if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+      if (shown(key) && std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
   return html_table(cli::labels_of(keys), rows.size(), [&](std::size_t row, std::size_t column) {
     for (const auto& [key, value] : cli::ReportPrinter::entries(rows[row]))
       if (key == keys[column]) return cli::cell_text(key, value);
@@ -285,9 +298,11 @@ schema::Result<std::string> design_page(const Design& design, const std::string&
     return figure.name == "verdict" || figure.name.starts_with("remedy: ");
   });
   const DesignTables tables = design_tables(design);
+  const auto every = [](std::string_view /*key*/) { return true; };
   std::string body = fmt::format("<h1>{}</h1>\n", escaped(scene + " on " + design.request.device.name)) +
                      simulated_box(design.simulated) + answer(design_verdict(design)) +
-                     figures_html(figures) + "<h2>Layers</h2>\n" + rows_table(tables.layers);
+                     figures_html(figures) + "<h2>Layers</h2>\n" + rows_table(tables.layers, is_verdict) +
+                     "<h2>Limits</h2>\n" + rows_table(tables.layers, is_layer_or_limit);
   if (!tables.remedies.empty())
     body +=
         fmt::format(
@@ -295,8 +310,8 @@ schema::Result<std::string> design_page(const Design& design, const std::string&
             "again.</p>\n",
             escaped(layer_name(design.layers[*design.first])),
             escaped(holder_name(design.request.judged, design.request))) +
-        rows_table(tables.remedies);
-  body += *drawn + "<h2>What each layer needs</h2>\n" + rows_table(tables.needs) + kDesignNotes;
+        rows_table(tables.remedies, every);
+  body += *drawn + "<h2>What each layer needs</h2>\n" + rows_table(tables.needs, every) + kDesignNotes;
   return html_document("Stability of " + scene, body);
 }
 

@@ -93,13 +93,15 @@ TEST(SampledLoop, WithoutBodiesIsStableUpToTheLimit) {
       for (const double damping : {0.0, 0.2}) {
         const TickTiming timing{1e-3, delay};
         const double limit = stiffness_limit(held, timing, damping);
-        if (limit > 0) EXPECT_TRUE(is_stable(held, timing, {limit * (1 - 1e-6), damping, {}})) << delay;
+        if (limit > 0) {
+          EXPECT_TRUE(is_stable(held, timing, {limit * (1 - 1e-6), damping, {}})) << delay;
+        }
         EXPECT_FALSE(is_stable(held, timing, {limit * (1 + 1e-6) + 1e-3, damping, {}})) << delay;
       }
 }
 
-// A body at rest is a spring to the ground; a mass that a stiff spring couples to the hand, above 4 over the
-// period, swings ever more.
+// A body at rest is a spring to the ground. With a coupling above 4 mass / period^2 the swing of a body
+// grows.
 TEST(SampledLoop, ABodyThatMayRestHasToBeStableInBoth) {
   const HeldMass held{0.5, 2, 300};
   const TickTiming timing{1e-3, 0};
