@@ -83,7 +83,9 @@ constexpr const char* kDesignNotes =
     "than friction dissipates.</p>\n"
     "<p>The margin is the factor by which the stiffness and damping at that place may grow together. Longest "
     "period and "
-    "delay are those of the limit that is judged.</p>\n";
+    "delay are those of the limit that is judged. A body or a lasso is a mass in the same loop: its limits "
+    "are "
+    "those of the springs beside it, and no proof covers it.</p>\n";
 
 // A proof for more hands than the one that is judged has its own, smaller margin.
 std::string margin_words(const JudgedLayer& layer, const DesignRequest& request) {
