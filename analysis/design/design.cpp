@@ -259,7 +259,9 @@ schema::Result<Design> design_scene(const schema::Scene& scene, const std::strin
   }
   if (!design.first) return design;
   const JudgedLayer& first = design.layers[*design.first];
-  if (!first.loop.carries(request.judged, first.total)) design.remedies = remedies_for(first, request);
+  const bool computed = first.total.bodies.empty() || is_computed_with_bodies(request.judged);
+  if (computed && !first.loop.carries(request.judged, first.total))
+    design.remedies = remedies_for(first, request);
   return design;
 }
 

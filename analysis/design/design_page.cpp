@@ -114,6 +114,8 @@ std::string design_verdict(const Design& design) {
   if (layer.verdict == Stability::stable)
     return fmt::format("stable: {} is nearest to its limit, {}{}", where, margin_words(layer, design.request),
                        rest);
+  if (is_nothing(layer.total))
+    return fmt::format("{}: {} ({}){}", to_string(layer.verdict), where, layer.because, rest);
   const Holder judged = design.request.judged;
   const Holder holder = layer.verdict == Stability::unstable && is_proof(judged) ? Holder::nothing : judged;
   const double limit = layer.loop.limit(holder, layer.total);

@@ -38,7 +38,7 @@ std::vector<LoopNumber> loop_numbers(const JudgedLoop& loop, const VirtualLoad& 
   if (load.bodies.size() == 1) {
     numbers.push_back({"stiffness of the body", "_n_per_m", false, 1e-6,
                        [](LoadedLoop& on) -> double& { return on.load.bodies.front().stiffness_n_per_m; }});
-    numbers.push_back({"damping of the body", "_n_s_per_m", false, 1e-6,
+    numbers.push_back({"damping of the body", "_n_s_per_m", true, 1e4,
                        [](LoadedLoop& on) -> double& { return on.load.bodies.front().damping_n_s_per_m; }});
   }
   const LoopNumber dampings[] = {{"viscous friction of the device", "_n_s_per_m", true, 1e5,

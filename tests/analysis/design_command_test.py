@@ -347,6 +347,11 @@ def what_is_computed_of_bodies():
     for factor, code in ((0.999, 0), (1.001, UNSTABLE)):
         design_of(patch(body(0.3, factor * needed, 2)), options=("--hand", "h", "--rate", "1kHz"), code=code)
         assert stable(factor * needed) == (code == 0), factor * needed
+    # More damping of its own is a remedy, too.
+    report = design_of(patch(body(0.3, 3000, 0.5)), options=("--hand", "h", "--rate", "5kHz"), code=UNSTABLE)
+    needed_damping = float({each["change"]: each["needed"] for each in report["remedies"]}["damping of the body"].split()[1])
+    for factor, code in ((0.999, UNSTABLE), (1.001, 0)):
+        design_of(patch(body(0.3, 3000, factor * needed_damping)), options=("--hand", "h", "--rate", "5kHz"), code=code)
     # The limit of springs beside a body, and the slider of the body at its worse end.
     softer = body(0.3, 0.5 * needed, 2)
     row = design_of(patch(softer, spring(10)), options=("--hand", "h", "--rate", "1kHz"))["layers"][1]
@@ -360,7 +365,8 @@ def what_is_computed_of_bodies():
     # Proofs and the lumped formula are of springs and dampers alone; five bodies at a place are too many.
     few = patch(body(0.3, 100, 0.5), spring(10))
     for options in (("--hand", "any"), ("--speed", "10mm/s"), ("--hand", "h", "--lumped")):
-        assert {each["verdict"] for each in design_of(few, options=options)["layers"]} == {"not known"}, options
+        report = design_of(few, options=options)
+        assert {each["verdict"] for each in report["layers"]} == {"not known"} and "remedies" not in report, options
     many = design_of(patch(*[body(0.3, 10, 0.1)] * 5), options=("--hand", "h"))
     assert {each["verdict"] for each in many["layers"]} == {"not known"} and "body 4 of patch 'a'" in many["layers"][0]["because"], many
 
