@@ -156,6 +156,13 @@ bool is_worse(const JudgedLayer& a, const JudgedLayer& b) {
   return rank(a.verdict) != rank(b.verdict) ? rank(a.verdict) < rank(b.verdict) : a.margin < b.margin;
 }
 
+// In the order of Design::layers.
+const schema::ForceLayer& layer_at(const schema::Scene& scene, std::size_t index) {
+  std::size_t patch = 0;
+  while (index >= scene.patches[patch].layers.size()) index -= scene.patches[patch++].layers.size();
+  return scene.patches[patch].layers[index];
+}
+
 // Of layers that act at one place.
 bool has_larger_share(const JudgedLayer& a, const JudgedLayer& b) {
   if (a.margin != b.margin || a.verdict != b.verdict) return false;
@@ -261,7 +268,7 @@ schema::Result<Design> design_scene(const schema::Scene& scene, const std::strin
   const JudgedLayer& first = design.layers[*design.first];
   const bool computed = first.total.bodies.empty() || is_computed_with_bodies(request.judged);
   if (computed && !first.loop.carries(request.judged, first.total))
-    design.remedies = remedies_for(first, request);
+    design.remedies = remedies_for(first, layer_at(scene, *design.first), request);
   return design;
 }
 

@@ -88,9 +88,10 @@ struct Design {
 schema::Result<Design> design_scene(const schema::Scene& scene, const std::string& where,
                                     const DesignRequest& request);
 
-/// Stiffness, rate, damping, delay, encoder step and adaptive viscosity, each changed alone. Rates are those
-/// of the device.
-std::vector<Remedy> remedies_for(const JudgedLayer& layer, const DesignRequest& request);
+/// Stiffness, rate, damping, delay, encoder step, filter of grooves and adaptive viscosity, each changed
+/// alone. Rates are those of the device. `of` is the layer; grooves have a filter.
+std::vector<Remedy> remedies_for(const JudgedLayer& layer, const schema::ForceLayer& of,
+                                 const DesignRequest& request);
 
 /// The holders whose limits this request has: nothing, any, and those for which it has a hand or a speed;
 /// lumped if it is judged.

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include "analysis/design/boundary.hpp"
 #include "analysis/design/design.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/report/value_text.hpp"
+#include "playback/prepare/scene/scene_device.hpp"
 #include "playback/prepare/scene/stable_scene.hpp"
 
 namespace tacto::analysis {
@@ -90,6 +92,32 @@ Remedy raised_rate(const JudgedLayer& layer, const DesignRequest& request) {
           std::nullopt};
 }
 
+// Of grooves: the sigma of the filter that smooths their profile.
+std::optional<Remedy> wider_filter(const JudgedLayer& layer, const schema::ForceLayer& of,
+                                   const DesignRequest& request) {
+  std::optional<Remedy> remedy;
+  of.visit(
+      [&](const schema::GroovesLayer& grooves) {
+        VirtualLoad load = layer.total;
+        const auto good = [&](double filter_m) {
+          schema::GroovesLayer tried = grooves;
+          tried.filter_m = schema::LayerNumber{filter_m};
+          load.stiffness_n_per_m = layer.total.stiffness_n_per_m - layer.own.stiffness_n_per_m +
+                                   playback::local_stiffness_n_per_m(tried);
+          return layer.loop.carries(request.judged, load);
+        };
+        const auto words = [](double filter_m) { return cli::cell_text("_m", filter_m); };
+        const double now_m = grooves.filter_m->value, period_m = grooves.period_m.value;
+        const auto needed_m = first_above(std::max(now_m, 1e-3 * period_m), period_m, good);
+        remedy = {"filter of the grooves", words(now_m), "none suffices", std::nullopt};
+        if (!needed_m) return;
+        remedy->needed = "above " + words(*needed_m);
+        remedy->limit_n_per_m = layer.loop.limit(request.judged, layer.total);
+      },
+      [](const auto& /*other*/) {});
+  return remedy;
+}
+
 // The damper that `adaptive` of all layers there would add; it is computed for nothing held, or for the hand.
 Remedy adaptive_viscosity(const JudgedLayer& layer, const DesignRequest& request) {
   const char* const name = "adaptive viscosity";
@@ -105,10 +133,12 @@ Remedy adaptive_viscosity(const JudgedLayer& layer, const DesignRequest& request
 
 }  // namespace
 
-std::vector<Remedy> remedies_for(const JudgedLayer& layer, const DesignRequest& request) {
+std::vector<Remedy> remedies_for(const JudgedLayer& layer, const schema::ForceLayer& of,
+                                 const DesignRequest& request) {
   std::vector<Remedy> remedies = {raised_rate(layer, request)};
   for (const LoopNumber& number : loop_numbers(layer.loop, layer.total, request.judged))
     remedies.push_back(changed_alone(number, {layer.loop, layer.total}, request.judged));
+  if (auto filter = wider_filter(layer, of, request)) remedies.push_back(std::move(*filter));
   remedies.push_back(adaptive_viscosity(layer, request));
   return remedies;
 }

@@ -677,6 +677,15 @@ def grooves_are_as_stiff_as_their_curvature():
     close(report["layers"][1]["total_stiffness_n_per_m"], 10 + stiffness, 1e-6)
     assert report["layers"][1]["verdict"] == "stable", report
     design_of(patch(spring(10), {**groove, "kappa_n": 2}), code=UNSTABLE)
+    # A wider filter is a remedy of grooves: of a sine it leaves exp(-(2 pi sigma / period)^2 / 2).
+    report = design_of(patch({**groove, "kappa_n": 2}), code=UNSTABLE)
+    needed = {each["change"]: each["needed"] for each in report["remedies"]}["filter of the grooves"]
+    sigma = 1e-6 * float(needed.split()[1])
+    expected = 1e-3 / (2 * np.pi) * np.sqrt(2 * np.log(4 * stiffness / report["layers"][0]["free_limit_n_per_m"]))
+    assert needed.split()[0] == "above" and needed.split()[2] in ("um", "\u00b5m"), needed
+    close(sigma, expected, 1e-3)
+    for factor, code in ((0.999, UNSTABLE), (1.001, 0)):
+        design_of(patch({**groove, "kappa_n": 2, "filter_m": factor * sigma}), code=code)
     # Square grooves with the automatic filter: the curvature of smoothed steps up and down, half a period apart.
     square = design_of(patch({**groove, "profile": "square"}))["layers"][0]
     sigma = 1.5 * np.sqrt(0.242 * 0.5 * 1e-4 / square["free_limit_n_per_m"])
