@@ -45,9 +45,11 @@ constexpr const char* kDesignRule =
     "All of these limits are in the table. A layer that is proved for each passive hand is stable with any "
     "hand. Layers that act at the same place add up, with the patches at the places and in the order of the "
     "scene ('ctl move' and 'ctl raise' can change both); a number with a slider counts at its worse end. The "
-    "stiffness of grooves, noise, height maps and textures is their largest one; other layers are reported "
-    "as not "
-    "known. A layer with `adaptive` adds a damper to its patch, which is a row of its own.\n"
+    "stiffness of grooves, noise, height maps, textures and fields is their largest one. A body or a lasso "
+    "is a "
+    "mass in the same loop; no proof and no lumped formula covers it, and more than four at a place are not "
+    "known. "
+    "A mover is a damper. A layer with `adaptive` adds a damper to its patch, which is a row of its own.\n"
     "The second table: the greatest period and the largest delay at which the place is stable; the damping "
     "that "
     "device and finger need together for each passive hand; the speed below which each hand is proved; the "
@@ -159,7 +161,7 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   design = std::move(*designed);
   Report report = report_of(o, design);
   if (scene->patches.size() > 1) report.add("assumed", kAssumedPlaces);
-  if (o.hold_stable) playback::add_held(report, held, playback::unknown_layers(scene->patches));
+  if (o.hold_stable) playback::add_held(report, held, playback::not_held_layers(scene->patches));
   if (o.outputs.empty()) return report;
   schema::Results results;
   results.verb = "design";

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 #include <span>
 #include <utility>
 
@@ -49,7 +48,11 @@ void judge(JudgedLayer& layer, const DesignRequest& request, const std::vector<s
 
 // The layers that act together at a place, on the axis and at the end of the sliders nearest to the limit.
 JudgedLayer judged_place(const DesignRequest& request, const playback::ActingPatches& place,
-                         const playback::ActingLoad& load) {
+                         playback::ActingLoad load) {
+  if (request.judged == Holder::lumped) {  // a formula of springs and dampers
+    for (const playback::ActingBody& body : load.bodies) load.unknown.push_back(body.name);
+    load.bodies.clear();
+  }
   JudgedLayer worst;
   worst.acting = place.patches;
   worst.x_m = place.x_m;
@@ -57,8 +60,7 @@ JudgedLayer judged_place(const DesignRequest& request, const playback::ActingPat
   for (const schema::DeviceAxis& axis : request.device.axes) {
     if (axis.name == "z") continue;
     const JudgedLoop loop{axis, request.hand, request.speed_mps, 1 / request.rate_hz, request.device.delay_s};
-    for (const double damping : std::set{load.least_damping_n_s_per_m, load.most_damping_n_s_per_m}) {
-      const VirtualLoad total{load.stiffness_n_per_m, damping};
+    for (const VirtualLoad& total : load.at_ends()) {
       const double margin = loop.margin(request.judged, total);
       if (!worst.loop.axis.name.empty() && !(margin < worst.margin)) continue;
       worst.total = total;
@@ -86,8 +88,7 @@ class TapsAtEnd {
     if (!at) return;
     layer.simulated = SimulatedLayers{bench_.worst(*at)};
     if (layer.total.damping_n_s_per_m <= 0 || layer.total.stiffness_n_per_m <= 0) return;
-    const double limit =
-        layer.loop.limit(request_.hand ? Holder::hand : Holder::nothing, layer.total.damping_n_s_per_m);
+    const double limit = layer.loop.limit(request_.hand ? Holder::hand : Holder::nothing, layer.total);
     if (!(limit > 0) || std::isinf(limit)) return;
     const auto factor = bench_.resting_factor(*at, 1.2 * limit / layer.total.stiffness_n_per_m);
     layer.simulated->limit_n_per_m =
@@ -137,6 +138,7 @@ constexpr std::uint64_t kAdversarySeed = 33;
 void search_places(PlaceOfPatch& of_patch, const DesignRequest& request) {
   std::map<std::pair<std::string, double>, double> found;  // the paths are those of axis and damper
   for_each_place(of_patch, [&](JudgedLayer& layer) {
+    if (!layer.total.bodies.empty()) return;  // the paths are those of a hand with springs and dampers alone
     const std::pair key{layer.loop.axis.name, layer.total.damping_n_s_per_m};
     if (!found.contains(key))
       found[key] = playback::least_generating_stiffness(
@@ -152,6 +154,13 @@ bool is_worse(const JudgedLayer& a, const JudgedLayer& b) {
     return verdict == Stability::unstable ? 0 : verdict == Stability::not_known ? 1 : 2;
   };
   return rank(a.verdict) != rank(b.verdict) ? rank(a.verdict) < rank(b.verdict) : a.margin < b.margin;
+}
+
+// In the order of Design::layers.
+const schema::ForceLayer& layer_at(const schema::Scene& scene, std::size_t index) {
+  std::size_t patch = 0;
+  while (index >= scene.patches[patch].layers.size()) index -= scene.patches[patch++].layers.size();
+  return scene.patches[patch].layers[index];
 }
 
 // Of layers that act at one place.
@@ -243,19 +252,23 @@ schema::Result<Design> design_scene(const schema::Scene& scene, const std::strin
       judged.type = is_added(layer) ? "adaptive damper" : std::string(type_of(layer));
       judged.index = j;
       const playback::ActingLoad own = playback::load_of(layer);
-      judged.own = {own.stiffness_n_per_m, own.most_damping_n_s_per_m};
+      judged.own = {own.stiffness_n_per_m, own.most_damping_n_s_per_m, {}};
+      for (const playback::ActingBody& body : own.bodies)
+        judged.own = {body.most.stiffness_n_per_m, body.most.damping_n_s_per_m, {body.most}};
       design.layers.push_back(std::move(judged));
     }
   for (std::size_t i = 0; i < design.layers.size(); ++i) {
     const JudgedLayer& layer = design.layers[i];
-    if (layer.verdict == Stability::not_reached || layer.own.is_nothing()) continue;
+    if (layer.verdict == Stability::not_reached || is_nothing(layer.own)) continue;
     if (!design.first || is_worse(layer, design.layers[*design.first]) ||
         has_larger_share(layer, design.layers[*design.first]))
       design.first = i;
   }
   if (!design.first) return design;
   const JudgedLayer& first = design.layers[*design.first];
-  if (!first.loop.carries(request.judged, first.total)) design.remedies = remedies_for(first, request);
+  const bool computed = first.total.bodies.empty() || is_computed_with_bodies(request.judged);
+  if (computed && !first.loop.carries(request.judged, first.total))
+    design.remedies = remedies_for(first, layer_at(scene, *design.first), request);
   return design;
 }
 

@@ -51,7 +51,8 @@ struct JudgedLayer {
   std::string patch, type;
   std::size_t index = 0;            ///< in its patch
   std::vector<std::size_t> acting;  ///< patches at that place
-  VirtualLoad own, total;  ///< its own, and of all layers that act at that place; sliders at the worse end
+  VirtualLoad own;                  ///< of a body the stiffness and damping of its coupling
+  VirtualLoad total;                ///< of all layers that act at that place; sliders at the worse end
   double x_m = 0, y_m = 0;
   JudgedLoop loop;    ///< of the axis that is nearest to its limit
   double margin = 0;  ///< JudgedLoop::margin() of the judged limit
@@ -76,8 +77,9 @@ struct Design {
   bool is_unstable() const;
 };
 
-/// Springs, dampers, grooves, noise, height maps, textures and fields (their largest local stiffness) of all
-/// patches on the axes x and y, with the dampers that were added for adaptive layers. Patches that act at one
+/// Springs, dampers, grooves, noise, height maps, textures and fields (their largest local stiffness), movers
+/// (as dampers), bodies and lassos of all patches on the axes x and y, with the dampers that were added for
+/// adaptive layers. Patches that act at one
 /// place add up. A layer is unstable if the computed limit is passed, or if a simulated tap grows. Errors:
 /// unsuitable: the scene has no patches; the delay is beyond 50 ticks; with `simulate`, those of
 /// playback::prepare_scene(). `where` is the scene's file. Preconditions: grooves have a filter
@@ -86,9 +88,10 @@ struct Design {
 schema::Result<Design> design_scene(const schema::Scene& scene, const std::string& where,
                                     const DesignRequest& request);
 
-/// Stiffness, rate, damping, delay, encoder step and adaptive viscosity, each changed alone. Rates are those
-/// of the device.
-std::vector<Remedy> remedies_for(const JudgedLayer& layer, const DesignRequest& request);
+/// Stiffness, rate, damping, delay, encoder step, filter of grooves and adaptive viscosity, each changed
+/// alone. Rates are those of the device. `of` is the layer; grooves have a filter.
+std::vector<Remedy> remedies_for(const JudgedLayer& layer, const schema::ForceLayer& of,
+                                 const DesignRequest& request);
 
 /// The holders whose limits this request has: nothing, any, and those for which it has a hand or a speed;
 /// lumped if it is judged.

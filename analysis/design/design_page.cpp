@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string_view>
 
 #include "analysis/page/html.hpp"
 #include "analysis/page/picture_svg.hpp"
@@ -27,6 +29,9 @@ std::string load_words(const VirtualLoad& load) {
   std::string words = load.stiffness_n_per_m > 0 ? stiffness_words(load.stiffness_n_per_m) : "";
   if (load.damping_n_s_per_m > 0)
     words += fmt::format("{}{:.4g} N s/m", words.empty() ? "" : " and ", load.damping_n_s_per_m);
+  for (const playback::CoupledBody& body : load.bodies)
+    words += fmt::format("{}a body of {:.4g} kg on {} and {:.4g} N s/m", words.empty() ? "" : " and ",
+                         body.mass_kg, stiffness_words(body.stiffness_n_per_m), body.damping_n_s_per_m);
   return words.empty() ? "-" : words;
 }
 
@@ -34,12 +39,24 @@ std::string layer_name(const JudgedLayer& layer) {
   return fmt::format("{} {} of patch '{}'", layer.type, layer.index, layer.patch);
 }
 
+bool is_limit(std::string_view key) {
+  return key.ends_with("_limit_n_per_m") || key.starts_with("simulated") || key.starts_with("adversary");
+}
+
+bool is_verdict(std::string_view key) {
+  return !is_limit(key);
+}
+
+bool is_layer_or_limit(std::string_view key) {
+  return key == "patch" || key == "layer" || is_limit(key);
+}
+
 // Columns that are empty in all rows are left out.
-std::string rows_table(const std::vector<cli::Report>& rows) {
+std::string rows_table(const std::vector<cli::Report>& rows, bool (*shown)(std::string_view key)) {
   std::vector<std::string> keys;
   for (const cli::Report& row : rows)
     for (const auto& [key, value] : cli::ReportPrinter::entries(row))
-      if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+      if (shown(key) && std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
   return html_table(cli::labels_of(keys), rows.size(), [&](std::size_t row, std::size_t column) {
     for (const auto& [key, value] : cli::ReportPrinter::entries(rows[row]))
       if (key == keys[column]) return cli::cell_text(key, value);
@@ -66,7 +83,9 @@ constexpr const char* kDesignNotes =
     "than friction dissipates.</p>\n"
     "<p>The margin is the factor by which the stiffness and damping at that place may grow together. Longest "
     "period and "
-    "delay are those of the limit that is judged.</p>\n";
+    "delay are those of the limit that is judged. A body or a lasso is a mass in the same loop: its limits "
+    "are "
+    "those of the springs beside it, and no proof covers it.</p>\n";
 
 // A proof for more hands than the one that is judged has its own, smaller margin.
 std::string margin_words(const JudgedLayer& layer, const DesignRequest& request) {
@@ -87,7 +106,7 @@ std::string margin_words(const JudgedLayer& layer, const DesignRequest& request)
 std::string design_verdict(const Design& design) {
   std::vector<std::string> unknown;
   for (const JudgedLayer& each : design.layers)
-    if (each.verdict == Stability::not_known && each.own.is_nothing()) unknown.push_back(layer_name(each));
+    if (each.verdict == Stability::not_known && is_nothing(each.own)) unknown.push_back(layer_name(each));
   const std::string rest = unknown.empty() ? "" : fmt::format("; not known: {}", fmt::join(unknown, ", "));
   if (!design.first) return "no spring or damper is within reach" + rest;
   const JudgedLayer& layer = design.layers[*design.first];
@@ -95,11 +114,16 @@ std::string design_verdict(const Design& design) {
   if (layer.verdict == Stability::stable)
     return fmt::format("stable: {} is nearest to its limit, {}{}", where, margin_words(layer, design.request),
                        rest);
+  if (is_nothing(layer.total))
+    return fmt::format("{}: {} ({}){}", to_string(layer.verdict), where, layer.because, rest);
   const Holder judged = design.request.judged;
   const Holder holder = layer.verdict == Stability::unstable && is_proof(judged) ? Holder::nothing : judged;
-  const double limit = layer.loop.limit(holder, layer.total.damping_n_s_per_m);
-  const std::string limited =
-      limit > 0 ? ", the limit is " + stiffness_words(limit) : ", and a smaller stiffness does not suffice";
+  const double limit = layer.loop.limit(holder, layer.total);
+  const std::string limited = limit > 0 && !layer.total.bodies.empty()
+                                  ? ", the limit of springs beside that is " + stiffness_words(limit)
+                              : std::isnan(limit) ? ""
+                              : limit > 0         ? ", the limit is " + stiffness_words(limit)
+                                                  : ", and a smaller stiffness does not suffice";
   return fmt::format("{}: {} has {}{} ({}){}", to_string(layer.verdict), where, load_words(layer.total),
                      limited, layer.because, rest);
 }
@@ -112,8 +136,7 @@ std::string damper_words(const Design& design) {
     if (!layer.simulated || !layer.simulated->limit_n_per_m) continue;
     any = true;
     const Holder holder = design.request.hand ? Holder::hand : Holder::nothing;
-    const double part =
-        *layer.simulated->limit_n_per_m / layer.loop.limit(holder, layer.total.damping_n_s_per_m);
+    const double part = *layer.simulated->limit_n_per_m / layer.loop.limit(holder, layer.total);
     if (part >= least) continue;
     least = part;
     lowest = &layer;
@@ -182,7 +205,7 @@ DesignRow layer_row(const JudgedLayer& layer, const DesignRequest& request) {
   const std::vector<Holder> has = holders_of(request);
   for (const auto& [holder, key] : kLimits) {
     const bool known = reached && std::ranges::find(has, holder) != has.end();
-    row.push_back({key, known ? layer.loop.limit(holder, layer.total.damping_n_s_per_m) : NAN});
+    row.push_back({key, known ? layer.loop.limit(holder, layer.total) : NAN});
   }
   if (request.adversary_paths > 0)
     row.push_back({"adversary_from_n_per_m", layer.generating_n_per_m.value_or(NAN)});
@@ -199,22 +222,22 @@ DesignRow layer_row(const JudgedLayer& layer, const DesignRequest& request) {
   return row;
 }
 
-DesignRow needs_row(const JudgedLayer& layer, const DesignRequest& request) {
-  const auto& [stiffness, damping] = layer.total;
+// Of the place at which a layer is judged; the same for all layers that act there.
+DesignRow needs_of_place(const JudgedLayer& layer, const DesignRequest& request) {
+  const double stiffness = layer.total.stiffness_n_per_m, damping = layer.total.damping_n_s_per_m;
   const JudgedLoop& loop = layer.loop;
   const auto above = [](double least, double value) { return value > least ? value : NAN; };
-  return {
-      {"patch", layer.patch},
-      {"layer", layer.index},
-      {"x_m", layer.x_m},
-      {"y_m", layer.y_m},
-      {"greatest_period_s", above(0, loop.greatest_period_s(request.judged, layer.total))},
-      {"largest_delay_s", above(-1, loop.largest_delay_s(request.judged, layer.total))},
-      {"damping_for_any_hand_n_s_per_m", playback::passive_damping_needed(loop.timing(), stiffness, damping)},
-      {"any_hand_below_mps",
-       playback::largest_passive_speed_mps(loop.axis, loop.timing(), stiffness, damping)},
-      {"friction_stops_swings_below_m",
-       playback::friction_basin_m(loop.axis, loop.timing(), stiffness, damping)}};
+  const auto without_bodies = [&](double value) { return layer.total.bodies.empty() ? value : NAN; };
+  return {{"x_m", layer.x_m},
+          {"y_m", layer.y_m},
+          {"greatest_period_s", above(0, loop.greatest_period_s(request.judged, layer.total))},
+          {"largest_delay_s", above(-1, loop.largest_delay_s(request.judged, layer.total))},
+          {"damping_for_any_hand_n_s_per_m",
+           without_bodies(playback::passive_damping_needed(loop.timing(), stiffness, damping))},
+          {"any_hand_below_mps",
+           without_bodies(playback::largest_passive_speed_mps(loop.axis, loop.timing(), stiffness, damping))},
+          {"friction_stops_swings_below_m",
+           without_bodies(playback::friction_basin_m(loop.axis, loop.timing(), stiffness, damping))}};
 }
 
 cli::Report report_of(const DesignRow& row) {
@@ -227,10 +250,16 @@ cli::Report report_of(const DesignRow& row) {
 
 DesignTables design_tables(const Design& design) {
   DesignTables tables;
+  std::map<std::vector<std::size_t>, DesignRow>
+      needs;  // a period and a delay take most of the time of design
   for (const JudgedLayer& layer : design.layers) {
     tables.layers.push_back(report_of(layer_row(layer, design.request)));
-    if (layer.verdict != Stability::not_reached)
-      tables.needs.push_back(report_of(needs_row(layer, design.request)));
+    if (layer.verdict == Stability::not_reached) continue;
+    const auto [found, fresh] = needs.try_emplace(layer.acting);
+    if (fresh) found->second = needs_of_place(layer, design.request);
+    DesignRow row = {{"patch", layer.patch}, {"layer", layer.index}};
+    row.insert(row.end(), found->second.begin(), found->second.end());
+    tables.needs.push_back(report_of(row));
   }
   for (const auto& [change, now, needed, limit_n_per_m] : design.remedies)
     tables.remedies.push_back(report_of({{"change", change},
@@ -273,9 +302,11 @@ schema::Result<std::string> design_page(const Design& design, const std::string&
     return figure.name == "verdict" || figure.name.starts_with("remedy: ");
   });
   const DesignTables tables = design_tables(design);
+  const auto every = [](std::string_view /*key*/) { return true; };
   std::string body = fmt::format("<h1>{}</h1>\n", escaped(scene + " on " + design.request.device.name)) +
                      simulated_box(design.simulated) + answer(design_verdict(design)) +
-                     figures_html(figures) + "<h2>Layers</h2>\n" + rows_table(tables.layers);
+                     figures_html(figures) + "<h2>Layers</h2>\n" + rows_table(tables.layers, is_verdict) +
+                     "<h2>Limits</h2>\n" + rows_table(tables.layers, is_layer_or_limit);
   if (!tables.remedies.empty())
     body +=
         fmt::format(
@@ -283,8 +314,8 @@ schema::Result<std::string> design_page(const Design& design, const std::string&
             "again.</p>\n",
             escaped(layer_name(design.layers[*design.first])),
             escaped(holder_name(design.request.judged, design.request))) +
-        rows_table(tables.remedies);
-  body += *drawn + "<h2>What each layer needs</h2>\n" + rows_table(tables.needs) + kDesignNotes;
+        rows_table(tables.remedies, every);
+  body += *drawn + "<h2>What each layer needs</h2>\n" + rows_table(tables.needs, every) + kDesignNotes;
   return html_document("Stability of " + scene, body);
 }
 

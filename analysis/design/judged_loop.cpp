@@ -2,6 +2,8 @@
 #include "analysis/design/judged_loop.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "analysis/design/boundary.hpp"
 #include "playback/stability/free_limit.hpp"
@@ -29,15 +31,41 @@ double JudgedLoop::limit(Holder holder, double damping) const {
   return playback::passive_stiffness_limit(axis, timing(), damping, *speed_mps);
 }
 
+bool JudgedLoop::is_stable(Holder holder, const VirtualLoad& load) const {
+  if (!is_computed_with_bodies(holder)) return false;
+  const schema::Hand held = holder == Holder::hand ? *hand : schema::Hand();
+  return playback::is_stable(
+      {axis.mass_kg + held.mass_kg, axis.viscous_n_s_per_m + held.damping_n_s_per_m, held.stiffness_n_per_m},
+      timing(), load);
+}
+
+double JudgedLoop::limit(Holder holder, const VirtualLoad& load) const {
+  if (load.bodies.empty()) return limit(holder, load.damping_n_s_per_m);
+  if (!is_computed_with_bodies(holder)) return NAN;
+  VirtualLoad tried = load;
+  return last_good(std::max(load.stiffness_n_per_m, 1.0), 1e-6, 1e9, [&](double stiffness) {
+    tried.stiffness_n_per_m = stiffness;
+    return is_stable(holder, tried);
+  });
+}
+
 bool JudgedLoop::carries(Holder holder, const VirtualLoad& load) const {
-  return load.is_nothing() || load.stiffness_n_per_m < limit(holder, load.damping_n_s_per_m);
+  if (!load.bodies.empty()) return is_stable(holder, load);
+  return is_nothing(load) || load.stiffness_n_per_m < limit(holder, load.damping_n_s_per_m);
 }
 
 double JudgedLoop::margin(Holder holder, const VirtualLoad& load) const {
-  if (load.is_nothing()) return std::numeric_limits<double>::infinity();
-  if (load.damping_n_s_per_m <= 0) return limit(holder, 0) / load.stiffness_n_per_m;
+  if (is_nothing(load)) return std::numeric_limits<double>::infinity();
+  if (load.damping_n_s_per_m <= 0 && load.bodies.empty()) return limit(holder, 0) / load.stiffness_n_per_m;
   return last_good(1, 1e-6, 1e9, [&](double factor) {
-    return carries(holder, {factor * load.stiffness_n_per_m, factor * load.damping_n_s_per_m});
+    VirtualLoad grown = load;
+    grown.stiffness_n_per_m *= factor;
+    grown.damping_n_s_per_m *= factor;
+    for (playback::CoupledBody& body : grown.bodies) {
+      body.stiffness_n_per_m *= factor;
+      body.damping_n_s_per_m *= factor;
+    }
+    return carries(holder, grown);
   });
 }
 

@@ -101,7 +101,9 @@ schema::Scene with_sliders_at_ends(schema::Scene scene, bool most_damping) {
           [&](schema::HeightMapLayer& map) { raise(map.kappa_n); },
           [&](schema::TextureForceLayer& texture) { texture.gain.value = farthest_value(texture.gain); },
           [&](schema::NoiseLayer& noise) { raise(noise.kappa_n), raise(noise.depth_m); },
-          [&](schema::FieldLayer& field) { raise(field.force_scale); }, [](auto& /*other*/) {});
+          [&](schema::FieldLayer& field) { raise(field.force_scale); },
+          [&](schema::BodyLayer& body) { raise(body.stiffness_n_per_m); },
+          [&](schema::LassoLayer& lasso) { raise(lasso.stiffness_n_per_m); }, [](auto& /*other*/) {});
   return scene;
 }
 
@@ -204,7 +206,8 @@ SimulatedTap TapBench::tap(const TapPlace& at, double push_n, double speed_mps, 
   kernel.set(view_, setup_, live.data());
   for (std::uint32_t i = 0; i < view_.layer_count; ++i) {
     const core::SceneLayer& layer = view_.layers[i];
-    if (const auto kind = static_cast<core::SceneLayerKind>(layer.kind); kind != core::SceneLayerKind::damper)
+    if (const auto kind = static_cast<core::SceneLayerKind>(layer.kind);
+        kind != core::SceneLayerKind::damper && kind != core::SceneLayerKind::mover)
       live[layer.first_number] *= static_cast<float>(factor);  // the force of each kind is proportional to it
   }
   firmware_host::PlanarBody body(device_, hand_, 1 / double{setup_.rate_hz});

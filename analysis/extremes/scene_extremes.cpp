@@ -2,9 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <initializer_list>
 #include <limits>
 #include <numbers>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "analysis/extremes/extreme.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
@@ -74,28 +78,37 @@ schema::Device boundless(double step_m, double rate_hz) {
   return device;
 }
 
-// The kernel of a scene with one layer.
-class OneLayer {
+// The kernel of a scene with one patch.
+class OnePatch {
  public:
-  OneLayer(schema::ForceLayer layer, double step_m, double rate_hz, double x_m = 0, double width_m = 1)
+  OnePatch(std::vector<schema::ForceLayer> layers, double step_m, double rate_hz, double x_m = 0,
+           double width_m = 1)
       : device_(boundless(step_m, rate_hz)), setup_(*playback::force_setup_of(device_, rate_hz)) {
     schema::Patch patch;
     patch.name = "patch";
     patch.x_m = x_m;
     patch.width_m = patch.height_m = width_m;
-    patch.layers = {std::move(layer)};
+    patch.layers = std::move(layers);
     schema::Scene scene;
     scene.patches = {patch};
     prepared_ = *playback::prepare_scene(scene, "extremes", device_, rate_hz);
     live_.resize(prepared_.view().live_words());
     kernel_.set(prepared_.view(), setup_, live_.data());
   }
-  OneLayer(const OneLayer&) = delete;
-  OneLayer& operator=(const OneLayer&) = delete;
+  OnePatch(const OnePatch&) = delete;
+  OnePatch& operator=(const OnePatch&) = delete;
   // Along x, before the limits.
   double force_n(std::int32_t count) {
     const std::int32_t counts[2] = {count, 0};
     return double{kernel_.tick(counts, true).unlimited_n[0]};
+  }
+  // All that the kernel keeps from tick to tick.
+  std::vector<std::uint32_t> state() const {
+    static_assert(std::is_trivially_copyable_v<core::SceneKernel> && sizeof(core::SceneKernel) % 4 == 0);
+    std::vector<std::uint32_t> words(sizeof(kernel_) / 4 + live_.size());
+    std::memcpy(words.data(), static_cast<const void*>(&kernel_), sizeof(kernel_));
+    std::memcpy(words.data() + sizeof(kernel_) / 4, live_.data(), live_.size() * sizeof(float));
+    return words;
   }
 
  private:
@@ -113,7 +126,7 @@ double spring_error() {
     for (const double step_m : {1e-9, 1e-6, 1e-3}) {
       schema::SpringLayer spring;
       spring.stiffness_n_per_m = {stiffness};
-      OneLayer scene(spring, step_m, 1000);
+      OnePatch scene({spring}, step_m, 1000);
       for (int i = -50; i <= 50; ++i) {
         const auto count = static_cast<std::int32_t>(std::lround(2e-3 * i / step_m));
         const double exact_n = -stiffness * count * step_m;
@@ -127,7 +140,7 @@ double spring_error() {
 double damper_error() {
   double worst = 0;
   for (const double rate_hz : {100.0, 1e3, 20e3}) {
-    OneLayer scene(schema::DamperLayer{{5}, ""}, 1e-6, rate_hz);
+    OnePatch scene({schema::DamperLayer{{5}, ""}}, 1e-6, rate_hz);
     const double exact_n = -5 * 3e-6 * rate_hz;
     for (int tick = 0; tick < 100; ++tick) {
       const double force_n = scene.force_n(3 * tick);
@@ -148,7 +161,7 @@ schema::GroovesLayer sine_of(double period_m) {
 // -kappa h' of h = depth / 2 cos(2 pi x / period), from the patch's centre, at 1 count per tick.
 double far_patch_error() {
   constexpr double kStep_m = 1e-6, kPeriod_m = 1e-3, kFar_m = 10;
-  OneLayer scene(sine_of(kPeriod_m), kStep_m, 1000, kFar_m, 0.1);
+  OnePatch scene({sine_of(kPeriod_m)}, kStep_m, 1000, kFar_m, 0.1);
   const double most_n = 2 * 1e-4 * std::numbers::pi / kPeriod_m;
   double worst = 0;
   for (int i = -2000; i < 2000; ++i) {
@@ -161,7 +174,7 @@ double far_patch_error() {
 // A period of 2^20 counts of 2^-30 m: 2^31 counts are whole periods, exactly.
 double counter_difference() {
   constexpr double kStep_m = 0x1p-30, kPeriod_m = 0x1p-10;
-  OneLayer near(sine_of(kPeriod_m), kStep_m, 1000, 0, 10), far(sine_of(kPeriod_m), kStep_m, 1000, 0, 10);
+  OnePatch near({sine_of(kPeriod_m)}, kStep_m, 1000, 0, 10), far({sine_of(kPeriod_m)}, kStep_m, 1000, 0, 10);
   double worst = 0, most = 0;
   for (int i = -2000; i < 2000; ++i) {
     const std::int32_t count = 700 * i;
@@ -171,6 +184,53 @@ double counter_difference() {
     most = std::max(most, std::abs(one));
   }
   return most > 0.1 ? worst / most : 1;
+}
+
+// Once through all counts in steps of 7001, from -2^31 to its end and over it to 100 steps beyond the start.
+double all_counts_error() {
+  constexpr double kStep_m = 0x1p-30, kPeriod_m = 0x1p-10, kEach = 7001;
+  constexpr std::int64_t kSteps = (std::int64_t{1} << 32) / 7001 + 100, kPeriodCounts = 1 << 20;
+  OnePatch scene({sine_of(kPeriod_m), schema::DamperLayer{{1}, ""}}, kStep_m, 1000, 0, 10);
+  const double slope_n = 2 * 1e-4 * std::numbers::pi / kPeriod_m, damper_n = kEach * kStep_m * 1000;
+  double worst = 0;
+  for (std::int64_t i = 0; i < kSteps; ++i) {
+    const std::int64_t count = 7001 * i - (std::int64_t{1} << 31);
+    const double phase = static_cast<double>(count % kPeriodCounts) / static_cast<double>(kPeriodCounts);
+    const double exact_n = slope_n * std::sin(2 * std::numbers::pi * phase) - damper_n;
+    const double force_n = scene.force_n(static_cast<std::int32_t>(static_cast<std::uint32_t>(count)));
+    if (i > 20) worst = std::max(worst, std::abs(force_n - exact_n) / (slope_n + damper_n));
+  }
+  return worst;
+}
+
+// A hand drags a brick by a spring for 0.2 s and rests. After 2^20 ticks without a count the speed of an axis
+// is 0, and the number of the tick in the kernel repeats after 2^24 - 1 ticks. If by then the whole state
+// repeats, too, it does so for ever, but for two numbers of each axis: its tick, and that of its last edge,
+// which follows at a constant distance; nothing reads more than their difference. What differs besides: words
+// of the state, and ticks with another force.
+double ticks_at_rest() {
+  constexpr std::uint32_t kAfter = 1 << 21, kPeriod = (1 << 24) - 1;
+  schema::BodyLayer brick;
+  brick.mass_kg = {0.3}, brick.stiffness_n_per_m = {200}, brick.damping_n_s_per_m = {1};
+  brick.static_friction_n = {0.5}, brick.kinetic_friction_n = {0.3};
+  OnePatch scene({schema::SpringLayer{{100}, {}, {}, ""}, schema::DamperLayer{{1}, ""}, brick, sine_of(1e-3)},
+                 1e-6, 1000);
+  for (std::int32_t i = 0; i < 200; ++i) scene.force_n(100 * i);
+  for (std::uint32_t i = 0; i < kAfter; ++i) scene.force_n(20'011);
+  const double rest_n = scene.force_n(20'011);
+  const std::vector<std::uint32_t> before = scene.state();
+  double changed = std::abs(rest_n) > 1 ? 0 : 1;
+  for (std::uint32_t i = 0; i < kPeriod; ++i) changed += scene.force_n(20'011) != rest_n;
+  const std::vector<std::uint32_t> after = scene.state();
+  int numbers = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (after[i] == before[i]) continue;
+    if (after[i] - before[i] == kPeriod)
+      ++numbers;
+    else
+      ++changed;
+  }
+  return changed + std::abs(numbers - 4);
 }
 
 }  // namespace
@@ -188,7 +248,12 @@ std::vector<Extreme> scene_extremes() {
           {"firmware-host", "a sine of 1 mm on a patch 10 m from the origin: the force", "its derivative",
            far_patch_error(), kStatedForceError, "places are whole counts, so no digits are lost"},
           {"firmware-host", "grooves through the end of the counter, 2^31 counts",
-           "the same way about 0, to the bit", counter_difference(), 0, ""}};
+           "the same way about 0, to the bit", counter_difference(), 0, ""},
+          {"firmware-host", "a sine and a damper through all 2^32 counts of the counter: the force",
+           "their closed form", all_counts_error(), kStatedForceError, "613,480 ticks of 7001 counts"},
+          {"firmware-host", "1e9 ticks at rest, with spring, damper, grooves and a brick: the force",
+           "the same at each tick", ticks_at_rest(), 0,
+           "1.9e7 ticks, after which all state but the number of the tick repeats"}};
 }
 
 }  // namespace tacto::analysis

@@ -333,7 +333,7 @@ Result<Report> render_forces(const ForceRendering& asked) {
   TACTO_TRY(files.write(asked.output, table_of(*rendering)));
   TACTO_TRY(files.commit(asked.existing));
   Report report = report_of(asked, on->device, *rendering);
-  if (asked.hold_stable) add_held(report, on->held, unknown_layers(on->scene.patches));
+  if (asked.hold_stable) add_held(report, on->held, not_held_layers(on->scene.patches));
   return report;
 }
 

@@ -287,7 +287,7 @@ Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std:
   PlayOutcome outcome;
   outcome.notes = program->notes;
   outcome.held = program->held;
-  outcome.not_judged = unknown_layers(program->scene.patches);
+  outcome.not_judged = not_held_layers(program->scene.patches);
   outcome.asked_s = options.time_s.value_or(device->path_s.value_or(kUsualS));
   outcome.rests_from_s = rest_from(device->path_s, outcome.asked_s);
   const auto script = script_for(options.script, *program, outcome.asked_s);

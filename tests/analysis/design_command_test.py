@@ -246,14 +246,162 @@ def stiffness_is_held_to_the_limit():
     close(held["layers"][6]["margin"], held["held_margin"], 1e-9)
     stable = design_of(patches[0], options=("--hold-stable",))
     assert held["held_margin"] == 1.2 and isinstance(stable["held_stable"], str) and "not_judged" not in stable
-    # What no method judges is named, each layer.
-    body = {"type": "body", "mass_kg": 0.3, "stiffness_n_per_m": 1, "damping_n_s_per_m": 1}
-    lasso = {"type": "lasso", "mass_kg": 0.1, "stiffness_n_per_m": 1, "length_m": 0.01, "damping_n_s_per_m": 0.5}
-    moving = design_of(patch(body, spring(1), lasso, name="a"), options=("--hold-stable",))
+    # What is not scaled is named, each layer.
+    moving = design_of(patch(body(0.3, 1, 1), spring(1), lasso(0.1, 1, 0.5), name="a"), options=("--hold-stable",))
     assert moving["not_judged"] == ["body 0 of patch 'a'", "lasso 2 of patch 'a'"], moving
-    assert all(row["verdict"] == "not known" and all(name in row["because"] for name in moving["not_judged"]) for row in moving["layers"]), moving
-    apart = design_of(patch(spring(1), name="a", width_m=0.05), patch(body, lasso, name="b", x_m=0.06, width_m=0.05))
-    assert all(name in apart["verdict"] for name in ("body 0 of patch 'b'", "lasso 1 of patch 'b'")), apart
+
+
+def body(mass, stiffness, damping=0.0, friction=0.0):
+    return {"type": "body", "mass_kg": mass, "stiffness_n_per_m": stiffness, "damping_n_s_per_m": damping, "static_friction_n": friction}
+
+
+def lasso(mass, stiffness, damping=0.0):
+    return {"type": "lasso", "mass_kg": mass, "stiffness_n_per_m": stiffness, "length_m": 0.01, "damping_n_s_per_m": damping}
+
+
+def loop_with_bodies(held, period, delay_ticks, stiffness, damping, bodies):
+    """The whole state, each body with its own place: hand and bodies by cont2discrete. `bodies`: mass, damping of its own,
+    stiffness and damping of its coupling."""
+    def moved(mass, viscous, spring, time):
+        if time == 0:
+            return np.eye(2), np.zeros(2)
+        a, b, *_ = cont2discrete((np.array([[0, 1], [-spring / mass, -viscous / mass]]), np.array([[0], [1 / mass]]), np.eye(2), np.zeros((2, 1))), time, "zoh")
+        return a, b[:, 0]
+
+    whole = int(delay_ticks)
+    (first, old), (second, new) = moved(*held, (delay_ticks - whole) * period), moved(*held, (1 - delay_ticks + whole) * period)
+    size = 3 + 2 * len(bodies) + whole + 1
+    state, force, queue = np.zeros((size, size)), np.zeros(size), 3 + 2 * len(bodies)
+    force[0], force[2] = -stiffness - damping / period, damping / period
+    state[:2, :2] = second @ first
+    state[2, 0] = 1
+    for i, (mass, own, coupling, coupling_damping) in enumerate(bodies):
+        at, pull = 3 + 2 * i, np.zeros(size)
+        pull[0], pull[2], pull[at], pull[at + 1] = coupling + coupling_damping / period, -coupling_damping / period, -coupling, -coupling_damping
+        force -= pull
+        a, b = moved(mass, own, 0, period)
+        state[at:at + 2, at:at + 2] = a
+        state[at:at + 2] += np.outer(b, pull)
+    for ticks, gain in ((whole, new), (whole + 1, second @ old)):
+        if ticks == 0:
+            state[:2] += np.outer(gain, force)
+        else:
+            state[:2, queue + ticks - 1] += gain
+    state[queue] = force
+    for i in range(queue + 1, size):
+        state[i, i - 1] = 1
+    return np.linalg.eigvals(state)
+
+
+def bodies_are_part_of_the_loop():
+    """The margin: by how much stiffness and damping of all layers may grow. Free of any spring to the ground, hand and bodies
+    may be anywhere together: one eigenvalue is 1."""
+    rng = np.random.default_rng(31)
+
+    def margin_of(held, delay_ticks, stiffness, damping, bodies):
+        grounded = held[2] > 0 or stiffness > 0
+
+        def good(factor):
+            each = [(m, own, factor * k, factor * b) for m, own, k, b in bodies if k > 0 or b > 0]
+            eigenvalues = loop_with_bodies(held, 1e-3, delay_ticks, factor * stiffness, factor * damping, each)
+            if not grounded:
+                eigenvalues = np.delete(eigenvalues, np.abs(eigenvalues - 1).argmin())
+            return np.abs(eigenvalues).max() < 1
+
+        return largest(good, 0.03, 1e5)
+
+    for _ in range(4):
+        mass, viscous, hand_mass, hand_damping, hand_stiffness = rng.uniform((0.05, 0.5, 0.1, 1, 50), (0.3, 3, 1, 10, 1000))
+        delay_ticks, body_mass, stiffness, share, own = rng.uniform((0, 0.05, 100, 0.8, 0.2), (2.5, 0.5, 1500, 3, 2))
+        damping = share * 1e-3 * stiffness  # of K T; below 1/2 the coupling swings the body even of a hand that is held tight
+        write_device(mass, viscous, delay=delay_ticks * 1e-3)
+        write_hand(hand_mass, hand_damping, hand_stiffness)
+        held = {(): (mass, viscous, 0), ("--hand", "h"): (mass + hand_mass, viscous + hand_damping, hand_stiffness)}
+        free, pulling = (body_mass, 0, stiffness, damping), (body_mass, own, stiffness, 0)
+        for layers, ends in (([body(body_mass, stiffness, damping)], [(0, 0, [free])]),
+                             ([body(body_mass, stiffness, damping, friction=0.1)], [(0, 0, [free]), (stiffness, damping, [])]),
+                             ([body(body_mass, stiffness, damping), spring(300), damper(0.4)], [(300, 0.4, [free])]),
+                             ([lasso(body_mass, stiffness, own), spring(200)], [(200, 0, [pulling]), (200, 0, [])]),
+                             ([body(body_mass, stiffness, damping), lasso(body_mass, stiffness, own)], [(0, 0, [free, pulling]), (0, 0, [free])])):
+            write_scene(patch(*layers))
+            for options, numbers in held.items():
+                expected = min(margin_of(numbers, delay_ticks, *end) for end in ends)
+                report = design(*options, code=UNSTABLE if expected < 1 else 0)
+                for row in report["layers"]:
+                    close(row["margin"], expected, 1e-6)
+                    assert row["verdict"] == ("unstable" if expected < 1 else "stable"), (row, expected)
+
+
+def what_is_computed_of_bodies():
+    """Limits, remedies and sliders with a body; what stays unknown."""
+    write_device(0.1, 1.0, delay=1e-3, rates=(1000, 2000, 5000))
+    write_hand(0.4, 1.0, 300)
+
+    def stable(stiffness, ground=0):
+        return np.abs(loop_with_bodies((0.5, 2.0, 300), 1e-3, 1, ground, 0, [(0.3, 0, stiffness, 2)])).max() < 1
+
+    report = design_of(patch(body(0.3, 6000, 2)), options=("--hand", "h", "--rate", "1kHz"), code=UNSTABLE)
+    row = report["layers"][0]
+    assert not stable(6000) and row["hand_limit_n_per_m"] == 0 and "any_hand_limit_n_per_m" not in row and "body 0 of patch 'a'" in report["verdict"], report
+    needed = float({each["change"]: each["needed"] for each in report["remedies"]}["stiffness of the body"].split()[1])
+    for factor, code in ((0.999, 0), (1.001, UNSTABLE)):
+        design_of(patch(body(0.3, factor * needed, 2)), options=("--hand", "h", "--rate", "1kHz"), code=code)
+        assert stable(factor * needed) == (code == 0), factor * needed
+    # More damping of its own is a remedy, too.
+    report = design_of(patch(body(0.3, 3000, 0.5)), options=("--hand", "h", "--rate", "5kHz"), code=UNSTABLE)
+    needed_damping = float({each["change"]: each["needed"] for each in report["remedies"]}["damping of the body"].split()[1])
+    for factor, code in ((0.999, UNSTABLE), (1.001, 0)):
+        design_of(patch(body(0.3, 3000, factor * needed_damping)), options=("--hand", "h", "--rate", "5kHz"), code=code)
+    # The limit of springs beside a body, and the slider of the body at its worse end.
+    softer = body(0.3, 0.5 * needed, 2)
+    row = design_of(patch(softer, spring(10)), options=("--hand", "h", "--rate", "1kHz"))["layers"][1]
+    close(row["hand_limit_n_per_m"], largest(lambda ground: stable(0.5 * needed, ground), 10, 1e5), 1e-6)
+    softer["stiffness_n_per_m"] = {"value": 0.5 * needed, "slider": {"from": 100, "to": 2 * needed}}
+    design_of(patch(softer), options=("--hand", "h", "--rate", "1kHz"), code=UNSTABLE)
+    # A mover is a damper.
+    mover = {"type": "mover", "speed_mps": 0.05, "damping_n_s_per_m": 2}
+    same = [design_of(patch(spring(100), layer), options=("--hand", "h"))["layers"][0] for layer in (mover, damper(2))]
+    assert same[0]["margin"] == same[1]["margin"] and same[0]["total_damping_n_s_per_m"] == 2, same
+    # Proofs and the lumped formula are of springs and dampers alone; five bodies at a place are too many.
+    few = patch(body(0.3, 100, 0.5), spring(10))
+    for options in (("--hand", "any"), ("--speed", "10mm/s"), ("--hand", "h", "--lumped")):
+        report = design_of(few, options=options)
+        assert {each["verdict"] for each in report["layers"]} == {"not known"} and "remedies" not in report, options
+    many = design_of(patch(*[body(0.3, 10, 0.1)] * 5), options=("--hand", "h"))
+    assert {each["verdict"] for each in many["layers"]} == {"not known"} and "body 4 of patch 'a'" in many["layers"][0]["because"], many
+
+
+def a_body_swings_as_its_eigenvalue():
+    """On sim:planar a hand with a brick is pulled 5 mm aside and let go: it rests below the limit, and above it swings with the
+    frequency and the growth of the eigenvalue. With so fine an encoder the kernel's speed is the difference of two ticks."""
+    write_device(0.1, 0.2, step=1e-8, delay=1e-3, axes="x")
+    write_hand(0.4, 0.1, 300)
+    pathlib.Path("p.csv").write_text("time_s,x_m\n0,0\n0.1,0.005\n0.2,0\n10,0\n")
+    write_scene(patch(body(0.3, 400, 0.4)))
+    limit = 400 * design("--hand", "h")["layers"][0]["margin"]
+    for factor in (0.5, 1.2):
+        numbers = factor * limit, 1e-3 * factor * limit
+        write_scene(patch(body(0.3, *numbers), width_m=0.15))
+        for old in pathlib.Path().glob("x.*"):
+            old.unlink()
+        _, err = run("play", "s.scene.json", "-d", "sim:planar,device=d,hand=h", "--finger-path", "p.csv", "--rate", "1kHz", "--onset", "0s", "-o", "x.session")
+        assert ("body 0 of patch 'a'" in tacto.unwrapped(err)) == (factor > 1), err
+        run("session", "x", "-o", "x.csv")
+        x = np.genfromtxt("x.csv", delimiter=",", names=True)["x_m"]
+        quick = np.diff(x, 4)  # without the slow swing of both on the hand's own spring
+        if factor < 1:
+            assert np.abs(x[8000:9000]).max() < 0.3 * np.abs(x[300:1300]).max(), x[8000:9000]
+            continue
+        eigenvalues = loop_with_bodies((0.5, 0.3, 300), 1e-3, 1, 0, 0, [(0.3, 0, *numbers)])
+        fastest = eigenvalues[np.abs(eigenvalues).argmax()]
+        growth = np.log(quick[1700:2000].std() / quick[1200:1500].std()) / 500  # before the device limits the force
+        swing = quick[1500:2000]
+        at = np.nonzero(np.diff(np.sign(swing)))[0]
+        at = at + swing[at] / (swing[at] - swing[at + 1])
+        frequency, expected = 500 * (len(at) - 1) / (at[-1] - at[0]), abs(np.angle(fastest)) * 1e3 / (2 * np.pi)
+        print(f"  limit {limit:.1f} N/m; growth {growth:.4e} a tick of {np.log(abs(fastest)):.4e}, {frequency:.3f} Hz of {expected:.3f}")
+        close(growth, np.log(abs(fastest)), 0.02)
+        close(frequency, expected, 0.02)
 
 
 def massies_wall():
@@ -411,6 +559,12 @@ def taps_are_simulated():
     write_device(0.075, 0.5, step=30e-6, axes="x")
     row = only(design_of(patch(wall(600), x_m=0.05), options=("--simulate",)))
     assert row["verdict"] == "stable" and row["any_hand_limit_n_per_m"] == 0 and row["simulated"] == "rests" and 0.2 < row["simulated_rms_counts"] < 0.6 and row["simulated_rms_n"] > 1e-3, row
+    # The same wall at parts of 2 b / T: about the counts RMS of issue 33 (within 30 %). The encoder alone makes them oscillate
+    # below the limit that is computed without it.
+    for part, counts in ((0.3, 0.2), (0.6, 0.5), (0.9, 1.3), (1.05, 28)):
+        row = only(design_of(patch(wall(1000 * part), x_m=0.05), options=("--simulate",), code=UNSTABLE if part > 1 else 0))
+        print(f"  {part} of 2 b / T: {row['simulated_rms_counts']:.2f} counts RMS, {row['simulated']}")
+        close(row["simulated_rms_counts"], counts, 0.3)
     # Coulomb friction stops all taps of a wall that is computed as unstable: the verdict is that of the computed limit.
     write_device(0.075, 0.5, coulomb=0.5, step=1e-6, axes="x")
     assert only(design_of(patch(wall(1100), x_m=0.05), options=("--simulate",), code=UNSTABLE))["simulated"] == "rests"
@@ -452,23 +606,29 @@ def play_rests_with_each_remedy_and_buzzes_without():
     mass, viscous, hand_stiffness = 0.0999, 1.0, 20.0
     limit = 2000.0
 
-    def places(stiffness=1.2 * limit, viscous=viscous, rate=1000, damping=0.0, step=1e-6):
-        write_device(mass, viscous, step=step, rates=(1000, 2000, 5000, 10000), axes="x")
+    def places(stiffness=1.2 * limit, viscous=viscous, rate=1000, damping=0.0, step=1e-6, delay=0.0, adaptive=False):
+        write_device(mass, viscous, step=step, delay=delay, rates=(1000, 2000, 5000, 10000), axes="x")
         write_hand(1e-4, 0, hand_stiffness)
-        write_scene(patch(spring(stiffness), damper(damping), width_m=0.04))
+        # Ten layers: the hand is on the fifth; all others are softer.
+        write_scene(*(patch({**spring(stiffness if i == 4 else 0.5 * limit), "adaptive": adaptive and i == 4}, damper(damping), name=f"p{i}", x_m=0.044 * (i - 4), width_m=0.04)
+                      for i in range(10)))
         pathlib.Path("p.csv").write_text("time_s,x_m\n0,0\n0.05,0.05\n0.1,0\n20,0\n")
         for old in pathlib.Path().glob("x.session*"):
             old.unlink()
         _, err = run("play", "s.scene.json", "-d", "sim:planar,device=d,hand=h", "--finger-path", "p.csv", "--rate", f"{rate}Hz", "--onset", "0s", "-o", "x.session")
         run("session", "x", "-o", "x.csv", "--force")
-        return np.genfromtxt("x.csv", delimiter=",", names=True)["x_m"][:int(19.9 * rate)], "tactograph design" in tacto.unwrapped(err) and "spring 0 of patch 'a'" in tacto.unwrapped(err)
+        return np.genfromtxt("x.csv", delimiter=",", names=True)["x_m"][:int(19.9 * rate)], "tactograph design" in tacto.unwrapped(err) and "spring 0 of patch 'p4'" in tacto.unwrapped(err)
 
     for step, tolerance in ((1e-6, 0.02), (30e-6, 0.05)):
-        for remedy in ({"stiffness": 0.7 * limit}, {"viscous": 1.7}, {"rate": 2000}, {"damping": 2.0}):
+        late = {"stiffness": 0.6 * limit, "delay": 5e-4}  # with half a tick of delay the limit is about half
+        for remedy in ({"stiffness": 0.7 * limit}, {"viscous": 1.7}, {"rate": 2000}, {"damping": 2.0}, {"adaptive": True}, {**late, "delay": 0.0}):
             x, warned = places(step=step, **remedy)
             rms = x[-len(x) // 10:].std() / step
             print(f"  step {step:g} m, {remedy}: {rms:.2f} counts RMS")
-            assert rms <= 1 and not warned, (remedy, rms)
+            assert rms <= (2 if "adaptive" in remedy else 1) and not warned, (remedy, rms)  # the margin of `adaptive` is 1.2
+        x, warned = places(step=step, **late)
+        assert warned and np.abs(x).max() > 0.02, np.abs(x).max()
+        assert [row["patch"] for row in design("--rate", "1kHz", code=UNSTABLE)["layers"] if row["verdict"] == "unstable"] == ["p4"] * 2
         x, warned = places(step=step)
         assert warned and np.abs(x).max() > 0.02, np.abs(x).max()
         left = int(np.argmax(np.abs(x) > 0.02))
@@ -517,6 +677,15 @@ def grooves_are_as_stiff_as_their_curvature():
     close(report["layers"][1]["total_stiffness_n_per_m"], 10 + stiffness, 1e-6)
     assert report["layers"][1]["verdict"] == "stable", report
     design_of(patch(spring(10), {**groove, "kappa_n": 2}), code=UNSTABLE)
+    # A wider filter is a remedy of grooves: of a sine it leaves exp(-(2 pi sigma / period)^2 / 2).
+    report = design_of(patch({**groove, "kappa_n": 2}), code=UNSTABLE)
+    needed = {each["change"]: each["needed"] for each in report["remedies"]}["filter of the grooves"]
+    sigma = 1e-6 * float(needed.split()[1])
+    expected = 1e-3 / (2 * np.pi) * np.sqrt(2 * np.log(4 * stiffness / report["layers"][0]["free_limit_n_per_m"]))
+    assert needed.split()[0] == "above" and needed.split()[2] in ("um", "\u00b5m"), needed
+    close(sigma, expected, 1e-3)
+    for factor, code in ((0.999, UNSTABLE), (1.001, 0)):
+        design_of(patch({**groove, "kappa_n": 2, "filter_m": factor * sigma}), code=code)
     # Square grooves with the automatic filter: the curvature of smoothed steps up and down, half a period apart.
     square = design_of(patch({**groove, "profile": "square"}))["layers"][0]
     sigma = 1.5 * np.sqrt(0.242 * 0.5 * 1e-4 / square["free_limit_n_per_m"])
@@ -574,7 +743,7 @@ def wrong_uses_are_refused():
 
 if __name__ == "__main__":
     for test in (the_table_is_that_of_scipy, limits_are_those_of_eigenvalues, minskys_cases,
-                 adaptive_viscosity_is_the_least_that_suffices, stiffness_is_held_to_the_limit, massies_wall, passivity_is_the_integral_condition,
+                 adaptive_viscosity_is_the_least_that_suffices, stiffness_is_held_to_the_limit, bodies_are_part_of_the_loop, what_is_computed_of_bodies, a_body_swings_as_its_eigenvalue, massies_wall, passivity_is_the_integral_condition,
                  a_delay_of_half_a_tick_needs_more_than_the_mean, virtual_damping_has_a_best, patches_add_up_where_they_overlap,
                  the_layer_that_is_too_stiff_is_named, remedies_make_it_stable, taps_are_simulated, the_adversary_finds_what_is_not_proved,
                  play_rests_with_each_remedy_and_buzzes_without, outputs_are_written_and_valid, what_is_not_known_is_said, grooves_are_as_stiff_as_their_curvature,

@@ -27,6 +27,9 @@ STAGES = {
     "spectrogram_to_15_per_mm": "spectrogram up to 15 /mm (SciPy: decimated by hand)",
     "import_csv": "import of the recording's CSV (NumPy: loadtxt)",
     "recording_to_spectrogram": "recording to spectrogram up to 15 /mm, written",
+    "design_of_16_patches": "design of 16 patches of four layers: at most 100 ms",
+    "design_of_16_patches_simulated": "the same with simulated taps: at most 5 s",
+    "adversary_of_10000_paths": "10,000 paths of an adversary: at most 200 ms",
 }
 
 

@@ -104,6 +104,34 @@ def forces_are_scipys_spline():
     assert relative < 1e-6 and report["largest_rounding_n"] < 1e-6 * np.abs(exact).max(), (relative, report)
 
 
+def no_other_interpolant_is_worth_it():
+    """The kernel has one interpolant, the cubic B-spline: 4 coefficients a direction. Catmull-Rom's spline reads as many and errs
+    more at each number of samples to a period; a straight line reads 2. Error of the slope, re the steepest one, against the
+    sine itself: that of the kernel in its forces, of the others by their formulas at the same places."""
+    for samples in (4, 6, 8, 12, 16, 24):
+        period = samples * 1e-4
+        i = np.arange(400)
+        height = np.sin(2 * np.pi * i / samples)
+        np.savetxt("sine.csv", np.column_stack([i * 0.1, 50 * height]), delimiter=",", header="x,z", comments="")
+        run("import", "sine.csv", "--channel", "position=x*1mm", "--channel", "height=z*1um", "-o", "sine.height.nc", "--force")
+        write_scene("sine", patch(layers=[{"type": "height_map", "file": "sine", "kappa_n": 2}], width_m=0.03))
+        t = np.linspace(0, 1, 21)
+        write_path("path.csv", {"time_s": t, "x_m": 0.0005 * np.sin(2 * np.pi * t), "y_m": 0 * t})
+        run("render", "sine.scene.json", "--finger-path", "path.csv", "--device", "sandpaper-1990", "-o", "sine.force.csv", "--force")
+        table = np.genfromtxt("sine.force.csv", delimiter=",", names=True)
+        at = counted(table["x_m"]) / 1e-4 + 199.5  # in samples
+        steepest, cell = 2 * np.pi / samples, np.floor(at).astype(int)
+        exact, u = steepest * np.cos(2 * np.pi * at / samples), at - cell
+        before, here, after, beyond = (height[cell + k] for k in (-1, 0, 1, 2))
+        rom = ((after - before) + 2 * u * (2 * before - 5 * here + 4 * after - beyond) + 3 * u**2 * (3 * here - before - 3 * after + beyond)) / 2
+        slopes = {"B-spline": -table["force_x_n"] / 2 * 1e-4 / 50e-6, "Catmull-Rom": rom, "line": after - here}
+        errors = {name: np.abs(slope - exact).max() / steepest for name, slope in slopes.items()}
+        print(f"  {samples} samples to a period: " + ", ".join(f"{name} {100 * error:.3f} %" for name, error in errors.items()))
+        assert errors["B-spline"] < errors["Catmull-Rom"] < errors["line"], (samples, errors)
+        # The cheapest with an error below 1 % (the knee of `trade` where there is no corner) from 8 samples to a period on.
+        assert samples < 8 or (errors["B-spline"] < 0.01 < errors["line"]), (samples, errors)
+
+
 def explain_says_levels_speeds_and_memory():
     import_noise()
     write_scene("bench", patch(width_m=0.046, height_m=0.044, layers=[{"type": "height_map", "file": "plate", "kappa_n": 1.5}]))
@@ -274,7 +302,7 @@ def bad_input_is_refused_with_its_remedy():
 
 
 if __name__ == "__main__":
-    for test in (a_png_becomes_a_height_map, a_profile_becomes_a_map_of_one_row, forces_are_scipys_spline, explain_says_levels_speeds_and_memory,
+    for test in (a_png_becomes_a_height_map, a_profile_becomes_a_map_of_one_row, forces_are_scipys_spline, no_other_interpolant_is_worth_it, explain_says_levels_speeds_and_memory,
                  a_large_map_is_played_and_replayed, a_map_beyond_the_memory_is_refused, a_texture_is_scipys_spline_along_its_direction, textures_that_do_not_fit_are_refused_or_warned_of,
                  bad_input_is_refused_with_its_remedy):
         tacto.in_folder(test)

@@ -10,6 +10,7 @@
 #include "firmware-host/sim/planar/axis_motion.hpp"
 #include "playback/stability/free_limit.hpp"
 #include "playback/stability/passive_limit.hpp"
+#include "playback/stability/sampled_loop.hpp"
 #include "playback/stability/sampled_spring.hpp"
 
 namespace tacto::playback {
@@ -82,6 +83,36 @@ TEST(SampledSpring, VirtualDampingRaisesTheLimitAndThenMakesItUnstable) {
   EXPECT_NEAR(limit(30), 10.8e3, 50);
   EXPECT_GT(limit(30), limit(5));
   EXPECT_EQ(limit(70), 0);
+}
+
+// Two ways to the same boundary, without and with delay, damper and hand; with bodies:
+// design_command_test.py.
+TEST(SampledLoop, WithoutBodiesIsStableUpToTheLimit) {
+  for (const HeldMass& held : {HeldMass{0.1, 1, 0}, {0.8, 6.17, 400}, {1e-3, 0.01, 0}})
+    for (const double delay : {0.0, 0.3, 1.0, 2.75, 20.0})
+      for (const double damping : {0.0, 0.2}) {
+        const TickTiming timing{1e-3, delay};
+        const double limit = stiffness_limit(held, timing, damping);
+        if (limit > 0) {
+          EXPECT_TRUE(is_stable(held, timing, {limit * (1 - 1e-6), damping, {}})) << delay;
+        }
+        EXPECT_FALSE(is_stable(held, timing, {limit * (1 + 1e-6) + 1e-3, damping, {}})) << delay;
+      }
+}
+
+// A body at rest is a spring to the ground. With a coupling above 4 mass / period^2 the swing of a body
+// grows.
+TEST(SampledLoop, ABodyThatMayRestHasToBeStableInBoth) {
+  const HeldMass held{0.5, 2, 300};
+  const TickTiming timing{1e-3, 0};
+  CoupledBody body{0.3, 0, 800, 1, false};
+  EXPECT_TRUE(is_stable(held, timing, {0, 0, {body}}));
+  body.may_rest = true;
+  const double limit = stiffness_limit(held, timing, 1);
+  EXPECT_TRUE(is_stable(held, timing, {limit - 801, 0, {body}}));
+  EXPECT_FALSE(is_stable(held, timing, {limit - 799, 0, {body}}));
+  body.stiffness_n_per_m = 4 * 0.3 / 1e-6;
+  EXPECT_FALSE(is_stable(held, timing, {0, 0, {body}}));
 }
 
 /// Whether Coulomb friction stops the free axis that is let go this far from the spring's centre.

@@ -74,8 +74,7 @@ ActingLimit limit_of(const Design& design, std::optional<std::size_t> layer) {
   if (!layer) return {};
   const JudgedLayer& judged = design.layers[*layer];
   if (judged.verdict == Stability::not_reached) return {};
-  return {judged.total.stiffness_n_per_m,
-          judged.loop.limit(design.request.judged, judged.total.damping_n_s_per_m),
+  return {judged.total.stiffness_n_per_m, judged.loop.limit(design.request.judged, judged.total),
           std::string(to_string(judged.verdict))};
 }
 

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 namespace tacto::firmware_host {
 namespace {
 
-constexpr int kMostTerms = 40;  // |root x time| is 1 at most: the 40th term is below 1e-40 of the first
+constexpr double kUnseen = 0x1p-60;  // of a sum: far below half of its last bit
+constexpr int kMostTerms = 40;       // |root x time| is 1 at most: the 40th term is below 1e-40 of the first
 
 // x = sum of c_n t^n: c_(n+2) follows from the equation of motion, power by power.
 PlaceAndSpeed series(const LinearMotion& motion, PlaceAndSpeed start, double t) {
@@ -26,13 +26,15 @@ PlaceAndSpeed series(const LinearMotion& motion, PlaceAndSpeed start, double t) 
     moved += (n + 2) * next;
     low = high;
     high = next;
-    if (n > 1 && low == 0 && high == 0) break;
+    // The terms that follow are smaller, because |b t| <= 2 and |k t^2| <= 1: they do not change the sums.
+    const double largest = std::max(std::abs(low), std::abs(high)) / kUnseen;
+    if (n > 1 && largest <= std::abs(place) && (n + 3) * largest <= std::abs(moved)) break;
   }
   return {place, t > 0 ? moved / t : start.speed_mps};
 }
 
 // Bisection: `value` is monotone between the ends and has different signs there.
-double zero_between(const std::function<double(double)>& value, double low, double high) {
+double zero_between(const auto& value, double low, double high) {
   const bool rises = value(high) > 0;
   while (true) {
     const double middle = low + (high - low) / 2;
@@ -41,17 +43,33 @@ double zero_between(const std::function<double(double)>& value, double low, doub
   }
 }
 
+// The acceleration a follows a'' + b a' + k a = 0 (per mass). With roots r of at most 1 / piece_s, none of
+// which grows, it is a(0) C + a'(0) S with |S| <= t and |C| <= 1 + |r| t <= 2: the speed changes by at most
+// t (2 |a(0)| + |a'(0)| t).
+bool is_too_fast_to_stop(const LinearMotion& motion, PlaceAndSpeed start, double sign, double piece_s) {
+  const double acceleration = motion.acceleration_mps2(start, 0);
+  const double jerk = (motion.force_rate_n_per_s - motion.stiffness_n_per_m * start.speed_mps -
+                       motion.damping_n_s_per_m * acceleration) /
+                      motion.mass_kg;
+  constexpr double kRounding = 1.001;
+  return sign * start.speed_mps >
+         kRounding * piece_s * (2 * std::abs(acceleration) + std::abs(jerk) * piece_s);
+}
+
 // The same as time_of_stop_s() in a piece with at most one zero of the acceleration.
 double stop_in_piece_s(const LinearMotion& motion, PlaceAndSpeed start, double sign, double piece_s) {
+  if (is_too_fast_to_stop(motion, start, sign, piece_s)) return std::numeric_limits<double>::infinity();
   const auto speed = [&](double t) { return sign * series(motion, start, t).speed_mps; };
   const auto acceleration = [&](double t) { return motion.acceleration_mps2(series(motion, start, t), t); };
   // A start from rest at the edge of friction: the acceleration begins at zero, and rounding may give it the
   // wrong sign.
   if (start.speed_mps == 0 && sign * acceleration(0) <= 0) return std::numeric_limits<double>::infinity();
+  const double first = sign * acceleration(0), end = speed(piece_s);
+  if (first > 0 && end >= 0) return std::numeric_limits<double>::infinity();  // at most one turn: a maximum
   double turn_s = piece_s;
-  if (acceleration(0) * acceleration(piece_s) < 0) turn_s = zero_between(acceleration, 0, piece_s);
+  if (first * sign * acceleration(piece_s) < 0) turn_s = zero_between(acceleration, 0, piece_s);
   if (speed(turn_s) < 0) return zero_between(speed, 0, turn_s);
-  return speed(piece_s) < 0 ? zero_between(speed, turn_s, piece_s) : std::numeric_limits<double>::infinity();
+  return end < 0 ? zero_between(speed, turn_s, piece_s) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace

@@ -216,11 +216,35 @@ std::string largest_share(const std::vector<schema::Patch>& patches, const std::
   return name;
 }
 
+// One sentence about the first place with bodies that is unstable.
+void note_unstable_bodies(const std::vector<schema::Patch>& patches, const Device& device, double rate_hz,
+                          const std::optional<schema::Hand>& hand, std::vector<std::string>& notes) {
+  const schema::Hand held = hand.value_or(schema::Hand());
+  const TickTiming timing{1 / rate_hz, device.delay_s * rate_hz};
+  const auto stable = [&](const SampledLoad& load) {
+    return std::ranges::all_of(device.axes, [&](const DeviceAxis& axis) {
+      return axis.name == "z" ||
+             is_stable({axis.mass_kg + held.mass_kg, axis.viscous_n_s_per_m + held.damping_n_s_per_m,
+                        held.stiffness_n_per_m},
+                       timing, load);
+    });
+  };
+  for (const ActingPatches& place : acting_patches(patches, device)) {
+    const ActingLoad load = load_of(patches, place.patches);
+    if (load.bodies.empty() || std::ranges::all_of(load.at_ends(), stable)) continue;
+    notes.push_back(fmt::format(
+        "{} is unstable on this device with {} (computed): 'tactograph design' lists what would prevent it",
+        load.bodies.front().name, hand ? "hand " + hand->name : "nothing held"));
+    return;
+  }
+}
+
 // One sentence about the place that is the farthest beyond its limit. Not for a device of unknown mass.
 void note_instability(const PreparedScene& scene, const Device& device, double rate_hz,
                       const std::optional<schema::Hand>& hand, std::vector<std::string>& notes) {
   if (!(device.axes.front().mass_kg > 0)) return;
   const std::vector<schema::Patch> patches(scene.patches.rbegin(), scene.patches.rend());  // as in a file
+  note_unstable_bodies(patches, device, rate_hz, hand, notes);
   const std::vector<PlaceLimit> limits = place_limits(patches, device, rate_hz, hand);
   const auto worst = std::ranges::max_element(limits, {}, &PlaceLimit::used);
   if (worst == limits.end() || worst->used() < 1) return;
