@@ -101,7 +101,9 @@ schema::Scene with_sliders_at_ends(schema::Scene scene, bool most_damping) {
           [&](schema::HeightMapLayer& map) { raise(map.kappa_n); },
           [&](schema::TextureForceLayer& texture) { texture.gain.value = farthest_value(texture.gain); },
           [&](schema::NoiseLayer& noise) { raise(noise.kappa_n), raise(noise.depth_m); },
-          [&](schema::FieldLayer& field) { raise(field.force_scale); }, [](auto& /*other*/) {});
+          [&](schema::FieldLayer& field) { raise(field.force_scale); },
+          [&](schema::ForceMapLayer& map) { map.gain.value = farthest_value(map.gain); },
+          [](auto& /*other*/) {});
   return scene;
 }
 

@@ -10,15 +10,13 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::size_t kMostLayers = 256;  // of a scene
-
 template <class L, class... Kinds>
 concept AnyOf = (std::same_as<L, Kinds> || ...);
 
 // Named one by one: a new kind does not compile until it is here or has a rule.
 template <class L>
 concept NoFurtherRule = AnyOf<L, HeightMapLayer, GroovesLayer, NoiseLayer, TextureForceLayer, SpringLayer,
-                              DamperLayer, MassLayer, MoverLayer, ForceMapLayer, FieldLayer>;
+                              DamperLayer, MoverLayer, ForceMapLayer, FieldLayer>;
 
 Result<void> check_slider(const NamedLayerNumber& named, const std::string& where) {
   const LayerNumber& number = named.number;
@@ -86,8 +84,8 @@ Result<void> check_layer_count(const Scene& scene, const std::string& where) {
   std::size_t layers = scene.layers.size();
   for (std::size_t i = 0; i < scene.patches.size(); ++i) {
     layers += scene.patches[i].layers.size();
-    if (layers > kMostLayers)
-      return fail(ErrorKind::unsuitable, fmt::format("the scene has more than {} layers", kMostLayers),
+    if (layers > kMostSceneLayers)
+      return fail(ErrorKind::unsuitable, fmt::format("the scene has more than {} layers", kMostSceneLayers),
                   fmt::format("{}#/patches/{}", where, i), "make two scenes of it");
   }
   return {};

@@ -2,6 +2,7 @@
 // A scene: what is under the finger, and where, as NAME.scene.json.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,12 @@ struct TextureLayer {
 /// not compile.
 using Layer = OneOf<TextureLayer>;
 
+inline constexpr std::size_t kMostSceneLayers = 256;
+
 struct Scene {
-  std::vector<Layer> layers;   ///< of a tray; their target displacements add up
-  std::vector<Patch> patches;  ///< of a force device; a scene has layers, patches, or both, 256 layers in all
+  std::vector<Layer> layers;  ///< of a tray; their target displacements add up
+  std::vector<Patch>
+      patches;  ///< of a force device; a scene has layers, patches, or both, at most kMostSceneLayers
   std::string name, notes;
   std::string created, creator;
   PlaybackChoices playback;

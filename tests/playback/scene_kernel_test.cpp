@@ -228,7 +228,7 @@ TEST(SceneKernel, NumbersOfTheBlockAreThoseThatCanHaveASlider) {
   const schema::ForceLayer layers[] = {
       schema::SpringLayer{},    schema::DamperLayer{},       schema::GroovesLayer{}, schema::NoiseLayer{},
       schema::HeightMapLayer{}, schema::TextureForceLayer{}, schema::BodyLayer{},    schema::LassoLayer{},
-      schema::MoverLayer{},     schema::FieldLayer{}};
+      schema::MoverLayer{},     schema::FieldLayer{},        schema::ForceMapLayer{}};
   for (const schema::ForceLayer& layer : layers) {
     std::vector<std::string_view> in_block = numbers_in_block(layer), changing;
     for (const schema::NamedLayerNumber& number : numbers_of(layer))

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "playback/prepare/scene/scene_device.hpp"
@@ -21,6 +22,9 @@ ActingLoad load_of(const schema::ForceLayer& layer) {
                 load.least_damping_n_s_per_m = least_value(mover.damping_n_s_per_m);
                 load.most_damping_n_s_per_m = largest_value(mover.damping_n_s_per_m);
               },
+              [&](const schema::ForceMapLayer& map) {
+                load.curl_n_per_m = std::abs(farthest_value(map.gain)) * map.curl_n_per_m;
+              },
               [&](const auto& /*other*/) {
                 if (!(load.stiffness_n_per_m > 0)) load.unknown = {std::string(type_of(layer))};
               });
@@ -35,6 +39,7 @@ ActingLoad load_of(const std::vector<schema::Patch>& patches, const std::vector<
       sum.stiffness_n_per_m += load.stiffness_n_per_m;
       sum.least_damping_n_s_per_m += load.least_damping_n_s_per_m;
       sum.most_damping_n_s_per_m += load.most_damping_n_s_per_m;
+      sum.curl_n_per_m += load.curl_n_per_m;
       for (const std::string& type : load.unknown)
         sum.unknown.push_back(fmt::format("{} {} of patch '{}'", type, j, patches[i].name));
     }
