@@ -220,7 +220,8 @@ double rounding_bound_n(const schema::Patch& patch, const schema::ForceLayer& la
       },
       [&](const schema::FieldLayer& field) {
         const auto section = playback::field_section(field, reliefs.of(field), patch);
-        return largest_size(field.force_scale) * playback::field_rounding_n(section, largest_size(field.z_m));
+        return largest_size(field.force_scale) *
+               playback::field_rounding_n(section, patch, least_value(field.z_m), largest_value(field.z_m));
       },
       [&](const schema::ForceMapLayer& map) {
         return largest_size(map.gain) * rounding_of_map_n(reliefs.of(map));
