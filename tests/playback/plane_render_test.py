@@ -157,11 +157,11 @@ def a_filtered_step_rests_and_a_steeper_one_swings():
     limit = min((1 - e) / q, 2 * (1 + e) / (p - q) if p > q else np.inf)
     bare = np.sqrt(0.242 * kappa * depth / limit)
 
-    def swing(margin, device="free", hand="push", hand_mass=0.0, hand_stiffness=0.1):
+    def swing(margin, device="free", hand="push", hand_stiffness=0.1, kappa=kappa):
         """RMS of the last quarter, m, and sigma. The highest place is at the centre of the patch, so a step rises a quarter of a period before it."""
         write_scene("step", patch(x_m=period / 4, width_m=0.1, layers=[grooves("square", period, depth, kappa, filter_margin=margin)]))
         # The soft hand's mass of 1e-4 kg is not in the limit of the free device.
-        told = run_json("explain", "step.scene.json", "--device", device, *(("--hand", hand) if hand_mass else ()))
+        told = run_json("explain", "step.scene.json", "--device", device, *(("--hand", hand) if hand != "push" else ()))
         sigma = told["layers"][0]["filter_m"]
         assert abs(sigma / (margin * np.sqrt(0.242 * kappa * depth / told["stiffness_limit_n_per_m"])) - 1) < 1e-5, told
         push = kappa * depth * np.exp(-0.5) / (np.sqrt(2 * np.pi) * sigma)
@@ -183,11 +183,11 @@ def a_filtered_step_rests_and_a_steeper_one_swings():
     counts = {margin: swing(margin, "coarse")[0] / 1e-5 for margin in (1.03, 0.97, 1.5)}
     print(f"  with an encoder of 10 um: {counts[1.03]:.2g}, {counts[0.97]:.2g} and, with the margin, {counts[1.5]:.2g} counts")
     assert 0.5 < counts[1.03] < 1.5 and 4 <= counts[0.97] <= 11 and counts[1.5] < 0.5, counts
-    # In a hand, with its own limit, the boundary is the same.
+    # In a hand, with its own limit, the boundary is the same; the surface is steeper, because no filter is below a 76th of the period.
     write_hand("firm", 0.4, 2, 100)
-    held = {margin: swing(margin, "free", "firm", 0.4, 100) for margin in (1.03, 0.97)}
+    held = {margin: swing(margin, "free", "firm", 100, 4 * kappa) for margin in (1.03, 0.97)}
     print(f"  in a hand, limit {held[1.03][2]:.4g} N/m: {held[1.03][0] / held[1.03][1]:.2g} and {held[0.97][0] / held[0.97][1]:.2g} sigma")
-    assert held[1.03][2] > 1.2 * limit and held[1.03][0] < 1e-3 * held[1.03][1] and held[0.97][0] > 0.1 * held[0.97][1], held
+    assert held[1.03][2] > 1.2 * limit and held[1.03][0] < 1e-3 * held[1.03][1] and abs(held[0.97][0] / held[0.97][1] - 0.35) < 0.05, held
 
 
 def dampers_follow_the_path():
