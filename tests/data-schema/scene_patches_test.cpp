@@ -253,10 +253,10 @@ TEST(ScenePatches, OnlyNumbersThatCanChangeMayHaveASlider) {
   refused_slider(1, "filter_m", slider(1e-4, 0, 1e-3));
   refused_slider(1, "filter_margin", slider(2, 1.5, 3));
   refused_slider(2, "roughness", slider(0.5, 0.4, 0.6));
-  refused_slider(8, "damping_n_s_per_m", slider(0.5, 0.4, 0.6));
-  refused_slider(9, "direction_deg", slider(0, 0, 90));
-  refused_slider(11, "core", slider(1, 0.9, 1.1));
-  refused_slider(11, "probe_charge_c", slider(0, -1e-19, 1e-19));
+  refused_slider(7, "damping_n_s_per_m", slider(0.5, 0.4, 0.6));
+  refused_slider(8, "direction_deg", slider(0, 0, 90));
+  refused_slider(10, "core", slider(1, 0.9, 1.1));
+  refused_slider(10, "probe_charge_c", slider(0, -1e-19, 1e-19));
 }
 
 TEST(ScenePatches, ASceneOfATrayIsWrittenAsItWasRead) {

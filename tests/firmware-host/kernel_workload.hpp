@@ -117,7 +117,7 @@ class TextureWorkload {
   float samples_[kTextureSamples], taps_[kTextureTaps];
 };
 
-inline constexpr uint32_t kSceneFingerprint = 438319789;
+inline constexpr uint32_t kSceneFingerprint = 2428412699;
 
 /// A scene of four overlapping patches with springs, dampers, grooves, noise, a height map, a body with
 /// friction, a lasso, a mover, a field of atoms and a force map, which move and change their order, and a

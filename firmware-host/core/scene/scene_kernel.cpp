@@ -212,10 +212,11 @@ PlaneVector SceneKernel::map_force(const SceneLayer& layer, const Hand& hand,
   for (uint32_t i = 0; i < 2; ++i) {
     if (weights[i] == 0) continue;
     const ReliefLevelTable& level = levels_of(table)[first + i];
-    const float* const coefficients = coefficients_of(table, level);
-    const Q32 x = place_on(level.along[0], hand.counts), y = place_on(level.along[1], hand.counts);
-    force.x += weights[i] * relief_at({coefficients, level.columns, level.rows}, x, y).value;
-    force.y += weights[i] * relief_at({coefficients + along_rows, level.columns, level.rows}, x, y).value;
+    float values[2];
+    values_at({coefficients_of(table, level), level.columns, level.rows}, along_rows,
+              place_on(level.along[0], hand.counts), place_on(level.along[1], hand.counts), values);
+    force.x += weights[i] * values[0];
+    force.y += weights[i] * values[1];
   }
   const float gain = live_[layer.first_number + kForceMapGain];
   return {gain * force.x, gain * force.y};
