@@ -2,6 +2,7 @@
 #include "analysis/scene/scene_figure.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -335,18 +336,27 @@ void add_scale_bar(Canvas& canvas, SceneLegend& legend, const SceneMap& map) {
   });
 }
 
-// "spring, body": the types whose tint this is.
-std::string types_with(const std::vector<schema::Patch>& patches, std::uint8_t tint) {
-  std::string words;
-  std::vector<std::string_view> seen;
+constexpr std::uint8_t kBothTints = kActsSpring | kActsDamper;
+
+std::uint8_t tint_of(const schema::Patch& patch) {
+  std::uint8_t tint = 0;
+  for (const schema::ForceLayer& layer : patch.layers)
+    tint = static_cast<std::uint8_t>(tint | (acts_of(layer) & kBothTints));
+  return tint;
+}
+
+// "spring, body": the types of one tint; of the patches with this tint, or of all if there is none: then
+// patches that are added to each other have it.
+std::string types_with(const std::vector<schema::Patch>& patches, std::uint8_t acts, std::uint8_t tint) {
+  const bool any = std::ranges::find(patches, tint, tint_of) != patches.end();
+  std::vector<std::string_view> types;
   for (const schema::Patch& patch : patches)
-    for (const schema::ForceLayer& layer : patch.layers) {
-      const std::string_view type = schema::type_of(layer);
-      if (acts_of(layer) != tint || std::ranges::find(seen, type) != seen.end()) continue;
-      seen.push_back(type);
-      words += (words.empty() ? "" : ", ") + std::string(type);
-    }
-  return words;
+    for (const schema::ForceLayer& layer : patch.layers)
+      if (const std::string_view type = schema::type_of(layer); acts_of(layer) == acts &&
+                                                                (!any || tint_of(patch) == tint) &&
+                                                                std::ranges::find(types, type) == types.end())
+        types.push_back(type);
+  return fmt::format("{}", fmt::join(types, ", "));
 }
 
 void add_kinds(Canvas& canvas, SceneLegend& legend, const ReliefRaster& raster,
@@ -361,14 +371,13 @@ void add_kinds(Canvas& canvas, SceneLegend& legend, const ReliefRaster& raster,
     legend.add(14, words, [&](Point at) { canvas.image({at.x, at.y - 7, 14, 14}, bump_sample(28)); });
   }
   const auto tinted = [&](std::uint8_t tint, const std::string& words) {
-    constexpr std::uint8_t kBoth = kActsSpring | kActsDamper;
-    const auto is = [&](std::uint8_t pixel) { return (pixel & kBoth) == tint; };
+    const auto is = [&](std::uint8_t pixel) { return (pixel & kBothTints) == tint; };
     if (std::ranges::any_of(raster.acts, is)) legend.add_tint(tint, words);
   };
-  const std::string springs = types_with(patches, kActsSpring), dampers = types_with(patches, kActsDamper);
-  tinted(kActsSpring, springs);
-  tinted(kActsDamper, dampers);
-  tinted(kActsSpring | kActsDamper, springs + " and " + dampers);
+  tinted(kActsSpring, types_with(patches, kActsSpring, kActsSpring));
+  tinted(kActsDamper, types_with(patches, kActsDamper, kActsDamper));
+  tinted(kBothTints, types_with(patches, kActsSpring, kBothTints) + " and " +
+                         types_with(patches, kActsDamper, kBothTints));
   const auto is_spring = [](const schema::ForceLayer& layer) { return schema::type_of(layer) == "spring"; };
   if (std::ranges::any_of(
           patches, [&](const schema::Patch& patch) { return std::ranges::any_of(patch.layers, is_spring); }))
