@@ -22,7 +22,8 @@ namespace {
 
 using schema::ErrorKind;
 
-void judge(JudgedLayer& layer, const DesignRequest& request, const std::vector<std::string>& unknown) {
+void judge(JudgedLayer& layer, const DesignRequest& request, const playback::ActingLoad& load) {
+  const std::vector<std::string>& unknown = load.unknown;
   const Holder judged = request.judged, computed = is_proof(judged) ? Holder::nothing : judged;
   const auto proved = [&](Holder holder) {
     return judged != Holder::lumped && layer.loop.carries(holder, layer.total);
@@ -40,6 +41,12 @@ void judge(JudgedLayer& layer, const DesignRequest& request, const std::vector<s
   } else if (is_proof(judged)) {
     layer.verdict = Stability::not_known;
     layer.because = "not proved for " + holder_name(judged, request);
+  }
+  if (load.curl_n_per_m > 0) {
+    layer.verdict = Stability::not_known;
+    layer.because = fmt::format(
+        "not passive: a turn of the hand gains up to {:.4g} J per m^2 of its area, the curl of the force map",
+        load.curl_n_per_m);
   }
   if (unknown.empty()) return;
   layer.verdict = Stability::not_known;
@@ -68,7 +75,7 @@ JudgedLayer judged_place(const DesignRequest& request, const playback::ActingPat
       worst.margin = margin;
     }
   }
-  judge(worst, request, load.unknown);
+  judge(worst, request, load);
   return worst;
 }
 

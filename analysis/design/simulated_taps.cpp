@@ -103,7 +103,9 @@ schema::Scene with_sliders_at_ends(schema::Scene scene, bool most_damping) {
           [&](schema::NoiseLayer& noise) { raise(noise.kappa_n), raise(noise.depth_m); },
           [&](schema::FieldLayer& field) { raise(field.force_scale); },
           [&](schema::BodyLayer& body) { raise(body.stiffness_n_per_m); },
-          [&](schema::LassoLayer& lasso) { raise(lasso.stiffness_n_per_m); }, [](auto& /*other*/) {});
+          [&](schema::LassoLayer& lasso) { raise(lasso.stiffness_n_per_m); },
+          [&](schema::ForceMapLayer& map) { map.gain.value = farthest_value(map.gain); },
+          [](auto& /*other*/) {});
   return scene;
 }
 

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/session/force_session.hpp"
+#include "playback/session/session_replay.hpp"
 
 namespace tacto::analysis {
 
@@ -56,7 +58,8 @@ double HandPath::largest_force_n() const {
 
 void HandPath::add(Point place_m, double force_x_n, double force_y_n) {
   const Point at = map_.place(place_m);
-  if (lines_.empty()) {
+  if (lines_.empty() || lifted_) {
+    lifted_ = false;
     last_ = at;
     last_m_ = place_m;
     lines_.push_back({at});
@@ -101,6 +104,40 @@ void HandPath::add_arrow(Point at, double x_n, double y_n) {
   for (std::size_t i = 0; 2 * i < arrows_.size(); ++i) arrows_[i] = arrows_[2 * i];
   arrows_.resize((arrows_.size() + 1) / 2);
   spacing_ *= 2;
+}
+
+std::vector<BodyOfScene> bodies_of(const std::vector<schema::Patch>& patches) {
+  std::vector<BodyOfScene> bodies;
+  std::uint32_t layer = 0;
+  for (std::uint32_t patch = 0; patch < patches.size(); ++patch)
+    for (const schema::ForceLayer& of : patches[patch].layers) {
+      of.visit(
+          [&](const schema::BodyLayer& /*body*/) {
+            bodies.push_back({patch, layer, 0});
+          },
+          [&](const schema::LassoLayer& lasso) {
+            bodies.push_back({patch, layer, lasso.length_m.value});
+          },
+          [](const auto& /*without a place*/) {});
+      ++layer;
+    }
+  return bodies;
+}
+
+Result<std::vector<HandPath>> read_body_paths(const std::string& name, const SceneMap& map,
+                                              const std::vector<BodyOfScene>& bodies) {
+  std::vector<HandPath> paths(bodies.size(), HandPath(map));
+  const auto replayed = playback::replay_session(name, {}, {}, [&](const core::SceneKernel& scene) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      core::PlaneVector place_m;
+      if (scene.body_place(bodies[i].patch, bodies[i].layer, place_m))
+        paths[i].add({double{place_m.x}, double{place_m.y}}, 0, 0);
+      else
+        paths[i].lift();
+    }
+  });
+  TACTO_TRY(replayed);
+  return paths;
 }
 
 Result<HandSession> read_hand_session(const std::string& name) {

@@ -8,6 +8,7 @@
 
 #include "analysis/scene/scene_map.hpp"
 #include "data-schema/base/error.hpp"
+#include "data-schema/scene/patch.hpp"
 
 namespace tacto::analysis {
 
@@ -22,8 +23,11 @@ struct ForceArrow {
 class HandPath {
  public:
   explicit HandPath(const SceneMap& map);
-  /// In the order of the ticks.
+  /// In the order of the ticks; also of a body, without forces.
   void add(spatial::Point place_m, double force_x_n, double force_y_n);
+
+  /// The next place begins a new line.
+  void lift() { lifted_ = true; }
 
   const std::vector<std::vector<spatial::Point>>& lines() const { return lines_; }
   const std::vector<ForceArrow>& arrows() const { return arrows_; }
@@ -43,7 +47,7 @@ class HandPath {
   std::vector<bool> drawn_;
   std::vector<std::vector<spatial::Point>> lines_;
   std::vector<ForceArrow> arrows_;
-  bool pen_down_ = false;
+  bool pen_down_ = false, lifted_ = false;
   std::size_t last_cell_ = SIZE_MAX;
   spatial::Point last_, last_m_;
   double length_m_ = 0, since_arrow_ = 0, spacing_ = kArrowSpacing;
@@ -61,5 +65,19 @@ schema::Result<HandSession> read_hand_session(const std::string& name);
 
 /// Errors: as read_hand_session().
 schema::Result<HandPath> read_hand_path(const std::string& name, const SceneMap& map);
+
+/// A body or a lasso of a scene: patch and layer as in the block.
+struct BodyOfScene {
+  std::uint32_t patch = 0, layer = 0;
+  double length_m = 0;  ///< of a lasso: up to this distance its force is 0
+};
+
+/// `patches` from the topmost on, as of PreparedScene.
+std::vector<BodyOfScene> bodies_of(const std::vector<schema::Patch>& patches);
+
+/// The path of each body while the hand was on its patch, by a replay of the session. Without the part from
+/// where the replay differs. Errors: as playback::replay_session().
+schema::Result<std::vector<HandPath>> read_body_paths(const std::string& name, const SceneMap& map,
+                                                      const std::vector<BodyOfScene>& bodies);
 
 }  // namespace tacto::analysis

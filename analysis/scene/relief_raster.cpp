@@ -22,15 +22,6 @@ constexpr Colour kSpringTint{0.98, 0.86, 0.62}, kDamperTint{0.72, 0.87, 0.96};
 constexpr double kDarkest = 0.26;  // so that a path and letters can be read on it
 constexpr int kGreys = 63;         // four tints of them and four colours without a relief: 256
 
-std::uint8_t acts_of(const schema::ForceLayer& layer) {
-  return layer.visit([](const schema::SpringLayer& /*spring*/) { return kActsSpring; },
-                     [](const schema::BodyLayer& /*body*/) { return kActsSpring; },
-                     [](const schema::LassoLayer& /*lasso*/) { return kActsSpring; },
-                     [](const schema::DamperLayer& /*damper*/) { return kActsDamper; },
-                     [](const schema::MoverLayer& /*mover*/) { return kActsDamper; },
-                     [](const auto& /*relief*/) { return kActsRelief; });
-}
-
 double direction_rad(const schema::Patch& patch, const schema::ForceLayer& layer) {
   double degrees = patch.angle_deg;
   for (const auto& [name, number, changes, whole] : schema::numbers_of(layer))
@@ -140,6 +131,15 @@ double full_force_n(const ReliefRaster& raster) {
 }
 
 }  // namespace
+
+std::uint8_t acts_of(const schema::ForceLayer& layer) {
+  return layer.visit([](const schema::SpringLayer& /*spring*/) { return kActsSpring; },
+                     [](const schema::BodyLayer& /*body*/) { return kActsSpring; },
+                     [](const schema::LassoLayer& /*lasso*/) { return kActsSpring; },
+                     [](const schema::DamperLayer& /*damper*/) { return kActsDamper; },
+                     [](const schema::MoverLayer& /*mover*/) { return kActsDamper; },
+                     [](const auto& /*relief*/) { return kActsRelief; });
+}
 
 ReliefRaster relief_raster(const PreparedScene& scene, double rate_hz, const PixelGrid& grid,
                            const std::function<void(double)>& progress) {

@@ -26,6 +26,9 @@ struct PixelGrid {
 /// A part of what acts in a pixel.
 enum Acts : std::uint8_t { kActsRelief = 1, kActsSpring = 2, kActsDamper = 4 };
 
+/// One of them, by the type of the layer.
+std::uint8_t acts_of(const schema::ForceLayer& layer);
+
 /// Row by row; as many values as the grid has pixels.
 struct ReliefRaster {
   PixelGrid grid;
@@ -39,12 +42,12 @@ struct ReliefRaster {
 };
 
 /// The relief is all that is neither spring (nor the spring of a body or a lasso) nor damper (nor mover):
-/// grooves, noise, height maps, textures, fields. Its force is that of playback::ExactScene, the reference of
-/// the kernel, on a hand that moves by one pixel in each tick: so frequencies of over half a cycle in a
-/// pixel, which pixels cannot show, are left out by the same rule as in playback. Where patches overlap, the
-/// topmost acts and those that are added. full_n is the force that 10 % of the pixels with a relief exceed,
-/// at least a tenth of the largest. `rate_hz`: that for which the scene was prepared. `progress` receives
-/// fractions.
+/// grooves, noise, height maps, textures, fields, force maps. Its force is that of playback::ExactScene, the
+/// reference of the kernel, on a hand that moves by one pixel in each tick: so frequencies of over half a
+/// cycle in a pixel, which pixels cannot show, are left out by the same rule as in playback. Where patches
+/// overlap, the topmost acts and those that are added. full_n is the force that 10 % of the pixels with a
+/// relief exceed, at least a tenth of the largest. `rate_hz`: that for which the scene was prepared.
+/// `progress` receives fractions.
 ReliefRaster relief_raster(const playback::PreparedScene& scene, double rate_hz, const PixelGrid& grid,
                            const std::function<void(double)>& progress = {});
 

@@ -2,6 +2,7 @@
 #include "analysis/scene/scene_figure.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -134,6 +135,9 @@ const Pen kOutline{spatial::kInk, 1}, kAddedOutline{spatial::kInk, 1, true};
 const Pen kTravelPen{spatial::kGreyInk, 0.9, true}, kSpringWay{kSpringInk, 0.7, true};
 const TextStyle kName{.size = 9.5, .bold = true, .align_x = 0, .align_y = 0}, kLegendText{.size = 9};
 
+constexpr Colour kBodyInk{0.45, 0.25, 0.55};
+const Pen kBodyPath{kBodyInk, 1.2}, kReach{kBodyInk, 0.7, true};
+
 Colour path_colour() {
   return spatial::series_colour(0);
 }
@@ -156,6 +160,21 @@ void draw_target(Canvas& canvas, Point at) {
   draw_disc(canvas, at, 3.9, {1, 1, 1});
   const Segment cross[] = {{{at.x - 7, at.y}, {at.x + 7, at.y}}, {{at.x, at.y - 7}, {at.x, at.y + 7}}};
   canvas.lines(cross, {kSpringInk, 0.9});
+}
+
+// A brick.
+void draw_body(Canvas& canvas, Point at) {
+  canvas.fill({at.x - 5, at.y - 5, 10, 10}, kHalo);
+  canvas.fill({at.x - 4, at.y - 4, 8, 8}, kBodyInk);
+}
+
+void draw_circle(Canvas& canvas, Point at, double radius, const Pen& pen) {
+  std::vector<Point> edge;
+  for (int i = 0; i <= 48; ++i) {
+    const double angle = i * std::numbers::pi / 24;
+    edge.push_back({at.x + radius * std::cos(angle), at.y + radius * std::sin(angle)});
+  }
+  canvas.polyline(edge, pen);
 }
 
 void draw_arrow(Canvas& canvas, Point from, Point to) {
@@ -224,6 +243,23 @@ class PatchPainter {
               taken_.push_back({at.x - 8, at.y - 8, 16, 16});
             },
             [](const auto& /*other*/) {});
+  }
+
+  // Where a session took them up, with their paths; without a session in the middle of their patches. Around
+  // a lasso: up to where its force is 0.
+  void bodies(const std::vector<BodyOfScene>& all, const std::vector<HandPath>& paths) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Point at = map_.place(frames_[all[i].patch].in_plane(0, 0));
+      if (i < paths.size()) {
+        if (paths[i].lines().empty()) continue;  // never taken up
+        for (const auto& line : paths[i].lines()) canvas_.polyline(line, kBodyPath);
+        avoid(paths[i]);
+        at = paths[i].start();
+      }
+      if (all[i].length_m > 0) draw_circle(canvas_, at, all[i].length_m * map_.points_per_m(), kReach);
+      draw_body(canvas_, at);
+      taken_.push_back({at.x - 5, at.y - 5, 10, 10});
+    }
   }
 
   // Names are not written on a path.
@@ -395,7 +431,31 @@ void add_scale_bar(Canvas& canvas, SceneLegend& legend, const SceneMap& map) {
   });
 }
 
-void add_kinds(Canvas& canvas, SceneLegend& legend, const ReliefRaster& raster) {
+constexpr std::uint8_t kBothTints = kActsSpring | kActsDamper;
+
+std::uint8_t tint_of(const schema::Patch& patch) {
+  std::uint8_t tint = 0;
+  for (const schema::ForceLayer& layer : patch.layers)
+    tint = static_cast<std::uint8_t>(tint | (acts_of(layer) & kBothTints));
+  return tint;
+}
+
+// "spring, body": the types of one tint; of the patches with this tint, or of all if there is none: then
+// patches that are added to each other have it.
+std::string types_with(const std::vector<schema::Patch>& patches, std::uint8_t acts, std::uint8_t tint) {
+  const bool any = std::ranges::find(patches, tint, tint_of) != patches.end();
+  std::vector<std::string_view> types;
+  for (const schema::Patch& patch : patches)
+    for (const schema::ForceLayer& layer : patch.layers)
+      if (const std::string_view type = schema::type_of(layer); acts_of(layer) == acts &&
+                                                                (!any || tint_of(patch) == tint) &&
+                                                                std::ranges::find(types, type) == types.end())
+        types.push_back(type);
+  return fmt::format("{}", fmt::join(types, ", "));
+}
+
+void add_kinds(Canvas& canvas, SceneLegend& legend, const ReliefRaster& raster,
+               const std::vector<schema::Patch>& patches) {
   const auto acts = [&](std::uint8_t what) {
     return std::ranges::any_of(raster.acts, [&](std::uint8_t pixel) { return (pixel & what) != 0; });
   };
@@ -405,15 +465,17 @@ void add_kinds(Canvas& canvas, SceneLegend& legend, const ReliefRaster& raster) 
                     schema::for_people(raster.full_n, Dimension::force));
     legend.add(14, words, [&](Point at) { canvas.image({at.x, at.y - 7, 14, 14}, bump_sample(28)); });
   }
-  const auto tinted = [&](std::uint8_t tint, const char* words) {
-    constexpr std::uint8_t kBoth = kActsSpring | kActsDamper;
-    const auto is = [&](std::uint8_t pixel) { return (pixel & kBoth) == tint; };
+  const auto tinted = [&](std::uint8_t tint, const std::string& words) {
+    const auto is = [&](std::uint8_t pixel) { return (pixel & kBothTints) == tint; };
     if (std::ranges::any_of(raster.acts, is)) legend.add_tint(tint, words);
   };
-  tinted(kActsSpring, "spring");
-  tinted(kActsDamper, "damper");
-  tinted(kActsSpring | kActsDamper, "spring and damper");
-  if (acts(kActsSpring))
+  tinted(kActsSpring, types_with(patches, kActsSpring, kActsSpring));
+  tinted(kActsDamper, types_with(patches, kActsDamper, kActsDamper));
+  tinted(kBothTints, types_with(patches, kActsSpring, kBothTints) + " and " +
+                         types_with(patches, kActsDamper, kBothTints));
+  const auto is_spring = [](const schema::ForceLayer& layer) { return schema::type_of(layer) == "spring"; };
+  if (std::ranges::any_of(
+          patches, [&](const schema::Patch& patch) { return std::ranges::any_of(patch.layers, is_spring); }))
     legend.add(14, "where the force of a spring is 0", [&](Point at) {
       draw_target(canvas, {at.x + 7, at.y});
     });
@@ -431,6 +493,20 @@ void add_hand_words(Canvas& canvas, SceneLegend& legend, const HandSession& sess
   legend.add(length, "force on the hand, " + schema::for_people(force_n, Dimension::force), [&](Point at) {
     draw_arrow(canvas, at, {at.x + length, at.y});
   });
+}
+
+void add_body_words(Canvas& canvas, SceneLegend& legend, const std::vector<BodyOfScene>& bodies,
+                    bool with_paths) {
+  if (bodies.empty()) return;
+  legend.add(22,
+             with_paths ? "path of a body from where the hand took it up"
+                        : "body: taken up where the hand enters its patch",
+             [&](Point at) {
+               if (with_paths) canvas.line(at, {at.x + 22, at.y}, kBodyPath);
+               draw_body(canvas, {at.x + 5, at.y});
+             });
+  if (std::ranges::any_of(bodies, [](const BodyOfScene& body) { return body.length_m > 0; }))
+    legend.add_line(kReach, "up to here a lasso does not pull");
 }
 
 bool adds_a_patch(const std::vector<schema::Patch>& patches) {
@@ -515,17 +591,23 @@ Result<SceneFigure> SceneFigure::make(ScenePicture picture, const std::function<
   made.map_ = scene_map(plane_range_of(of), {kMapLeft, kPageMargin + made.heading_.height()},
                         {kPageWidth - kMapLeft - kPageMargin, kMapHeight});
   made.raster_ = relief_raster(of.prepared, of.rate_hz, made.map_.grid, progress);
+  made.bodies_ = bodies_of(of.prepared.patches);
   if (!of.session) return made;
   auto path = read_hand_path(of.session->path, made.map_);
   TACTO_TRY(path);
   made.path_ = std::move(*path);
+  if (made.bodies_.empty()) return made;
+  auto bodies = read_body_paths(of.session->path, made.map_, made.bodies_);
+  TACTO_TRY(bodies);
+  made.body_paths_ = std::move(*bodies);
   return made;
 }
 
 double SceneFigure::draw_below_map(Canvas& canvas) const {
   SceneLegend legend(canvas, map_.box.bottom() + kBelowMap);
   add_scale_bar(canvas, legend, map_);
-  add_kinds(canvas, legend, raster_);
+  add_kinds(canvas, legend, raster_, picture_.prepared.patches);
+  add_body_words(canvas, legend, bodies_, path_.has_value());
   if (adds_a_patch(picture_.scene.patches)) legend.add_line(kAddedOutline, "added to what is below");
   if (picture_.device) legend.add_line(kTravelPen, "travel of " + picture_.device->name);
   if (path_) add_hand_words(canvas, legend, *picture_.session, *path_);
@@ -546,6 +628,7 @@ Result<void> SceneFigure::draw(Canvas& canvas) const {
   PatchPainter patches(canvas, map_, picture_.prepared.patches);
   patches.outlines();
   patches.spring_places();
+  patches.bodies(bodies_, body_paths_);
   if (path_) {
     draw_hand(canvas, *path_);
     patches.avoid(*path_);

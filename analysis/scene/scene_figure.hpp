@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analysis/scene/hand_path.hpp"
 #include "analysis/scene/relief_raster.hpp"
@@ -38,8 +39,8 @@ schema::Result<ScenePicture> read_scene_picture(const std::string& scene, const 
 
 class SceneFigure : public spatial::Figure {
  public:
-  /// Computes the relief of each pixel, and reads the session's path. `progress` receives fractions. Errors:
-  /// as read_hand_path().
+  /// Computes the relief of each pixel, and reads the session's path; of a scene with bodies, it replays the
+  /// session. `progress` receives fractions. Errors: as read_hand_path() and read_body_paths().
   static schema::Result<SceneFigure> make(ScenePicture picture,
                                           const std::function<void(double)>& progress = {});
 
@@ -49,6 +50,8 @@ class SceneFigure : public spatial::Figure {
   const SceneMap& map() const { return map_; }
   const ReliefRaster& raster() const { return raster_; }
   const std::optional<HandPath>& path() const { return path_; }
+  /// With a session: of each body and lasso, from the topmost patch on.
+  const std::vector<HandPath>& body_paths() const { return body_paths_; }
 
  private:
   explicit SceneFigure(ScenePicture picture) : picture_(std::move(picture)) {}
@@ -60,6 +63,8 @@ class SceneFigure : public spatial::Figure {
   SceneMap map_;
   ReliefRaster raster_;
   std::optional<HandPath> path_;
+  std::vector<BodyOfScene> bodies_;
+  std::vector<HandPath> body_paths_;  // with a session: one for each
 };
 
 }  // namespace tacto::analysis

@@ -5,6 +5,7 @@
 #include "data-schema/files/files.hpp"
 #include "data-schema/height/height_map.hpp"
 #include "data-schema/scene/atoms.hpp"
+#include "data-schema/scene/force_grid.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture.hpp"
 
@@ -25,7 +26,7 @@ void check_layer(const std::string& path, std::size_t index, const TextureLayer&
   check_played_texture(path, layer.texture, fmt::format("{}#/layers/{}/texture", path, index), findings);
 }
 
-// Reads the files that a layer of a patch names; a map of forces is only looked for.
+// Reads the files that a layer of a patch names.
 class ForceLayerFiles {
  public:
   ForceLayerFiles(const std::string& path, std::string where, std::vector<Finding>& findings)
@@ -35,7 +36,10 @@ class ForceLayerFiles {
     const auto map = read_height_map(texture_in_scene(path_, layer.file));
     if (!map) findings_.push_back({where_, message(map.error())});
   }
-  void operator()(const ForceMapLayer& layer) { look_for(layer.file, ".force.nc"); }
+  void operator()(const ForceMapLayer& layer) {
+    const auto grid = read_force_grid(texture_in_scene(path_, layer.file));
+    if (!grid) findings_.push_back({where_, message(grid.error())});
+  }
   void operator()(const TextureForceLayer& layer) {
     check_played_texture(path_, layer.file, where_, findings_);
   }
@@ -48,12 +52,6 @@ class ForceLayerFiles {
   void operator()(const L& /*layer*/) {}
 
  private:
-  void look_for(const std::string& name, const std::string& ending) {
-    const std::string full = texture_in_scene(path_, name);
-    if (is_file(full) || is_file(full + ending)) return;
-    findings_.push_back({where_, fmt::format("there is no file {} or {}{}", name, name, ending)});
-  }
-
   const std::string& path_;
   std::string where_;
   std::vector<Finding>& findings_;

@@ -16,7 +16,7 @@ concept AnyOf = (std::same_as<L, Kinds> || ...);
 // Named one by one: a new kind does not compile until it is here or has a rule.
 template <class L>
 concept NoFurtherRule = AnyOf<L, HeightMapLayer, GroovesLayer, NoiseLayer, TextureForceLayer, SpringLayer,
-                              DamperLayer, MassLayer, MoverLayer, ForceMapLayer, FieldLayer>;
+                              DamperLayer, MoverLayer, ForceMapLayer, FieldLayer>;
 
 Result<void> check_slider(const NamedLayerNumber& named, const std::string& where) {
   const LayerNumber& number = named.number;

@@ -107,12 +107,6 @@ struct DamperLayer {
   bool added = false;  ///< not in the file: it was added for the adaptive layers of its patch
 };
 
-/// A mass that is added to the hand's.
-struct MassLayer {
-  LayerNumber mass_kg;
-  std::string extra_json;
-};
-
 /// A brick: a mass with dry friction on its base, coupled to the hand by a spring and a damper. It is taken
 /// up at rest where the hand enters the patch.
 struct BodyLayer {
@@ -138,11 +132,13 @@ struct MoverLayer {
   std::string extra_json;
 };
 
-/// Forces that were computed in advance, on a grid.
+/// Forces that were computed in advance, on a grid. The origin of its places is the centre of the patch. They
+/// need not have a potential: the energy that a turn of the hand gains is at most the curl times its area.
 struct ForceMapLayer {
-  std::string file;  ///< stem or NAME.force.nc, from the scene's folder
-  LayerNumber gain{1};
+  std::string file;     ///< CSV of nodes, from the scene's folder (force_grid.hpp)
+  LayerNumber gain{1};  ///< 1
   std::string extra_json;
+  double stiffest_n_per_m = 0, curl_n_per_m = 0;  ///< not in the file: at a gain of 1, once it was read
 };
 
 /// The field of atoms (Lennard-Jones and Coulomb) on a probe, in a plane section through them. The origin of
@@ -159,9 +155,8 @@ struct FieldLayer {
 };
 
 /// One layer of a patch, of one kind. Code that reads a layer handles every kind of it, or does not compile.
-using ForceLayer =
-    OneOf<HeightMapLayer, GroovesLayer, NoiseLayer, TextureForceLayer, SpringLayer, DamperLayer, MassLayer,
-          BodyLayer, LassoLayer, MoverLayer, ForceMapLayer, FieldLayer>;
+using ForceLayer = OneOf<HeightMapLayer, GroovesLayer, NoiseLayer, TextureForceLayer, SpringLayer,
+                         DamperLayer, BodyLayer, LassoLayer, MoverLayer, ForceMapLayer, FieldLayer>;
 
 /// "sine", "triangle", "square".
 std::string_view to_string(GrooveProfile profile);

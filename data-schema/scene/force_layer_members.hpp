@@ -75,12 +75,6 @@ struct LayerMembers<DamperLayer> {
 };
 
 template <>
-struct LayerMembers<MassLayer> {
-  static constexpr std::string_view kType = "mass";
-  static constexpr LayerMember<MassLayer> kNumbers[] = {{"mass_kg", &MassLayer::mass_kg}};
-};
-
-template <>
 struct LayerMembers<BodyLayer> {
   static constexpr std::string_view kType = "body";
   static constexpr LayerMember<BodyLayer> kNumbers[] = {

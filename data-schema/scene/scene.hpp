@@ -2,6 +2,7 @@
 // A scene: what is under the finger, and where, as NAME.scene.json.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 

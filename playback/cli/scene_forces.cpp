@@ -225,6 +225,10 @@ Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::si
       [&](const schema::TextureForceLayer& texture) {
         add_height_map(row, on.scene.reliefs.of(texture), double{on.setup.rate_hz});
       },
+      [&](const schema::ForceMapLayer& map) {
+        add_height_map(row, on.scene.reliefs.of(map).x, double{on.setup.rate_hz});
+        row.add("curl_n_per_m", load_of(layer).curl_n_per_m);
+      },
       [&](const schema::FieldLayer& field) { row.add("atoms", on.scene.reliefs.of(field).size()); },
       [&](const schema::NoiseLayer& noise) { add_noise(row, noise, double{on.setup.rate_hz}); },
       [&](const schema::BodyLayer& body) {

@@ -52,7 +52,10 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
         [&](const schema::TextureForceLayer& texture) {
           return serves_texture(folder, schema::texture_in_scene(path, texture.file));
         },
-        [](const auto& /*cannot be played or names no file*/) { return true; });
+        [&](const auto& /*names a CSV, or no file*/) {
+          const std::string file = schema::file_of(layer);
+          return file.empty() || is_within(folder, schema::texture_in_scene(path, file));
+        });
   };
   for (const schema::Patch& patch : scene->patches)
     if (!std::ranges::all_of(patch.layers, in_folder)) return false;

@@ -51,6 +51,7 @@ class SessionBoard {
   void rest_at(const schema::SessionTick& first) { encoder_ = first.encoder, counts_ = first.counts; }
   /// Of the last tick, of a force device.
   const std::array<float, wire::kMaxAxes>& force_n() const { return force_n_; }
+  const core::SceneKernel& scene() const { return firmware_->scene(); }
   /// Gives a frame to the core; returns its answer, if there is one. Precondition: is_frame().
   std::optional<wire::Answer> send_frame(std::span<const std::uint8_t> frame);
   template <class Message>

@@ -57,8 +57,8 @@ Result<Overview> overview_of(const std::string& name) {
 class SessionPlayer {
  public:
   SessionPlayer(const schema::SessionHeader& header, const HostBeats& beats,
-                const UnlimitedListener& listener)
-      : board_(header), beats_(beats), listener_(listener) {
+                const UnlimitedListener& listener, const SceneListener& scene_listener)
+      : board_(header), beats_(beats), listener_(listener), scene_listener_(scene_listener) {
     if (listener_) unlimited_ = std::make_unique<SessionBoard>(header, BoardLimits::lifted);
   }
 
@@ -116,6 +116,7 @@ class SessionPlayer {
         outcome_.first_difference = {tick.tick, tick.force_n[i], board_.force_n()[i], "n"};
         return;
       }
+    if (scene_listener_) scene_listener_(board_.scene());
   }
   void compare(const SessionTick& tick, float replayed_v) {
     ++outcome_.ticks;
@@ -127,6 +128,7 @@ class SessionPlayer {
   std::unique_ptr<SessionBoard> unlimited_;  // if the caller needs its drive
   HostBeats beats_;
   const UnlimitedListener& listener_;
+  const SceneListener& scene_listener_;
   SessionCommands commands_;
   SessionCommands::Obey obey_ = [this](const SessionCommand& command) { obey(command); };
   std::optional<std::string> refused_;
@@ -159,13 +161,13 @@ Result<void> check_replayable(const Overview& seen, const schema::SessionReader&
 }  // namespace
 
 Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress,
-                                     const UnlimitedListener& listener) {
+                                     const UnlimitedListener& listener, const SceneListener& scene_listener) {
   const auto seen = overview_of(name);
   TACTO_TRY(seen);
   auto reader = schema::SessionReader::open(name);
   TACTO_TRY(reader);
   TACTO_TRY(check_replayable(*seen, *reader));
-  SessionPlayer player(reader->header(), seen->beats, listener);
+  SessionPlayer player(reader->header(), seen->beats, listener, scene_listener);
   TACTO_TRY(hand_over_commands(name, player));
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) player.play(*ticks);

@@ -8,6 +8,10 @@
 
 #include "data-schema/session/session_reader.hpp"
 
+namespace tacto::core {
+class SceneKernel;
+}
+
 namespace tacto::playback {
 
 /// Where the replayed drive, or force of an axis, first differs from the recorded one.
@@ -36,6 +40,9 @@ struct ReplayOutcome {
 /// amplitude, slew and energy, V.
 using UnlimitedListener = std::function<void(const schema::SessionTick& tick, float unlimited_v)>;
 
+/// Receives the kernel of a scene after each tick in which the replayed forces were the recorded ones.
+using SceneListener = std::function<void(const core::SceneKernel& scene)>;
+
 /// A device with this program's core receives the recorded commands at the ticks that received them, and the
 /// recorded counts as its encoder (the upload of a change of texture, in the tick of the change). Its drive
 /// has to equal the recorded one to the bit. A fault is reproduced if its cause is in the ticks (enable
@@ -48,6 +55,7 @@ using UnlimitedListener = std::function<void(const schema::SessionTick& tick, fl
 /// earlier.
 schema::Result<ReplayOutcome> replay_session(const std::string& name,
                                              const std::function<void(double)>& progress = {},
-                                             const UnlimitedListener& listener = {});
+                                             const UnlimitedListener& listener = {},
+                                             const SceneListener& scene_listener = {});
 
 }  // namespace tacto::playback

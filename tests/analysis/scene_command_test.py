@@ -17,7 +17,7 @@ from plane_render_test import damper, grooves, noise, patch, spring, write_path,
 from tacto import run, run_json
 
 USAGE, NOT_FOUND, UNSUITABLE = 2, 3, 5
-PATH_BLUE, FORCE_RED = "rgb(0%,44.7%,69.8%)", "rgb(83.5%,36.9%,0%)"
+PATH_BLUE, FORCE_RED, BODY_INK = "rgb(0%,44.7%,69.8%)", "rgb(83.5%,36.9%,0%)", "rgb(45%,25%,55%)"
 
 
 def write_bench():
@@ -116,6 +116,42 @@ def the_session_is_where_its_ticks_are():
         assert error < 0.06, (start, tip, error)  # points: two decimals, of the legend over half the longest arrow
 
 
+def a_lasso_is_where_its_motion_is():
+    """The mass of a lasso depends on the counts of the hand alone: computed here again from the ticks of the session."""
+    mass, stiffness, length, damping, rate = 0.1, 300.0, 0.01, 0.5, 1000
+    layer = {"type": "lasso", "mass_kg": mass, "stiffness_n_per_m": stiffness, "length_m": length, "damping_n_s_per_m": damping}
+    write_scene("twirl", patch("twirl", layers=[layer]), patch("soup", x_m=0.5, width_m=0.01, layers=[damper(1), {"type": "mover", "speed_mps": 0.1, "damping_n_s_per_m": 1}]))
+    t = np.linspace(0, 2, 81)
+    write_path("turn.csv", {"time_s": t, "x_m": 0.03 * np.cos(5 * t), "y_m": 0.03 * np.sin(5 * t)})
+    run("play", "twirl.scene.json", "-d", "sim:planar", "--rate", f"{rate}Hz", "--finger-path", "turn.csv", "-o", "twirl")
+    run("session", "twirl", "-o", "twirl.csv")
+    ticks = np.genfromtxt("twirl.csv", delimiter=",", names=True)
+    z = damping / (rate * mass)
+    loss, by_speed, by_force = np.expm1(-z), -np.expm1(-z) / z / rate, (z + np.expm1(-z)) / z**2 / rate**2 / mass
+    hand = np.column_stack([ticks["x_m"], ticks["y_m"]])
+    place, speed, places = hand[0], np.zeros(2), []
+    for at in hand:
+        way = at - place
+        distance_m = np.hypot(*way)
+        force = stiffness * (1 - length / distance_m) * way if distance_m > length else np.zeros(2)
+        place, speed = place + by_speed * speed + by_force * force, speed + loss * speed + by_speed / mass * force
+        places.append(place)
+    report = run_json("scene", "twirl", "-o", "twirl.svg", "--session", "twirl")
+    svg = pathlib.Path("twirl.svg").read_text()
+    said = [text for text, _, _ in texts(svg)]
+    assert "lasso" in said and "damper, mover" in said and not any(text.startswith("spring") for text in said), said
+    to_plane, point_m, bottom = axes(svg), 2 * report["pixel_m"], next(y for text, _, y in texts(svg) if text == "x (mm)")
+    lines = [to_plane(line) for line in paths(svg, "stroke", BODY_INK) if line[0, 1] < bottom and len(line) != 49]
+    for drawn in np.concatenate(lines)[::10]:
+        assert np.hypot(*(np.array(places) - drawn).T).min() < 0.2 * point_m, drawn
+    for at in places[::50]:
+        assert min(distance(at, line) for line in lines) < 0.8 * point_m, at
+    # Without a session it has no path; a body that was taken up nowhere has none, either.
+    run("scene", "twirl", "-o", "still.svg")
+    still = [text for text, _, _ in texts(pathlib.Path("still.svg").read_text())]
+    assert any("taken up where the hand enters" in text for text in still), still
+
+
 def another_scene_than_the_session_s_is_named():
     assert "warning" not in run("scene", "bench", "-o", "same.svg", "--session", "held")[1]
     write_scene("other", patch("sand", layers=[damper(1)]))
@@ -163,7 +199,7 @@ def samples_are_the_reference_and_the_kernel():
 
 def all_of_it():
     write_bench()
-    for test in (a_scene_becomes_a_picture, the_session_is_where_its_ticks_are, another_scene_than_the_session_s_is_named, samples_are_the_reference_and_the_kernel, wrong_uses_are_refused):
+    for test in (a_scene_becomes_a_picture, the_session_is_where_its_ticks_are, a_lasso_is_where_its_motion_is, another_scene_than_the_session_s_is_named, samples_are_the_reference_and_the_kernel, wrong_uses_are_refused):
         test()
         print(f"{test.__name__}: passed")
 

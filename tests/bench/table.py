@@ -31,6 +31,14 @@ STAGES = {
     "design_of_16_patches_simulated": "the same with simulated taps: at most 5 s",
     "adversary_of_10000_paths": "10,000 paths of an adversary: at most 200 ms",
 }
+# benchmark -> its name in the table, the most nanoseconds per place (issue of force scenes, x86 near 3 GHz)
+PLACES = {
+    "SceneReliefTwoLevels": ("gradient of a 4096 x 4096 map, two levels", 1000),
+    "SceneReliefTwoLevelsCold": ("the same, places far from each other", 1000),
+    "SceneFractalOf8Octaves": ("fractal of 8 octaves, value and gradient", 1000),
+    "SceneSquareGrooves": ("square grooves of 64 harmonics", 1000),
+    "SceneFieldOf2000Atoms": ("2,000 atoms summed", 10_000),
+}
 
 
 def progress(text):
@@ -48,7 +56,8 @@ def medians(folder):
             if entry.get("aggregate_name") == "median":
                 scale = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}[entry["time_unit"]]
                 name = entry["run_name"].removesuffix("/real_time").removesuffix("/process_time")
-                found[name] = {"ms": entry["cpu_time"] * scale, "error": entry.get("error")}
+                found[name] = {"ms": entry["cpu_time"] * scale, "error": entry.get("error"),
+                               "ns_per_place": entry.get("ns_per_place"), "p99_ns_per_place": entry.get("p99_ns_per_place")}
     return found
 
 
@@ -105,6 +114,9 @@ def print_table(ours, theirs, used):
         print(f"{title:56} {beside} {mine['ms']:8.1f}ms {ratio}{error}")
     peer = ours["spectrogram_all_bins"]["ms"] / ours["packed_fftw_float"]["ms"]
     print(f"\nspectrogram of all bins against FFTW alone: {peer:.2f} times")
+    print(f"\n{'a place of a force scene':56} {'at most':>10} {'median':>10} {'p99':>10}")
+    for stage, (title, most_ns) in PLACES.items():
+        print(f"{title:56} {most_ns:8}ns {ours[stage]['ns_per_place']:8.0f}ns {ours[stage]['p99_ns_per_place']:8.0f}ns")
     print(f"\npeak memory above an idle process ({used['idle_mb']:.0f} MB):")
     for what, mb in used["above_idle_mb"].items():
         print(f"  {what:24} {mb:6.1f} MB")
@@ -117,7 +129,7 @@ def main():
     parser.add_argument("-o", "--output", help="also write the figures as JSON")
     arguments = parser.parse_args()
     ours, theirs = medians(arguments.benches), scipy_columns()
-    missing = [stage for stage in STAGES if stage not in ours]
+    missing = [stage for stage in (*STAGES, *PLACES) if stage not in ours]
     if missing:
         raise SystemExit(f"table.py: no benchmark is named {', '.join(missing)}")
     used = memory(os.path.abspath(arguments.tactograph))

@@ -34,11 +34,10 @@ const Body kLayers = {
     {{"type", "texture"}, {"file", "oak"}, {"direction_deg", 90}, {"gain", -2}},
     {{"type", "spring"}, {"stiffness_n_per_m", 100}, {"centre_x_m", 0.01}},
     {{"type", "damper"}, {"damping_n_s_per_m", 5}},
-    {{"type", "mass"}, {"mass_kg", 0.2}},
     {{"type", "body"}, {"mass_kg", 0.3}, {"stiffness_n_per_m", 400}, {"static_friction_n", 1}},
     {{"type", "lasso"}, {"mass_kg", 0.1}, {"stiffness_n_per_m", 200}, {"length_m", 0.03}},
     {{"type", "mover"}, {"speed_mps", -0.1}, {"damping_n_s_per_m", 3}},
-    {{"type", "force_map"}, {"file", "forces"}},
+    {{"type", "force_map"}, {"file", "forces.csv"}},
     {{"type", "field"}, {"file", "atoms.csv"}, {"length_scale", 1e7}, {"force_scale", 1e10}, {"z_m", 1e-3}}};
 
 Body patch_body(const std::string& name, const Body& layers) {
@@ -119,7 +118,7 @@ TEST(ScenePatches, DefaultsAreThoseOfTheSchema) {
   const auto expect = [](const LayerNumber& number, double value) { EXPECT_EQ(number, LayerNumber{value}); };
   for (const ForceLayer& each : scene->patches[0].layers)
     each.visit([](const HeightMapLayer&) {}, [](const SpringLayer&) {}, [](const DamperLayer&) {},
-               [](const MassLayer&) {}, [](const LassoLayer&) {},
+               [](const LassoLayer&) {},
                [&](const FieldLayer& of) {
                  expect(of.core, 1);
                  expect(of.probe_charge_c, 0);
@@ -225,7 +224,7 @@ TEST(ScenePatches, AdaptiveIsAMemberOfLayersWithAStiffness) {
 // Each number of each layer once with a slider, among those that the file has here.
 TEST(ScenePatches, OnlyNumbersThatCanChangeMayHaveASlider) {
   const std::set<std::string> fixed = {"1/period_m",      "2/period_m", "2/octaves", "2/seed",
-                                       "3/direction_deg", "7/mass_kg",  "8/mass_kg", "11/length_scale"};
+                                       "3/direction_deg", "6/mass_kg",  "7/mass_kg", "10/length_scale"};
   std::set<std::string> refused;
   std::size_t accepted = 0;
   for (std::size_t i = 0; i < kLayers.size(); ++i)
@@ -246,7 +245,7 @@ TEST(ScenePatches, OnlyNumbersThatCanChangeMayHaveASlider) {
       refused.insert(fmt::format("{}/{}", i, name));
     }
   EXPECT_EQ(refused, fixed);
-  EXPECT_EQ(accepted + refused.size(), 26U);
+  EXPECT_EQ(accepted + refused.size(), 25U);
   const auto refused_slider = [](std::size_t at, const std::string& name, const Body& value) {
     expect_refused([&](Body& b) { layer(b, at)[name] = value; }, ErrorKind::unsuitable,
                    fmt::format("s#/patches/0/layers/{}/{}/slider", at, name), "");
@@ -254,10 +253,10 @@ TEST(ScenePatches, OnlyNumbersThatCanChangeMayHaveASlider) {
   refused_slider(1, "filter_m", slider(1e-4, 0, 1e-3));
   refused_slider(1, "filter_margin", slider(2, 1.5, 3));
   refused_slider(2, "roughness", slider(0.5, 0.4, 0.6));
-  refused_slider(8, "damping_n_s_per_m", slider(0.5, 0.4, 0.6));
-  refused_slider(9, "direction_deg", slider(0, 0, 90));
-  refused_slider(11, "core", slider(1, 0.9, 1.1));
-  refused_slider(11, "probe_charge_c", slider(0, -1e-19, 1e-19));
+  refused_slider(7, "damping_n_s_per_m", slider(0.5, 0.4, 0.6));
+  refused_slider(8, "direction_deg", slider(0, 0, 90));
+  refused_slider(10, "core", slider(1, 0.9, 1.1));
+  refused_slider(10, "probe_charge_c", slider(0, -1e-19, 1e-19));
 }
 
 TEST(ScenePatches, ASceneOfATrayIsWrittenAsItWasRead) {
@@ -289,10 +288,9 @@ TEST(ScenePatches, AnUnknownTypeIsRefusedWithTheNearest) {
                  "did you mean 'spring'?");
   expect_refused(type("groove"), ErrorKind::unsuitable, "s#/patches/0/layers/4/type",
                  "did you mean 'grooves'?");
-  expect_refused(
-      type("teleporter"), ErrorKind::unsuitable, "s#/patches/0/layers/4/type",
-      "the types are height_map, grooves, noise, texture, spring, damper, mass, body, lasso, mover, "
-      "force_map, field");
+  expect_refused(type("teleporter"), ErrorKind::unsuitable, "s#/patches/0/layers/4/type",
+                 "the types are height_map, grooves, noise, texture, spring, damper, body, lasso, mover, "
+                 "force_map, field");
   expect_refused(
       [](Body& b) {
         b["version"] = "1.6";
@@ -418,23 +416,23 @@ TEST(ScenePatches, MoreThanTheMostLayersAreRefused) {
 
 TEST(ScenePatches, BodiesNeedAMassAndNoMoreKineticFriction) {
   const auto bad = ErrorKind::unsuitable;
+  expect_refused([](Body& b) { layer(b, 6)["mass_kg"] = 0; }, bad, "s#/patches/0/layers/6/mass_kg",
+                 "above 0");
   expect_refused([](Body& b) { layer(b, 7)["mass_kg"] = 0; }, bad, "s#/patches/0/layers/7/mass_kg",
                  "above 0");
-  expect_refused([](Body& b) { layer(b, 8)["mass_kg"] = 0; }, bad, "s#/patches/0/layers/8/mass_kg",
-                 "above 0");
-  expect_refused([](Body& b) { layer(b, 7)["kinetic_friction_n"] = 1.5; }, bad,
-                 "s#/patches/0/layers/7/kinetic_friction_n", "above the static_friction_n of 1");
+  expect_refused([](Body& b) { layer(b, 6)["kinetic_friction_n"] = 1.5; }, bad,
+                 "s#/patches/0/layers/6/kinetic_friction_n", "above the static_friction_n of 1");
   // Sliders may not cross, either.
   const auto frictions = [](const Body& kinetic, const Body& at_rest) {
     return [=](Body& b) {
-      layer(b, 7)["kinetic_friction_n"] = kinetic;
-      layer(b, 7)["static_friction_n"] = at_rest;
+      layer(b, 6)["kinetic_friction_n"] = kinetic;
+      layer(b, 6)["static_friction_n"] = at_rest;
     };
   };
   for (const auto& [kinetic, at_rest] :
        {std::pair(slider(0.5, 0, 2), Body(1)), std::pair(Body(0.5), slider(1, 0.4, 2)),
         std::pair(slider(0.5, 0, 0.8), slider(1, 0.7, 2))})
-    expect_refused(frictions(kinetic, at_rest), bad, "s#/patches/0/layers/7/kinetic_friction_n", "");
+    expect_refused(frictions(kinetic, at_rest), bad, "s#/patches/0/layers/6/kinetic_friction_n", "");
   Body apart = all_kinds();
   frictions(slider(0.5, 0, 0.7), slider(1, 0.7, 2))(apart);
   EXPECT_TRUE(parsed(apart));
@@ -508,7 +506,7 @@ TEST(ScenePatches, SchemaAndTypesHaveTheSameMembers) {
   EXPECT_EQ(in_schema, known);
 }
 
-TEST(ScenePatches, TheCheckLooksForFilesAndReadsAtoms) {
+TEST(ScenePatches, TheCheckReadsAllFiles) {
   tests::TemporaryFolder folder;
   const auto put = [&](const std::string& name, const std::string& text) {
     PendingFiles pending;
@@ -525,17 +523,19 @@ TEST(ScenePatches, TheCheckLooksForFilesAndReadsAtoms) {
     return all;
   };
   const auto at = [](int i) { return fmt::format("#/patches/0/layers/{}/file", i); };
-  EXPECT_EQ(places(), (std::vector{at(0), at(3), at(10), at(11)}));
+  EXPECT_EQ(places(), (std::vector{at(0), at(3), at(9), at(10)}));
   HeightMap relief;
   relief.columns = relief.rows = 2, relief.pitch_m = 1e-3;
   relief.height_m = {0, 1e-4F, 0, 0};
   ASSERT_TRUE(write_height_map(folder / "relief.height.nc", relief, Existing::keep));
-  put("forces.force.nc", "later");
+  put("forces.csv", "x_m,y_m,fx_n,fy_n\n0,0,1,1\n0,1,1,1\n1,0,1,1\n");
   put("atoms.csv", "x_m,y_m,z_m,sigma_m,epsilon_j,charge_c\n0,0,0,-1,1,0\n");
   Texture oak;
   oak.signal = {1e-6, 0, std::vector<double>(100, 0.5)};
   ASSERT_TRUE(write_texture(folder / "oak", oak));
-  EXPECT_EQ(places(), std::vector{at(11)});
+  EXPECT_EQ(places(), (std::vector{at(9), at(10)}));
+  put("forces.csv", "x_m,y_m,fx_n,fy_n\n0,0,1,1\n1,0,1,1\n");
+  EXPECT_EQ(places(), std::vector{at(10)});
   put("atoms.csv", "x_m,y_m,z_m,sigma_m,epsilon_j,charge_c\n0,0,0,1e-3,1,0\n");
   EXPECT_TRUE(places().empty());
   Body wrong = all_kinds();

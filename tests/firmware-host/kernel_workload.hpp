@@ -121,25 +121,25 @@ class TextureWorkload {
   float samples_[kTextureSamples], taps_[kTextureTaps];
 };
 
-inline constexpr uint32_t kSceneFingerprint = 438319789;
+inline constexpr uint32_t kSceneFingerprint = 2428412699;
 
 /// A scene of four overlapping patches with springs, dampers, grooves, noise, a height map, a body with
-/// friction, a lasso, a mover and a field of atoms, which move and change their order, and a hand in the
-/// plane whose speed varies between rest and 60 counts per tick; all limits are reached.
+/// friction, a lasso, a mover, a field of atoms and a force map, which move and change their order, and a
+/// hand in the plane whose speed varies between rest and 60 counts per tick; all limits are reached.
 class SceneWorkload {
  public:
   SceneWorkload() noexcept {
-    block_.header.patches = 4, block_.header.layers = 11, block_.header.numbers = kNumbers;
+    block_.header.patches = 4, block_.header.layers = 12, block_.header.numbers = kNumbers;
     block_.header.table_words = (sizeof block_.grooves + sizeof block_.noise + sizeof block_.relief +
-                                 sizeof block_.bodies + sizeof block_.field) /
+                                 sizeof block_.bodies + sizeof block_.field + sizeof block_.forces) /
                                 sizeof(uint32_t);
     block_.patches[0] = {0.01F, 0, 0.8F, 0.6F, 0.02F, 0.01F, 0, 1, 0};
     block_.patches[1] = {0, 0, 1, 0, 0.1F, 0.1F, 1, 2, 0};
     block_.patches[2] = {0, 0.01F, 0.6F, -0.8F, 0.1F, 0.03F, 3, 4, 1};
-    block_.patches[3] = {-0.01F, 0, 0.8F, -0.6F, 0.03F, 0.1F, 7, 4, 1};
-    const uint16_t kinds[11] = {1, 0, 1, 0, 2, 3, 4, 5, 6, 7, 8},
-                   firsts[11] = {0, 1, 4, 5, 8, 10, 12, 13, 26, 37, 39};
-    for (int i = 0; i < 11; ++i) block_.layers[i] = {kinds[i], firsts[i], 0};
+    block_.patches[3] = {-0.01F, 0, 0.8F, -0.6F, 0.03F, 0.1F, 7, 5, 1};
+    const uint16_t kinds[12] = {1, 0, 1, 0, 2, 3, 4, 5, 6, 7, 8, 9},
+                   firsts[12] = {0, 1, 4, 5, 8, 10, 12, 13, 26, 37, 39, 41};
+    for (int i = 0; i < 12; ++i) block_.layers[i] = {kinds[i], firsts[i], 0};
     block_.layers[5].table = sizeof block_.grooves / sizeof(uint32_t);
     block_.layers[6].table = (sizeof block_.grooves + sizeof block_.noise) / sizeof(uint32_t);
     constexpr uint32_t kBodies =
@@ -147,6 +147,7 @@ class SceneWorkload {
     constexpr uint32_t kTable = sizeof(core::BodyTable) / sizeof(uint32_t);
     for (uint32_t i = 0; i < 3; ++i) block_.layers[7 + i].table = kBodies + i * kTable;
     block_.layers[10].table = kBodies + sizeof block_.bodies / sizeof(uint32_t);
+    block_.layers[11].table = block_.layers[10].table + sizeof block_.field / sizeof(uint32_t);
     // At 4 kHz: a body of 0.2 kg with friction, a mass of 0.1 kg with a damping of 1 N s/m, 5 cm/s.
     block_.bodies.brick = {0, 2.5e-4F, 1.25e-3F, 1.5625e-7F};
     block_.bodies.lasso = {-2.4968776e-3F, 2.4968776e-4F, 2.4968776e-3F, 3.1223966e-7F};
@@ -155,6 +156,7 @@ class SceneWorkload {
     block_.numbers[26] = 700, block_.numbers[27] = 0.004F;
     block_.numbers[37] = 3, block_.numbers[38] = 0.05F;
     block_.numbers[39] = 3, block_.numbers[40] = 0.002F;
+    block_.numbers[41] = -1.5F;
     const float numbers[13] = {3.3F, 400, 0.003F, -0.002F, 7.7F, 60, 0.01F, 0, 1e-4F, 2, 2e-4F, 1, 2};
     for (int i = 0; i < 13; ++i) block_.numbers[i] = numbers[i];
     // 1 mm across the axis x of its patch: 0.006 and -0.008 periods per count.
@@ -197,6 +199,11 @@ class SceneWorkload {
       atom.squared_sigma = 6.64e14F;
       atom.lennard_jones = 4e-10F, atom.coulomb = static_cast<float>(heights()) * 1e-14F;
     }
+    // As the height map, with forces up to 1 N in both components.
+    block_.forces.table = block_.relief.table;
+    for (int i = 0; i < 2; ++i) block_.forces.levels[i] = block_.relief.levels[i];
+    for (float& coefficient : block_.forces.coefficients)
+      coefficient = static_cast<float>(heights()) * (1.0F / 32768);
     block_.header.check = core::scene_check(&block_, sizeof block_);
     core::SceneView view;
     core::read_scene_block(&block_, sizeof block_, view);
@@ -229,11 +236,11 @@ class SceneWorkload {
   uint32_t flags() const noexcept { return flags_; }
 
  private:
-  static constexpr uint32_t kNumbers = 13 + 13 + 11 + 2 + 2;
+  static constexpr uint32_t kNumbers = 13 + 13 + 11 + 2 + 2 + 1;
   struct Block {
     core::SceneHeader header;
     core::ScenePatch patches[4];
-    core::SceneLayer layers[11];
+    core::SceneLayer layers[12];
     float numbers[kNumbers] = {};
     struct {
       core::GroovesTable table;
@@ -256,6 +263,11 @@ class SceneWorkload {
       core::FieldTable table;
       core::FieldAtom atoms[24];
     } field;
+    struct {
+      core::ReliefTable table;
+      core::ReliefLevelTable levels[2];
+      float coefficients[2 * (16 * 12 + 8 * 6)];
+    } forces;
   } block_;
   WorkloadRandom next_{1990};
   uint32_t flags_ = 0, ticks_ = 0;

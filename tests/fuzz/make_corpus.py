@@ -68,6 +68,12 @@ def relief_table(per_m, levels):
     return table + coefficients
 
 
+def force_table(per_m, levels):
+    """As of a relief, with the coefficients of both components."""
+    table = relief_table(per_m, levels)
+    return table + table[16 + 84 * len(levels):]
+
+
 def field_table(units_per_m, core, atoms):
     """Two rows of 2^-32 periods per count; an atom is (x, y, z, sigma^2, force constants)."""
     along = struct.pack("<iIiIIiII", 0, 0, 0, 86, 0, -1, 0xFFFFFFA0, 0)
@@ -138,7 +144,7 @@ DEVICES = {
 }
 
 
-SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP, BODY, LASSO, MOVER, FIELD = 0, 1, 2, 3, 4, 5, 6, 7, 8
+SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP, BODY, LASSO, MOVER, FIELD, FORCE_MAP = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
 AT_REST = (0,) * 9
 SCENES = {
     "spring": scene((3, -2, 5, 0), [(0, 0, 1, 0, 0.1, 0.1, 0, [(SPRING, (100, 0, 0))])]),
@@ -158,6 +164,8 @@ SCENES = {
                                                                             (LASSO, (1e6, 0, *AT_REST), struct.pack("<4f", -1, 0, 1e-12, 0))])]),
     "field": scene((3, -2, 50, 7), [(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(FIELD, (1e10, 0.001), field_table(8.6e9, 1, ((5, -9, 0, 6e14, 1e-18, 0), (10**7, 10**6, 1e6, 6e14, 1e-18, -1e-19))))]),
                                     (0, 0, 1, 0, 1000, 1000, 1, [(FIELD, (1e15, -10), field_table(1e17, 0.25, ((2**31 - 1, -2**31, 1e10, 7e19, 1, 1), (0, 0, 0, 1, 1, -1))))])]),
+    "force_map": scene((3, -2, 50, 7), [(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(FORCE_MAP, (2,), force_table(1000, ((2**25, -2**24, 1e3, 6, 4), (2**24, -2**23, 500, 3, 2))))]),
+                                        (0, 0, 1, 0, 1000, 1000, 1, [(FORCE_MAP, (-1000,), force_table(0, ((2**40, 7, 1e8, 2, 1),)))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,))])]),
 }
 

@@ -132,6 +132,78 @@ def no_other_interpolant_is_worth_it():
         assert samples < 8 or (errors["B-spline"] < 0.01 < errors["line"]), (samples, errors)
 
 
+def write_forces(name, x, y, x_n, y_n):
+    """x, y: places of columns and rows; forces row by row."""
+    columns, rows = np.meshgrid(x, y)
+    table = np.array([columns, rows, x_n, y_n]).reshape(4, -1).T
+    np.savetxt(name, table, delimiter=",", header="x_m,y_m,fx_n,fy_n", comments="", fmt="%.12g")
+
+
+def a_force_map_is_scipys_spline_and_is_replayed():
+    # 81 x 61 nodes 0.5 mm apart, of periods from 12 nodes on; the origin of the file is the centre of the patch.
+    x, y = 5e-4 * np.arange(-30, 51), 5e-4 * np.arange(-40, 21)
+    noise = smooth_noise(seed=7) / 65535 - 0.5
+    x_n, y_n = 0.4 + noise[:61, :81], -0.2 + 0.5 * noise[100:161, 100:181]
+    write_forces("forces.csv", x, y, x_n, y_n)
+    layer = {"type": "force_map", "file": "forces.csv", "gain": {"value": -1.5, "slider": {"from": -2, "to": 2}}}
+    write_scene("bench", patch(x_m=0.01, y_m=-0.005, width_m=0.02, height_m=0.02, layers=[layer]))
+    t = np.linspace(0, 2, 81)
+    path = {"time_s": t, "x_m": 0.01 + 0.005 + 0.006 * np.cos(np.pi * t) - 0.004, "y_m": -0.005 - 0.004 + 0.006 * np.sin(np.pi * t) + 0.001}
+    write_path("circle.csv", path)
+    report = run_json("render", "bench.scene.json", "--finger-path", "circle.csv", "--device", "sandpaper-1990", "-o", "found.csv")
+    table = np.genfromtxt("found.csv", delimiter=",", names=True)
+    u, v = counted(table["x_m"]) - 0.01, counted(table["y_m"]) + 0.005
+    splines = [RectBivariateSpline(y, x, values, s=0) for values in (x_n, y_n)]
+    exact = -1.5 * np.array([spline.ev(v, u) for spline in splines])
+    difference = np.array([table["force_x_n"], table["force_y_n"]]) - exact
+    relative = np.sqrt(np.mean(difference**2) / np.mean(exact**2))
+    print(f"  a circle over a force map: within {relative:.2g} of the RMS of SciPy's spline")
+    # 12 nodes from the edges the spline that continues evenly is 1.3e-7 of SciPy's edge beside it (the factor 2 - sqrt(3) a node).
+    assert relative < 1e-6 and report["largest_rounding_n"] < 1e-6 * np.abs(exact).max(), (relative, report)
+    # Stiffness and curl by the same splines, at the nodes and halfway between them in the patch and half a node more.
+    fine_x, fine_y = np.arange(-10.25e-3, 10.26e-3, 2.5e-4), np.arange(-10.25e-3, 10.01e-3, 2.5e-4)
+    (xx, xy), (yx, yy) = ([spline(fine_y, fine_x, dy=1), spline(fine_y, fine_x, dx=1)] for spline in splines)
+    stiffness = 2 * (np.abs(xx + yy) / 2 + np.hypot((xx - yy) / 2, (xy + yx) / 2)).max()
+    curl = 2 * np.abs(yx - xy).max()
+    row = run_json("explain", "bench.scene.json", "--device", "sandpaper-1990")["layers"][0]
+    assert (row["columns"], row["rows"]) == (81, 61), row
+    assert abs(row["curl_n_per_m"] / curl - 1) < 1e-3 and abs(row["stiffness_n_per_m"] / stiffness - 1) < 1e-3, (row, stiffness, curl)
+    judged = run_json("design", "bench", "--device", "sandpaper-1990")["layers"][0]
+    assert judged["verdict"] == "not known" and f"{row['curl_n_per_m']:.4g} J" in judged["because"], judged
+    pathlib.Path("script.csv").write_text("time_s,command\n0.5,set a.force_map.gain 1 over 20ms\n1,move a 12mm,-4mm\n")
+    played = run_json("play", "bench.scene.json", "-d", "sim:planar", "-o", "forced", "--finger-path", "circle.csv", "--script", "script.csv")
+    again = run_json("replay", "forced")
+    assert again["same_to_the_bit"] is True and again["ticks_compared"] == played["ticks"] and played["lost_ticks"] == 0, again
+    kept = run_json("trade", "bench", "--device", "sandpaper-1990", "--finger-path", "circle.csv")
+    assert all(row["stability"] == "not known" or row["choice"] == "100 Hz" for row in kept["choices"]) and kept["choices"][-1]["error_n"] <= kept["rounding_n"] < 1e-4, kept
+    run("scene", "bench", "-o", "bench.png", "--session", "forced")
+
+
+def force_maps_that_do_not_fit_are_refused_or_warned_of():
+    x = 1e-3 * np.arange(-20, 21)
+    spring = -100 * np.array(np.meshgrid(x, x))
+    write_forces("forces.csv", x, x, *spring)
+    layer = {"type": "force_map", "file": "forces.csv"}
+    write_scene("bench", patch(width_m=0.02, height_m=0.02, layers=[layer]))
+    row = run_json("design", "bench", "--device", "sandpaper-1990")["layers"][0]
+    assert abs(row["stiffness_n_per_m"] - 100) < 1e-3 and row["verdict"] == "stable", row
+    write_scene("stiff", patch(width_m=0.02, height_m=0.02, layers=[{**layer, "gain": 1000}]))
+    assert run_json("design", "stiff", "--device", "sandpaper-1990", code=UNSTABLE)["layers"][0]["verdict"] == "unstable"
+    write_scene("wide", patch(width_m=0.05, height_m=0.02, layers=[layer]))
+    _, err = run("explain", "wide.scene.json", "--device", "sandpaper-1990")
+    assert "forces.csv" in err and "exceeds the peak force" not in err, err
+    good = pathlib.Path("forces.csv").read_text().splitlines()
+    bad = {"hole": good[:700] + good[701:], "pitch": good + ["0.0207,0,0,0"], "nan": good[:-1] + ["0.02,0.02,nan,0"], "twice": good + [good[-1]],
+           "newton": good[:-1] + ["0.02,0.02,2e3,0"], "column": [good[0].replace("fx_n", "f_n")] + good[1:]}
+    for name, lines in bad.items():
+        pathlib.Path("forces.csv").write_text("\n".join(lines) + "\n")
+        for verb in (("explain", "bench.scene.json", "--device", "sandpaper-1990"), ("design", "bench", "--device", "sandpaper-1990"),
+                     ("play", "bench.scene.json", "-d", "sim:planar", "-o", "x"), ("scene", "bench", "-o", "x.png")):
+            _, err = run(*verb, code=MALFORMED)
+            assert "forces.csv" in err and err.strip().count("\n") == 0 and not list(pathlib.Path().glob("x*")), (name, err)
+        assert run_json("validate", "bench.scene.json", code=MALFORMED)["valid"] is False, name
+
+
 def explain_says_levels_speeds_and_memory():
     import_noise()
     write_scene("bench", patch(width_m=0.046, height_m=0.044, layers=[{"type": "height_map", "file": "plate", "kappa_n": 1.5}]))
@@ -302,7 +374,7 @@ def bad_input_is_refused_with_its_remedy():
 
 
 if __name__ == "__main__":
-    for test in (a_png_becomes_a_height_map, a_profile_becomes_a_map_of_one_row, forces_are_scipys_spline, no_other_interpolant_is_worth_it, explain_says_levels_speeds_and_memory,
+    for test in (a_png_becomes_a_height_map, a_profile_becomes_a_map_of_one_row, forces_are_scipys_spline, no_other_interpolant_is_worth_it, a_force_map_is_scipys_spline_and_is_replayed, force_maps_that_do_not_fit_are_refused_or_warned_of, explain_says_levels_speeds_and_memory,
                  a_large_map_is_played_and_replayed, a_map_beyond_the_memory_is_refused, a_texture_is_scipys_spline_along_its_direction, textures_that_do_not_fit_are_refused_or_warned_of,
                  bad_input_is_refused_with_its_remedy):
         tacto.in_folder(test)

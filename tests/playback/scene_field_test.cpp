@@ -270,9 +270,9 @@ TEST(SceneField, SinglePrecisionIsTheReference) {
       }
     }
     std::printf("  field of 300 atoms: within %.2g N of %.3g N; bound %.2g N\n", worst, largest,
-                kForceScale * field_rounding_n(section, z_m));
+                kForceScale * field_rounding_n(section, patch, z_m, z_m));
     EXPECT_LT(worst, 3e-6 * largest);  // single precision: 35 roundings of s^7, most of them cancel
-    EXPECT_LT(worst, kForceScale * field_rounding_n(section, z_m));
+    EXPECT_LT(worst, kForceScale * field_rounding_n(section, patch, z_m, z_m));
   }
 }
 

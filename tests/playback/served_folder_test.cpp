@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "data-schema/files/files.hpp"
 #include "data-schema/height/height_map.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture.hpp"
@@ -81,6 +82,31 @@ TEST_F(ServedFolder, TheTexturesOfAPatch) {
     scene.patches = {patch};
     ASSERT_TRUE(schema::write_scene(folder_ / "served/drawn", scene));
     EXPECT_EQ(served("drawn"), std::string(file) == "deeper/elm") << file;
+  }
+}
+
+TEST_F(ServedFolder, TheTablesOfAPatch) {
+  for (const char* stem : {"served/deeper/table.csv", "other/table.csv"}) {
+    schema::PendingFiles pending;
+    ASSERT_TRUE(pending.write(folder_ / stem, "x_m,y_m,fx_n,fy_n\n0,0,1,1\n1,0,1,1\n"));
+    ASSERT_TRUE(pending.commit());
+  }
+  for (const char* file : {"deeper/table.csv", "../other/table.csv", "absent.csv"}) {
+    schema::FieldLayer field;
+    field.file = file;
+    field.length_scale = {1e7};
+    schema::ForceMapLayer map;
+    map.file = file;
+    for (const schema::ForceLayer& layer : {schema::ForceLayer(field), schema::ForceLayer(map)}) {
+      schema::Patch patch;
+      patch.name = "a";
+      patch.width_m = patch.height_m = 0.1;
+      patch.layers = {layer};
+      schema::Scene scene;
+      scene.patches = {patch};
+      ASSERT_TRUE(schema::write_scene(folder_ / "served/table", scene));
+      EXPECT_EQ(served("table"), std::string(file) == "deeper/table.csv") << file << schema::type_of(layer);
+    }
   }
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <numbers>
 
 #include "data-schema/base/quantity.hpp"
@@ -18,10 +17,6 @@ namespace {
 
 constexpr double kUnit = 0x1p-24;           // rounding of one operation in single precision
 constexpr double kPlaceOfPeriod = 0x1p-31;  // of a place on a surface (core::place_on())
-
-// Named one by one: a new kind of layer does not compile until its rounding has a bound.
-template <class L>
-concept HasNoForceYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::ForceMapLayer>;
 
 double largest_size(const schema::LayerNumber& number) {
   double size = std::abs(number.value);
@@ -119,6 +114,17 @@ double slope_bound(const playback::Relief& relief) {
   return largest;
 }
 
+// Of the largest coefficient: the weights of the sixteen sum to 1. 16 operations round each, the place in its
+// cell is rounded by 2^-25 or less on a slope of at most two coefficients, and with the angle of a level's
+// mixture these stay below 64 roundings.
+double rounding_of_map_n(const playback::ForceRelief& forces) {
+  double largest = 0;
+  for (const playback::Relief* component : {&forces.x, &forces.y})
+    for (const playback::ReliefLevel& level : component->levels)
+      for (const float c : level.coefficients) largest = std::max(largest, std::abs(double{c}));
+  return std::numbers::sqrt2 * 64 * kUnit * largest;
+}
+
 double rounding_of_grooves_n(const schema::GroovesLayer& grooves) {
   const auto series = series_of(grooves);
   double slopes = 0, curvatures = 0;
@@ -214,9 +220,12 @@ double rounding_bound_n(const schema::Patch& patch, const schema::ForceLayer& la
       },
       [&](const schema::FieldLayer& field) {
         const auto section = playback::field_section(field, reliefs.of(field), patch);
-        return largest_size(field.force_scale) * playback::field_rounding_n(section, largest_size(field.z_m));
+        return largest_size(field.force_scale) *
+               playback::field_rounding_n(section, patch, least_value(field.z_m), largest_value(field.z_m));
       },
-      [](const HasNoForceYet auto& /*layer*/) { return 0.0; });
+      [&](const schema::ForceMapLayer& map) {
+        return largest_size(map.gain) * rounding_of_map_n(reliefs.of(map));
+      });
 }
 
 }  // namespace tacto::analysis

@@ -28,6 +28,8 @@ class Firmware {
 
   wire::DriveState drive_state() const noexcept { return ticker_.supervisor().state(); }
   const DriveSupervisor& supervisor() const noexcept { return ticker_.supervisor(); }
+  /// Of a force device, once a scene was armed.
+  const SceneKernel& scene() const noexcept { return ticker_.scene(); }
 
  private:
   enum class Owed : uint8_t { nothing, answer, answer_after_data, pulse };

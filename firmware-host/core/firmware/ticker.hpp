@@ -74,6 +74,7 @@ class Ticker {
   /// Call after a command has changed the drive.
   void steered() noexcept { steered_.store(static_cast<uint8_t>(steered_.load() + 1)); }
   TickKernel& kernel() noexcept { return kernel_; }
+  const SceneKernel& scene() const noexcept { return scene_; }
   SweepGenerator& sweep() noexcept { return sweep_; }
   DriveSupervisor& supervisor() noexcept { return supervisor_; }
   const DriveSupervisor& supervisor() const noexcept { return supervisor_; }

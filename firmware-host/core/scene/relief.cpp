@@ -28,19 +28,45 @@ uint32_t held_within(int64_t index, uint32_t count) noexcept {
   return index < static_cast<int64_t>(count) ? static_cast<uint32_t>(index) : count - 1;
 }
 
+// The sixteen coefficients around a place, among those of a level, and their weights.
+struct Neighbours {
+  SplineWeights along_x, along_y;
+  uint32_t columns[4];
+  size_t rows[4];
+
+  Neighbours(const ReliefLevel& level, LatticePlace x, LatticePlace y) noexcept
+      : along_x(x.part), along_y(y.part) {
+    for (int i = 0; i < 4; ++i) {
+      columns[i] = held_within(static_cast<int64_t>(x.cell) - 1 + i, level.columns);
+      rows[i] =
+          static_cast<size_t>(held_within(static_cast<int64_t>(y.cell) - 1 + i, level.rows)) * level.columns;
+    }
+  }
+};
+
 }  // namespace
 
-ReliefSample relief_at(const ReliefLevel& level, Q32 x_place, Q32 y_place) noexcept {
-  const LatticePlace x = lattice_place(x_place), y = lattice_place(y_place);
-  const SplineWeights along_x(x.part), along_y(y.part);
-  uint32_t columns[4];
-  const float* rows[4];
-  for (int i = 0; i < 4; ++i) {
-    columns[i] = held_within(static_cast<int64_t>(x.cell) - 1 + i, level.columns);
-    rows[i] =
-        level.coefficients +
-        static_cast<size_t>(held_within(static_cast<int64_t>(y.cell) - 1 + i, level.rows)) * level.columns;
+void values_at(const ReliefLevel& level, size_t second, Q32 x, Q32 y, float (&values)[2]) noexcept {
+  const Neighbours at(level, lattice_place(x), lattice_place(y));
+  values[0] = values[1] = 0;
+  for (int j = 0; j < 4; ++j) {
+    const float* const row = level.coefficients + at.rows[j];
+    float first_sum = 0, second_sum = 0;
+    for (int i = 0; i < 4; ++i) {
+      first_sum += at.along_x.value[i] * row[at.columns[i]];
+      second_sum += at.along_x.value[i] * row[second + at.columns[i]];
+    }
+    values[0] += at.along_y.value[j] * first_sum;
+    values[1] += at.along_y.value[j] * second_sum;
   }
+}
+
+ReliefSample relief_at(const ReliefLevel& level, Q32 x_place, Q32 y_place) noexcept {
+  const Neighbours at(level, lattice_place(x_place), lattice_place(y_place));
+  const SplineWeights &along_x = at.along_x, &along_y = at.along_y;
+  const auto& columns = at.columns;
+  const float* rows[4];
+  for (int i = 0; i < 4; ++i) rows[i] = level.coefficients + at.rows[i];
   const float near = rows[1][columns[1]];
   ReliefSample sample{near, 0, 0};
   for (int j = 0; j < 4; ++j) {

@@ -2,6 +2,7 @@
 // A height map as a cubic B-spline surface, and the exact gradient of that surface.
 #pragma once
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "firmware-host/core/scene/lattice_place.hpp"
@@ -28,5 +29,9 @@ struct ReliefSample {
 /// gradient of one surface, the work along a closed path is zero. Preconditions: coefficients set, at least
 /// one row and column. Safe in the tick.
 ReliefSample relief_at(const ReliefLevel& level, Q32 x, Q32 y) noexcept;
+
+/// The values at a place of two surfaces of one size; the coefficients of the other one are `second` behind
+/// those of the level. Preconditions and tick as above.
+void values_at(const ReliefLevel& level, size_t second, Q32 x, Q32 y, float (&values)[2]) noexcept;
 
 }  // namespace tacto::core

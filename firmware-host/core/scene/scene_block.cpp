@@ -16,7 +16,7 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the block is read in p
 constexpr float kFarthest_m = 10, kStiffest_n_per_m = 1e6F, kMostDamping_n_s_per_m = 1e4F;
 constexpr float kFarthestPatch_m = 1e3F;
 constexpr float kUnitRounding = 1e-5F;  // rounding of cosine^2 + sine^2
-constexpr float kDeepest_m = 1, kMostKappa_n = 1000;
+constexpr float kDeepest_m = 1, kMostKappa_n = 1000, kMostForceGain = 1000;
 constexpr float kMostPeriods_per_m = 1.001e6F;
 constexpr float kLargestAmplitude = 2;  // of a harmonic; 4 / pi of a square wave
 constexpr float kMostSamples_per_m = 1.001e8F;
@@ -47,6 +47,8 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
       return within(number[kDamperDamping], 0, kMostDamping_n_s_per_m);
     case SceneLayerKind::height_map:
       return within(number[kHeightMapKappa], -kMostKappa_n, kMostKappa_n);
+    case SceneLayerKind::force_map:
+      return within(number[kForceMapGain], -kMostForceGain, kMostForceGain);
     case SceneLayerKind::body:
       return within(number[kBodyStiffness], 0, kStiffest_n_per_m) &&
              within(number[kBodyDamping], 0, kMostDamping_n_s_per_m) &&
@@ -124,8 +126,9 @@ SceneFault check_surface(const SceneView& view, const SceneLayer& layer, uint32_
   return sound(table) ? SceneFault::none : SceneFault::value;
 }
 
-SceneFault check_relief(const SceneView& view, const SceneLayer& layer, uint32_t room,
-                        uint32_t& words) noexcept {
+// Of a height map, and of a force map of two components.
+SceneFault check_relief(const SceneView& view, const SceneLayer& layer, uint32_t components, float largest,
+                        uint32_t room, uint32_t& words) noexcept {
   constexpr uint32_t kHead = sizeof(ReliefTable) / sizeof(uint32_t),
                      kLevel = sizeof(ReliefLevelTable) / sizeof(uint32_t);
   if (room < kHead) return SceneFault::structure;
@@ -142,11 +145,12 @@ SceneFault check_relief(const SceneView& view, const SceneLayer& layer, uint32_t
       if (!within(samples_per_m, 0, kMostSamples_per_m)) return SceneFault::value;
   }
   const uint32_t head = kHead + table.levels * kLevel;
+  coefficients *= components;
   if (coefficients > room - head) return SceneFault::structure;
   words = head + static_cast<uint32_t>(coefficients);
   const float* const first = coefficients_of(table, levels_of(table)[0]);
   for (uint64_t i = 0; i < coefficients; ++i)
-    if (!within(first[i], -kLargestCoefficient_m, kLargestCoefficient_m)) return SceneFault::value;
+    if (!within(first[i], -largest, largest)) return SceneFault::value;
   return within(table.highest_per_m, 0, kMostSamples_per_m) && is_direction(table.cosine, table.sine)
              ? SceneFault::none
              : SceneFault::value;
@@ -181,7 +185,9 @@ SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t 
     case SceneLayerKind::noise:
       return check_surface(view, layer, &NoiseSurfaceTable::octaves, kMostOctaves, room, words);
     case SceneLayerKind::height_map:
-      return check_relief(view, layer, room, words);
+      return check_relief(view, layer, 1, kLargestCoefficient_m, room, words);
+    case SceneLayerKind::force_map:
+      return check_relief(view, layer, 2, kLargestCoefficient_n, room, words);
     case SceneLayerKind::body:
     case SceneLayerKind::lasso:
       return check_plain<BodyTable>(view, layer, room, words);

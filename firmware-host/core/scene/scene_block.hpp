@@ -27,9 +27,10 @@ enum class SceneLayerKind : uint16_t {
   body = 5,
   lasso = 6,
   mover = 7,
-  field = 8
+  field = 8,
+  force_map = 9
 };
-inline constexpr uint16_t kSceneLayerKinds = 9;
+inline constexpr uint16_t kSceneLayerKinds = 10;
 
 /// The places of a layer's numbers, from its first one.
 enum SpringNumber : uint32_t { kSpringStiffness = 0, kSpringCentreX = 1, kSpringCentreY = 2 };
@@ -47,6 +48,7 @@ enum MoverNumber : uint32_t { kMoverDamping = 0, kMoverSpeed = 1 };
 /// Behind these numbers of a body and a lasso: its state (BodyState), 0 in a block.
 inline constexpr uint32_t kBodyStateWords = 9;
 enum FieldNumber : uint32_t { kFieldScale = 0, kFieldZ = 1 };
+enum ForceMapNumber : uint32_t { kForceMapGain = 0 };
 
 /// Whether a layer of a kind has a state.
 constexpr bool has_body(SceneLayerKind kind) noexcept {
@@ -60,6 +62,7 @@ constexpr uint32_t changeable_numbers_of(SceneLayerKind kind) noexcept {
       return 3;
     case SceneLayerKind::damper:
     case SceneLayerKind::height_map:
+    case SceneLayerKind::force_map:
       return 1;
     case SceneLayerKind::body:
       return 4;
@@ -155,9 +158,12 @@ inline const FieldAtom* atoms_of(const FieldTable& table) noexcept {
 inline constexpr uint32_t kMostReliefLevels = 32;
 /// Of a height map within 1 m: 3 along each axis if its signs alternate.
 inline constexpr float kLargestCoefficient_m = 10;
+/// The same of a force map of forces up to 1000 N.
+inline constexpr float kLargestCoefficient_n = 1e4F;
 
 /// The levels of a height map, from the finest on: this, the levels, then the coefficients of all levels,
-/// f32, one level after the other, row by row.
+/// f32, one level after the other, row by row. Of a force map these are the coefficients of the forces along
+/// the columns; then follow as many of the forces along the rows.
 struct ReliefTable {
   float highest_per_m =
       0;  ///< spatial frequency, of the first level; half an octave less of each further one
@@ -180,6 +186,12 @@ inline const ReliefLevelTable* levels_of(const ReliefTable& table) noexcept {
 
 inline const float* coefficients_of(const ReliefTable& table, const ReliefLevelTable& level) noexcept {
   return reinterpret_cast<const float*>(levels_of(table) + table.levels) + level.first;
+}
+
+/// Of all levels, of one component.
+inline uint32_t coefficient_count(const ReliefTable& table) noexcept {
+  const ReliefLevelTable& last = levels_of(table)[table.levels - 1];
+  return last.first + last.columns * last.rows;
 }
 
 /// The numbers behind a table: amplitudes.

@@ -163,10 +163,15 @@ PlaneVector SceneKernel::noise_force(const SceneLayer& layer, const Hand& hand) 
   return {force * at.by_x, force * at.by_y};
 }
 
+// The levels at a speed: the first of two, and their weights.
+struct SceneKernel::Levels {
+  uint32_t first = 0;
+  float weights[2] = {1, 0};
+};
+
 // A level is left when its highest frequency reaches half the rate. A map of one row varies along it only.
-PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand,
-                                      PlaneVector along) const noexcept {
-  const auto& table = table_of<ReliefTable>(scene_, layer);
+SceneKernel::Levels SceneKernel::levels_at(const ReliefTable& table, const Hand& hand,
+                                           PlaneVector along) const noexcept {
   const PlaneVector v = hand.along_mps;
   const float along_row = along.x * table.cosine + along.y * table.sine;
   const float speed = levels_of(table)->rows > 1 ? __builtin_sqrtf(v.x * v.x + v.y * v.y)
@@ -174,11 +179,17 @@ PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand,
                                                  : along_row;
   const float cycles_per_tick = speed * table.highest_per_m / setup_.rate_hz;
   const Detail detail = detail_at(cycles_per_tick * (1 / kWholeReliefPerTick));
-  const float weights[2] = {1 - detail.fade, detail.fade};
+  return {detail.coarser, {1 - detail.fade, detail.fade}};
+}
+
+PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand,
+                                      PlaneVector along) const noexcept {
+  const auto& table = table_of<ReliefTable>(scene_, layer);
+  const auto [first, weights] = levels_at(table, hand, along);
   PlaneVector slope;
   for (uint32_t i = 0; i < 2; ++i) {
-    if (weights[i] == 0 || detail.coarser + i >= table.levels) continue;
-    const ReliefLevelTable& level = levels_of(table)[detail.coarser + i];
+    if (weights[i] == 0 || first + i >= table.levels) continue;
+    const ReliefLevelTable& level = levels_of(table)[first + i];
     const ReliefSample at =
         relief_at({coefficients_of(table, level), level.columns, level.rows},
                   place_on(level.along[0], hand.counts), place_on(level.along[1], hand.counts));
@@ -188,6 +199,27 @@ PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand,
   const float kappa = live_[layer.first_number + kHeightMapKappa];
   return {-kappa * (table.cosine * slope.x - table.sine * slope.y),
           -kappa * (table.sine * slope.x + table.cosine * slope.y)};
+}
+
+// A map of one angle: that of its patch.
+PlaneVector SceneKernel::map_force(const SceneLayer& layer, const Hand& hand,
+                                   PlaneVector along) const noexcept {
+  const auto& table = table_of<ReliefTable>(scene_, layer);
+  const uint32_t last = table.levels - 1, along_rows = coefficient_count(table);
+  auto [first, weights] = levels_at(table, hand, along);
+  if (first >= last) first = last, weights[0] = 1, weights[1] = 0;
+  PlaneVector force;
+  for (uint32_t i = 0; i < 2; ++i) {
+    if (weights[i] == 0) continue;
+    const ReliefLevelTable& level = levels_of(table)[first + i];
+    float values[2];
+    values_at({coefficients_of(table, level), level.columns, level.rows}, along_rows,
+              place_on(level.along[0], hand.counts), place_on(level.along[1], hand.counts), values);
+    force.x += weights[i] * values[0];
+    force.y += weights[i] * values[1];
+  }
+  const float gain = live_[layer.first_number + kForceMapGain];
+  return {gain * force.x, gain * force.y};
 }
 
 PlaneVector SceneKernel::body_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) noexcept {
@@ -202,6 +234,22 @@ PlaneVector SceneKernel::body_force(const SceneLayer& layer, const Hand& hand, P
   advance(table_of<BodyTable>(scene_, layer), body, force_n, brick ? number[kBodyStaticFriction] : 0,
           brick ? number[kBodyKineticFriction] : 0);
   return {-force_n.x, -force_n.y};
+}
+
+bool SceneKernel::body_place(uint32_t patch, uint32_t layer, PlaneVector& place_m) const noexcept {
+  if (patch >= scene_.patch_count) return false;
+  const ScenePatch& on = scene_.patches[patch];
+  if (layer < on.first_layer || layer >= uint32_t{on.first_layer} + on.layers) return false;
+  const auto kind = static_cast<SceneLayerKind>(scene_.layers[layer].kind);
+  if (!has_body(kind)) return false;
+  const auto& body = *reinterpret_cast<const BodyState*>(live_ + scene_.layers[layer].first_number +
+                                                         changeable_numbers_of(kind));
+  if (body.tick != tick_) return false;
+  const PlaneVector at = body.place_m;
+  place_m = {
+      on.centre_x_m + static_cast<float>(moved_[patch][0]) * step_m_[0] + on.cosine * at.x - on.sine * at.y,
+      on.centre_y_m + static_cast<float>(moved_[patch][1]) * step_m_[1] + on.sine * at.x + on.cosine * at.y};
+  return true;
 }
 
 // Units of length are 2^-32 periods: the lower half of a place, whose upper half is 0 in the patch.
@@ -239,6 +287,9 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) noe
         break;
       case SceneLayerKind::height_map:
         force = relief_force(layer, hand, along);
+        break;
+      case SceneLayerKind::force_map:
+        force = map_force(layer, hand, along);
         break;
       case SceneLayerKind::body:
       case SceneLayerKind::lasso:

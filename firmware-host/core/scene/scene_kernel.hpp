@@ -22,7 +22,7 @@ struct ForceOutput {
 /// force = limits(envelope x sum over patches (sum over layers)) (Minsky 1990), of the topmost patch at the
 /// hand's place and of every patch there that adds. In the axes of a patch, from its centre:
 ///   spring: -stiffness (place - centre);  damper: -damping speed;  surface: -kappa grad h;
-///   field: sum over its atoms;
+///   field: sum over its atoms;  force map: gain times its forces;
 ///   mover: damping (its speed - speed);  body, lasso: the reaction to the force on them (body.hpp).
 /// A body is taken up where the hand enters its patch, at rest in it; while the hand is elsewhere, or another
 /// patch covers it, the body is not there. Its force is computed once a tick and held for the hand and for
@@ -32,7 +32,8 @@ struct ForceOutput {
 /// place: its force at count n, moved by m, is to the bit that of the patch of the block at n - m. A damper
 /// resists the speed of the hand, also while its patch moves; a surface is played at the speed relative to
 /// it. Of a surface, frequencies above half the rate at this speed are not played (held_by_rate(); of an
-/// octave of noise up to kNoiseCycles; of a height map one of its levels or two, mixed). Without the axis x
+/// octave of noise up to kNoiseCycles; of a height or force map one of its levels or two, mixed; the last
+/// level of a force map at all higher speeds, because its mean is a force). Without the axis x
 /// or y the hand stays at 0 along it; an axis z gets no force. Single precision, no contraction, of libm only
 /// the square root: the same bits on host and device. Against double precision (ExactScene) at places up to
 /// 0.1 m: within 3e-7 of the sum of the absolute forces of all layers. No function allocates, locks, throws
@@ -55,6 +56,9 @@ class SceneKernel {
   void raise(uint32_t patch) noexcept;
   /// `counts` of the setup's axes; `raise`: towards the full force, otherwise towards zero.
   ForceOutput tick(const int32_t* counts, bool raise) noexcept;
+  /// Whether a body or lasso is this layer and acted in the last tick; then sets its place in the plane, in
+  /// m.
+  bool body_place(uint32_t patch, uint32_t layer, PlaneVector& place_m) const noexcept;
   float rate_hz() const noexcept { return setup_.rate_hz; }
   bool at_rest() const noexcept { return envelope_.at_rest() && limiter_.at_rest(); }
 
@@ -72,6 +76,9 @@ class SceneKernel {
   PlaneVector noise_force(const SceneLayer& layer, const Hand& hand) const noexcept;
   PlaneVector field_force(const SceneLayer& layer, const Hand& hand) const noexcept;
   PlaneVector relief_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
+  PlaneVector map_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
+  struct Levels;
+  Levels levels_at(const ReliefTable& table, const Hand& hand, PlaneVector along) const noexcept;
   PlaneVector body_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) noexcept;
 
   struct Ramp {

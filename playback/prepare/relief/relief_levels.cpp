@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "data-schema/base/raised_cosine.hpp"
 #include "firmware-host/core/scene/relief.hpp"
@@ -135,11 +136,42 @@ double weighted(const double (&weights)[4], const std::vector<double>& values, s
          weights[2] * values[std::min(i + 1, last)] + weights[3] * values[std::min(i + 2, last)];
 }
 
-// Heights with a mean of 0.
-schema::Result<Relief> levels_of(std::vector<double> heights, GridSize whole, double pitch_m, double rate_hz,
-                                 double fastest_mps, const std::string& where) {
-  const double highest = highest_frequency(heights, whole);
-  Relief relief{whole.columns, whole.rows, pitch_m, highest / pitch_m, 0, {}};
+// Sums along y of the first level, beside a row.
+struct RowSums {
+  std::vector<double> value, slope, curvature;
+
+  RowSums(const Relief& relief, std::size_t row, const Weights& y) {
+    for (std::vector<double>* sums : {&value, &slope, &curvature}) sums->resize(relief.columns);
+    for (std::size_t i = 0; i < relief.columns; ++i)
+      for (std::size_t m = 0; m < 4; ++m) {
+        const std::size_t from = std::min(row + m > 0 ? row + m - 1 : 0, relief.rows - 1);
+        const double c = double{relief.levels.front().coefficients[from * relief.columns + i]};
+        value[i] += y.value[m] * c, slope[i] += y.slope[m] * c, curvature[i] += y.curvature[m] * c;
+      }
+  }
+};
+
+// The rows, or columns, of a map in a patch of this length, and the places halfway between them.
+void each_place(const Relief& relief, int axis, double length_m, const auto& visit) {
+  const std::size_t count = axis == 0 ? relief.columns : relief.rows;
+  for (std::size_t i = 0; i < count; ++i)
+    for (const Weights& weights : {kAtKnot, kBetween}) {
+      const double from_centre = static_cast<double>(i) + weights.at - 0.5 * static_cast<double>(count - 1);
+      if (std::abs(from_centre + relief.centre_m[axis] / relief.pitch_m) <=
+          0.5 * length_m / relief.pitch_m + 0.5)
+        visit(i, weights);
+    }
+}
+
+// The largest eigenvalue, absolute, of a symmetric matrix.
+double largest_eigenvalue(double xx, double xy, double yy) {
+  return std::abs(0.5 * (xx + yy)) + std::hypot(0.5 * (xx - yy), xy);
+}
+
+// Heights with a mean of 0. `highest` in cycles per sample.
+schema::Result<Relief> levels_of(std::vector<double> heights, GridSize whole, double highest, double pitch_m,
+                                 double rate_hz, double fastest_mps, const std::string& where) {
+  Relief relief{whole.columns, whole.rows, pitch_m, highest / pitch_m, 0};
   relief.levels.push_back(
       {whole.columns, whole.rows, relief_coefficients(heights, whole.columns, whole.rows)});
   const double fastest = fastest_mps / relief.whole_to_mps(rate_hz);
@@ -187,34 +219,34 @@ std::vector<double> heights_with_slope(const std::vector<double>& slope, double 
 
 // At the samples and halfway between them.
 double Relief::curvature_per_m(double width_m, double height_m) const {
-  const ReliefLevel& level = levels.front();
-  const auto reached = [&](double at, std::size_t count, double length_m) {
-    const double from_centre = std::abs(at - 0.5 * static_cast<double>(count - 1));
-    return from_centre <= 0.5 * length_m / pitch_m + 0.5;
-  };
   double largest = 0;
-  std::vector<double> value(columns), slope(columns), curvature(columns);
-  for (std::size_t j = 0; j < rows; ++j)
-    for (const Weights& y : {kAtKnot, kBetween}) {
-      if (!reached(static_cast<double>(j) + y.at, rows, height_m)) continue;
-      for (std::size_t i = 0; i < columns; ++i) {
-        double sums[3] = {};
-        for (std::size_t m = 0; m < 4; ++m) {
-          const std::size_t row = std::min(j + m > 0 ? j + m - 1 : 0, rows - 1);
-          const double c = double{level.coefficients[row * columns + i]};
-          sums[0] += y.value[m] * c, sums[1] += y.slope[m] * c, sums[2] += y.curvature[m] * c;
-        }
-        value[i] = sums[0], slope[i] = sums[1], curvature[i] = sums[2];
-      }
-      for (const Weights& x : {kAtKnot, kBetween})
-        for (std::size_t i = 0; i < columns; ++i) {
-          if (!reached(static_cast<double>(i) + x.at, columns, width_m)) continue;
-          const double xx = weighted(x.curvature, value, i), yy = weighted(x.value, curvature, i),
-                       xy = weighted(x.slope, slope, i);
-          largest = std::max(largest, std::abs(0.5 * (xx + yy)) + std::hypot(0.5 * (xx - yy), xy));
-        }
-    }
+  each_place(*this, 1, height_m, [&](std::size_t j, const Weights& y) {
+    const RowSums row(*this, j, y);
+    each_place(*this, 0, width_m, [&](std::size_t i, const Weights& x) {
+      largest = std::max(
+          largest, largest_eigenvalue(weighted(x.curvature, row.value, i), weighted(x.slope, row.slope, i),
+                                      weighted(x.value, row.curvature, i)));
+    });
+  });
   return largest / (pitch_m * pitch_m);
+}
+
+std::pair<double, double> ForceRelief::stiffness_and_curl(double width_m, double height_m) const {
+  double stiffness = 0, curl = 0, coefficient = 0;
+  each_place(x, 1, height_m, [&](std::size_t j, const Weights& v) {
+    const RowSums of_x(x, j, v), of_y(y, j, v);
+    each_place(x, 0, width_m, [&](std::size_t i, const Weights& u) {
+      const double x_by_u = weighted(u.slope, of_x.value, i), x_by_v = weighted(u.value, of_x.slope, i),
+                   y_by_u = weighted(u.slope, of_y.value, i), y_by_v = weighted(u.value, of_y.slope, i);
+      stiffness = std::max(stiffness, largest_eigenvalue(x_by_u, 0.5 * (x_by_v + y_by_u), y_by_v));
+      curl = std::max(curl, std::abs(y_by_u - x_by_v));
+    });
+  });
+  for (const Relief* component : {&x, &y})
+    for (const float c : component->levels.front().coefficients)
+      coefficient = std::max(coefficient, std::abs(double{c}));
+  constexpr double kRounding = 0x1p-22;  // of two differences of coefficients in single precision
+  return {stiffness / x.pitch_m, curl > kRounding * coefficient ? curl / x.pitch_m : 0};
 }
 
 double Relief::whole_to_mps(double rate_hz) const {
@@ -227,16 +259,42 @@ double Relief::zero_from_mps(double rate_hz) const {
 
 schema::Result<Relief> relief_levels(const schema::HeightMap& map, double rate_hz, double fastest_mps,
                                      const std::string& where) {
-  return levels_of(above_mean({map.height_m.begin(), map.height_m.end()}), {map.columns, map.rows},
-                   map.pitch_m, rate_hz, fastest_mps, where);
+  const GridSize size{map.columns, map.rows};
+  const auto heights = above_mean({map.height_m.begin(), map.height_m.end()});
+  return levels_of(heights, size, highest_frequency(heights, size), map.pitch_m, rate_hz, fastest_mps, where);
 }
 
 schema::Result<Relief> texture_levels(const schema::SpaceSignal& force_n, double rate_hz, double fastest_mps,
                                       const std::string& where) {
   std::vector<double> slope;
   for (const double value_n : force_n.values) slope.push_back(-value_n);
-  return levels_of(above_mean(heights_with_slope(slope, force_n.pitch_m)), {slope.size() + 1, 1},
-                   force_n.pitch_m, rate_hz, fastest_mps, where);
+  const GridSize size{slope.size() + 1, 1};
+  const auto heights = above_mean(heights_with_slope(slope, force_n.pitch_m));
+  return levels_of(heights, size, highest_frequency(heights, size), force_n.pitch_m, rate_hz, fastest_mps,
+                   where);
+}
+
+schema::Result<ForceRelief> force_levels(const schema::ForceGrid& grid, double rate_hz, double fastest_mps,
+                                         const std::string& where) {
+  const GridSize size{grid.columns, grid.rows};
+  const auto x_n = above_mean(grid.x_n), y_n = above_mean(grid.y_n);
+  const double highest = std::max(highest_frequency(x_n, size), highest_frequency(y_n, size));
+  const auto component = [&](const std::vector<double>& force_n,
+                             const std::vector<double>& heights) -> schema::Result<Relief> {
+    auto relief = levels_of(heights, size, highest, grid.pitch_m, rate_hz, fastest_mps, where);
+    TACTO_TRY(relief);
+    const double mean_n = force_n.front() - heights.front();
+    for (ReliefLevel& level : relief->levels)
+      for (float& c : level.coefficients) c = static_cast<float>(double{c} + mean_n);
+    relief->centre_m[0] = grid.first_x_m + 0.5 * grid.pitch_m * static_cast<double>(grid.columns - 1);
+    relief->centre_m[1] = grid.first_y_m + 0.5 * grid.pitch_m * static_cast<double>(grid.rows - 1);
+    return relief;
+  };
+  auto x = component(grid.x_n, x_n);
+  TACTO_TRY(x);
+  auto y = component(grid.y_n, y_n);
+  TACTO_TRY(y);
+  return ForceRelief{std::move(*x), std::move(*y)};
 }
 
 }  // namespace tacto::playback

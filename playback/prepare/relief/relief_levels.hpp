@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "data-schema/base/error.hpp"
 #include "data-schema/base/signal.hpp"
 #include "data-schema/height/height_map.hpp"
+#include "data-schema/scene/force_grid.hpp"
 
 namespace tacto::playback {
 
@@ -24,7 +26,8 @@ struct Relief {
   double pitch_m = 0;
   double highest_per_m = 0;  ///< above this spatial frequency lies less than 1e-6 of the power of the slope
   double samples_per_period = 0;  ///< least, of the levels after the first, to their shortest period; 0: none
-  std::vector<ReliefLevel> levels;
+  std::vector<ReliefLevel> levels = {};
+  double centre_m[2] = {0, 0};  ///< of the map, from the centre of its patch, along columns and rows
 
   /// The largest eigenvalue, absolute, of the Hessian of the first level in a patch of this size, at the
   /// centre of the map.
@@ -32,6 +35,16 @@ struct Relief {
   /// Up to this speed the first level is played, and from this speed on nothing.
   double whole_to_mps(double rate_hz) const;
   double zero_from_mps(double rate_hz) const;
+};
+
+/// Two components of a force, in N: of the same levels.
+struct ForceRelief {
+  Relief x, y;
+
+  /// Of the first level in a patch of this size, at the nodes and halfway between them, of the derivatives of
+  /// the force by the place: the largest eigenvalue, absolute, of their symmetric part, and the largest curl,
+  /// |dFy/dx - dFx/dy|; 0 if it is within the rounding of the coefficients.
+  std::pair<double, double> stiffness_and_curl(double width_m, double height_m) const;
 };
 
 /// The first level is the surface through all heights (relief_coefficients()), less their mean. Each further
@@ -48,5 +61,9 @@ schema::Result<Relief> relief_levels(const schema::HeightMap& map, double rate_h
 /// ends the slope is 0. Precondition: at least 2 samples. Errors: as relief_levels.
 schema::Result<Relief> texture_levels(const schema::SpaceSignal& force_n, double rate_hz, double fastest_mps,
                                       const std::string& where);
+
+/// Each component through all its nodes, as a height is, but with its mean. Errors: as relief_levels.
+schema::Result<ForceRelief> force_levels(const schema::ForceGrid& grid, double rate_hz, double fastest_mps,
+                                         const std::string& where);
 
 }  // namespace tacto::playback

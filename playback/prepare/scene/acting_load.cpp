@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -19,6 +20,7 @@ ActingLoad sum_of(const std::vector<schema::Patch>& patches, const std::vector<s
       sum.stiffness_n_per_m += load.stiffness_n_per_m;
       sum.least_damping_n_s_per_m += load.least_damping_n_s_per_m;
       sum.most_damping_n_s_per_m += load.most_damping_n_s_per_m;
+      sum.curl_n_per_m += load.curl_n_per_m;
       const auto name = [&](const std::string& type) {
         return fmt::format("{} {} of patch '{}'", type, j, patches[i].name);
       };
@@ -63,6 +65,9 @@ ActingLoad load_of(const schema::ForceLayer& layer) {
       [&](const schema::MoverLayer& mover) {
         load.least_damping_n_s_per_m = least_value(mover.damping_n_s_per_m);
         load.most_damping_n_s_per_m = largest_value(mover.damping_n_s_per_m);
+      },
+      [&](const schema::ForceMapLayer& map) {
+        load.curl_n_per_m = std::abs(farthest_value(map.gain)) * map.curl_n_per_m;
       },
       [&](const schema::BodyLayer& body) {
         const auto end = [&](double (*of)(const schema::LayerNumber&)) -> CoupledBody {

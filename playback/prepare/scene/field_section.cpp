@@ -75,18 +75,38 @@ schema::Result<void> check_section(const FieldSection& section, const std::strin
   return {};
 }
 
-double field_rounding_n(const FieldSection& section, double farthest_z_m) {
+double field_rounding_n(const FieldSection& section, const schema::Patch& patch, double low_z_m,
+                        double high_z_m) {
   constexpr double kUnit = 0x1p-24, kRoundings = 64;  // s^7 has 35 of them
-  const double core = section.core, s = 1 / (core * core), s4 = s * s * s * s, s7 = s4 * s * s * s;
-  double sum = 0;
-  for (const SectionAtom& atom : section.atoms) {
-    const double coulomb = std::abs(atom.coulomb_n_per_m) * std::pow(s, 1.5);
-    const double force = (atom.lennard_jones_n_per_m * (2 * s7 + s4) + coulomb) * core * atom.sigma_m,
-                 stiffness = atom.lennard_jones_n_per_m * (26 * s7 + 7 * s4) + 2 * coulomb;
-    const double place_m = 3 * section.unit_m() + 2 * kUnit * (std::abs(atom.z_m) + std::abs(farthest_z_m));
-    sum += force * kUnit * (kRoundings + static_cast<double>(section.atoms.size())) + stiffness * place_m;
-  }
-  return sum;
+  constexpr int kParts = 32;
+  const double half_m[2] = {patch.width_m / (2 * kParts), patch.height_m / (2 * kParts)};
+  const double farthest_z_m = std::max(std::abs(low_z_m), std::abs(high_z_m));
+  const auto beyond = [](double value, double low, double high) {
+    return std::max({0.0, low - value, value - high});
+  };
+  const auto of_part = [&](double x_m, double y_m) {
+    double sum = 0;
+    for (const SectionAtom& atom : section.atoms) {
+      const double x = beyond(atom.x_m, x_m - half_m[0], x_m + half_m[0]),
+                   y = beyond(atom.y_m, y_m - half_m[1], y_m + half_m[1]),
+                   z = beyond(atom.z_m, low_z_m, high_z_m);
+      const double distance_m = std::max(section.core * atom.sigma_m, std::sqrt(x * x + y * y + z * z));
+      const double ratio = atom.sigma_m / distance_m, s = ratio * ratio, s4 = s * s * s * s,
+                   s7 = s4 * s * s * s;
+      const double coulomb = std::abs(atom.coulomb_n_per_m) * s * ratio;
+      const double force = (atom.lennard_jones_n_per_m * (2 * s7 + s4) + coulomb) * distance_m,
+                   stiffness = atom.lennard_jones_n_per_m * (26 * s7 + 7 * s4) + 2 * coulomb;
+      const double place_m = 3 * section.unit_m() + 2 * kUnit * (std::abs(atom.z_m) + farthest_z_m);
+      sum += force * kUnit * (kRoundings + static_cast<double>(section.atoms.size())) + stiffness * place_m;
+    }
+    return sum;
+  };
+  double largest = 0;
+  for (int i = 0; i < kParts; ++i)
+    for (int j = 0; j < kParts; ++j)
+      largest =
+          std::max(largest, of_part((2 * i + 1 - kParts) * half_m[0], (2 * j + 1 - kParts) * half_m[1]));
+  return largest;
 }
 
 }  // namespace tacto::playback

@@ -37,8 +37,12 @@ FieldSection field_section(const schema::FieldLayer& layer, const std::vector<sc
 /// force constant beyond 1 N per unit.
 schema::Result<void> check_section(const FieldSection& section, const std::string& where);
 
-/// How much the kernel's force differs from that in double precision at most, for a force_scale of 1: each
-/// atom at its core, 64 roundings, and the rounding of places to a unit and of z to single precision.
-double field_rounding_n(const FieldSection& section, double farthest_z_m);
+/// How much the kernel's force differs from that in double precision at most, for a force_scale of 1, on a
+/// hand in the patch, with the section from `low_z_m` to `high_z_m`: of each atom 64 roundings, those of the
+/// sum, and the rounding of places to a unit and of z to single precision. Largest of 32 x 32 parts of the
+/// patch, in each with every atom as near as the part permits: from the core on, both bounds of an atom fall
+/// with its distance.
+double field_rounding_n(const FieldSection& section, const schema::Patch& patch, double low_z_m,
+                        double high_z_m);
 
 }  // namespace tacto::playback

@@ -8,9 +8,11 @@
 #include <cstring>
 #include <functional>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "data-schema/height/height_map.hpp"
+#include "data-schema/scene/force_grid.hpp"
 #include "data-schema/texture/texture.hpp"
 #include "playback/model/texture_lookup.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
@@ -39,10 +41,6 @@ struct KindInBlock {
   SceneLayerKind kind;
   std::vector<std::string_view> members;  // the numbers of the block, in its order
 };
-
-// Named one by one: a new kind of layer does not compile until it is here or has data.
-template <class L>
-concept NotPlayedYet = std::same_as<L, schema::MassLayer> || std::same_as<L, schema::ForceMapLayer>;
 
 template <class T>
 void append(Words& words, const T* parts, std::size_t count) {
@@ -112,8 +110,7 @@ Words table_of(const schema::NoiseLayer& noise, const schema::Patch& patch, cons
   return words;
 }
 
-// The centre of the map is the centre of the patch; its columns grow along `angle_deg` from the patch's axis
-// x.
+// The columns of the map grow along `angle_deg` from the patch's axis x.
 Words table_of(const Relief& relief, double angle_deg, const schema::Patch& patch, const PlaneSteps& steps) {
   const double angle_rad = angle_deg * std::numbers::pi / 180;
   const core::ReliefTable table{
@@ -128,7 +125,8 @@ Words table_of(const Relief& relief, double angle_deg, const schema::Patch& patc
     for (int i = 0; i < 2; ++i) {
       const auto count = static_cast<double>(places[i]);
       const double pitch_m = relief.pitch_m * static_cast<double>(of_map[i]) / count;
-      row.along[i] = row_of(patch, patch.angle_deg + angle_deg + 90 * i, pitch_m, steps, (count - 1) / 2);
+      row.along[i] = row_of(patch, patch.angle_deg + angle_deg + 90 * i, pitch_m, steps,
+                            (count - 1) / 2 - relief.centre_m[i] / pitch_m);
       row.samples_per_m[i] = static_cast<float>(1 / pitch_m);
     }
     row.columns = static_cast<std::uint32_t>(level.columns);
@@ -138,6 +136,12 @@ Words table_of(const Relief& relief, double angle_deg, const schema::Patch& patc
     append(words, &row, 1);
   }
   for (const ReliefLevel& level : relief.levels) append(words, level.coefficients);
+  return words;
+}
+
+Words table_of(const ForceRelief& forces, const schema::Patch& patch, const PlaneSteps& steps) {
+  Words words = table_of(forces.x, 0, patch, steps);
+  for (const ReliefLevel& level : forces.y.levels) append(words, level.coefficients);
   return words;
 }
 
@@ -168,6 +172,7 @@ Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneS
       [&](const schema::TextureForceLayer& texture) {
         return table_of(reliefs.of(texture), texture.direction_deg.value, patch, steps);
       },
+      [&](const schema::ForceMapLayer& map) { return table_of(reliefs.of(map), patch, steps); },
       [&](const schema::GroovesLayer& grooves) { return table_of(grooves, patch, steps); },
       [&](const schema::NoiseLayer& noise) { return table_of(noise, patch, steps); },
       [&](const schema::BodyLayer& body) {
@@ -187,54 +192,42 @@ Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneS
       [](const auto& /*without a table*/) { return Words(); });
 }
 
-std::optional<KindInBlock> kind_of(const ForceLayer& layer) {
-  using Kind = std::optional<KindInBlock>;
+KindInBlock kind_of(const ForceLayer& layer) {
   return layer.visit(
-      [](const schema::SpringLayer& /*spring*/) -> Kind {
-        return {{SceneLayerKind::spring, {"stiffness_n_per_m", "centre_x_m", "centre_y_m"}}};
+      [](const schema::SpringLayer& /*spring*/) -> KindInBlock {
+        return {SceneLayerKind::spring, {"stiffness_n_per_m", "centre_x_m", "centre_y_m"}};
       },
-      [](const schema::DamperLayer& /*damper*/) -> Kind {
-        return {{SceneLayerKind::damper, {"damping_n_s_per_m"}}};
+      [](const schema::DamperLayer& /*damper*/) -> KindInBlock {
+        return {SceneLayerKind::damper, {"damping_n_s_per_m"}};
       },
-      [](const schema::GroovesLayer& /*grooves*/) -> Kind {
-        return {{SceneLayerKind::grooves, {"depth_m", "kappa_n"}}};
+      [](const schema::GroovesLayer& /*grooves*/) -> KindInBlock {
+        return {SceneLayerKind::grooves, {"depth_m", "kappa_n"}};
       },
-      [](const schema::NoiseLayer& /*noise*/) -> Kind {
-        return {{SceneLayerKind::noise, {"depth_m", "kappa_n"}}};
+      [](const schema::NoiseLayer& /*noise*/) -> KindInBlock {
+        return {SceneLayerKind::noise, {"depth_m", "kappa_n"}};
       },
-      [](const schema::HeightMapLayer& /*map*/) -> Kind {
-        return {{SceneLayerKind::height_map, {"kappa_n"}}};
+      [](const schema::HeightMapLayer& /*map*/) -> KindInBlock {
+        return {SceneLayerKind::height_map, {"kappa_n"}};
       },
-      [](const schema::TextureForceLayer& /*texture*/) -> Kind {
-        return {{SceneLayerKind::height_map, {"gain"}}};
+      [](const schema::TextureForceLayer& /*texture*/) -> KindInBlock {
+        return {SceneLayerKind::height_map, {"gain"}};
       },
-      [](const schema::BodyLayer& /*body*/) -> Kind {
-        return {{SceneLayerKind::body,
-                 {"stiffness_n_per_m", "damping_n_s_per_m", "static_friction_n", "kinetic_friction_n"}}};
+      [](const schema::BodyLayer& /*body*/) -> KindInBlock {
+        return {SceneLayerKind::body,
+                {"stiffness_n_per_m", "damping_n_s_per_m", "static_friction_n", "kinetic_friction_n"}};
       },
-      [](const schema::LassoLayer& /*lasso*/) -> Kind {
-        return {{SceneLayerKind::lasso, {"stiffness_n_per_m", "length_m"}}};
+      [](const schema::LassoLayer& /*lasso*/) -> KindInBlock {
+        return {SceneLayerKind::lasso, {"stiffness_n_per_m", "length_m"}};
       },
-      [](const schema::MoverLayer& /*mover*/) -> Kind {
-        return {{SceneLayerKind::mover, {"damping_n_s_per_m", "speed_mps"}}};
+      [](const schema::MoverLayer& /*mover*/) -> KindInBlock {
+        return {SceneLayerKind::mover, {"damping_n_s_per_m", "speed_mps"}};
       },
-      [](const schema::FieldLayer& /*field*/) -> Kind {
-        return {{SceneLayerKind::field, {"force_scale", "z_m"}}};
+      [](const schema::FieldLayer& /*field*/) -> KindInBlock {
+        return {SceneLayerKind::field, {"force_scale", "z_m"}};
       },
-      [](const NotPlayedYet auto& /*layer*/) -> Kind { return std::nullopt; });
-}
-
-Result<void> check_types(const schema::Scene& scene, const std::string& where) {
-  for (std::size_t i = 0; i < scene.patches.size(); ++i)
-    for (std::size_t j = 0; j < scene.patches[i].layers.size(); ++j)
-      if (const ForceLayer& layer = scene.patches[i].layers[j]; !kind_of(layer))
-        return fail(
-            ErrorKind::unsuitable, fmt::format("layers of the type {} cannot be played yet", type_of(layer)),
-            fmt::format("{}#/patches/{}/layers/{}/type", where, i, j),
-            "the types that can be played are spring, damper, grooves, noise, height_map, texture, field, "
-            "body, lasso "
-            "and mover; a body is a mass on a spring and a damper at the hand");
-  return {};
+      [](const schema::ForceMapLayer& /*map*/) -> KindInBlock {
+        return {SceneLayerKind::force_map, {"gain"}};
+      });
 }
 
 static_assert(schema::kMostLayers == core::kMostSceneLayers);  // data-schema does not include core
@@ -307,7 +300,7 @@ Words block_of(const std::vector<schema::Patch>& from, const PlaneSteps& steps, 
     patches.back().first_layer = static_cast<std::uint16_t>(layers.size());
     patches.back().layers = static_cast<std::uint16_t>(patch.layers.size());
     for (const ForceLayer& layer : patch.layers) {
-      const KindInBlock kind = *kind_of(layer);
+      const KindInBlock kind = kind_of(layer);
       layers.push_back({static_cast<std::uint16_t>(kind.kind), static_cast<std::uint16_t>(numbers.size()),
                         static_cast<std::uint32_t>(tables.size())});
       const auto of_layer = numbers_in(layer, kind.members);
@@ -348,13 +341,11 @@ PreparedScene PreparedScene::with(std::vector<schema::Patch> others) const {
 }
 
 std::vector<std::string_view> numbers_in_block(const ForceLayer& layer) {
-  const auto kind = kind_of(layer);
-  return kind ? kind->members : std::vector<std::string_view>();
+  return kind_of(layer).members;
 }
 
 std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLayer& layer) const {
-  const auto kind = kind_of(layer);
-  return sizeof(core::SceneLayer) + (kind ? core::numbers_of(kind->kind) : 0) * sizeof(float) +
+  return sizeof(core::SceneLayer) + core::numbers_of(kind_of(layer).kind) * sizeof(float) +
          table_of(layer, patch, steps, reliefs).size() * sizeof(std::uint32_t);
 }
 
@@ -364,13 +355,15 @@ std::string PreparedScene::remedy_for(std::size_t room) const {
     for (const ForceLayer& layer : patch.layers)
       layer.visit(
           [&](const schema::HeightMapLayer& /*map*/) { maps += layer_bytes(patch, layer); },
+          [&](const schema::ForceMapLayer& /*map*/) { maps += layer_bytes(patch, layer); },
           [&](const schema::TextureForceLayer& /*texture*/) { textures += layer_bytes(patch, layer); },
           [](const auto& /*other*/) {});
   const std::size_t others = bytes() - maps;
   if (textures > 0 && others >= room) return "make its textures shorter";
   if (maps == 0 || others >= room) return {};
   const double factor = std::sqrt(static_cast<double>(maps) / static_cast<double>(room - others));
-  return fmt::format("give its height maps a pitch {:.2f} times as large", std::ceil(100 * factor) / 100);
+  return fmt::format("give its height and force maps a pitch {:.2f} times as large",
+                     std::ceil(100 * factor) / 100);
 }
 
 Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, double rate_hz) {
@@ -408,9 +401,24 @@ Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, dou
     layer.stiffest_n_per_m = stiffest_n_per_m(section, layer.z_m, patch);
     return {};
   };
+  const auto forces_in = [&](const schema::Patch& patch, schema::ForceMapLayer& layer) -> Result<void> {
+    const std::string file = schema::texture_in_scene(where, layer.file);
+    auto& forces = reliefs.force_maps[layer.file];
+    if (!forces) {
+      const auto grid = schema::read_force_grid(file);
+      TACTO_TRY(grid);
+      auto levels = force_levels(*grid, rate_hz, kFastestHandMps, file);
+      TACTO_TRY(levels);
+      forces = std::make_shared<const ForceRelief>(std::move(*levels));
+    }
+    std::tie(layer.stiffest_n_per_m, layer.curl_n_per_m) =
+        forces->stiffness_and_curl(patch.width_m, patch.height_m);
+    return {};
+  };
   for (schema::Patch& patch : scene.patches)
     for (ForceLayer& layer : patch.layers)
       TACTO_TRY(layer.visit([&](schema::FieldLayer& field) { return atoms_in(patch, field); },
+                            [&](schema::ForceMapLayer& map) { return forces_in(patch, map); },
                             [&](schema::HeightMapLayer& map) { return map_in(patch, map); },
                             [&](schema::TextureForceLayer& texture) { return texture_in(patch, texture); },
                             [](auto& /*other*/) { return Result<void>(); }));
@@ -461,7 +469,6 @@ Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& wher
   if (scene.patches.empty())
     return fail(ErrorKind::unsuitable, "this scene has no force patches", where,
                 "a scene of a tray is played with --transducer");
-  TACTO_TRY(check_types(scene, where));
   TACTO_TRY(check_bodies(scene, where, rate_hz));
   PreparedScene base;
   base.stiffness_limit_n_per_m = stiffness_limit_of(device, rate_hz, hand);

@@ -30,13 +30,15 @@ struct PlaneSteps {
 /// A hand that is faster is a jump of the encoder.
 inline constexpr double kFastestHandMps = 10;
 
-/// The height maps, textures and atoms of a scene, by the names in their layers.
+/// The height maps, textures, atoms and force maps of a scene, by the names in their layers.
 struct Reliefs {
   std::map<std::string, std::shared_ptr<const Relief>> height_maps, textures;
+  std::map<std::string, std::shared_ptr<const ForceRelief>> force_maps;
   std::map<std::string, std::shared_ptr<const std::vector<schema::Atom>>> atoms;
 
   const Relief& of(const schema::HeightMapLayer& layer) const { return *height_maps.at(layer.file); }
   const Relief& of(const schema::TextureForceLayer& layer) const { return *textures.at(layer.file); }
+  const ForceRelief& of(const schema::ForceMapLayer& layer) const { return *force_maps.at(layer.file); }
   const std::vector<schema::Atom>& of(const schema::FieldLayer& layer) const { return *atoms.at(layer.file); }
 };
 
@@ -53,15 +55,15 @@ struct PreparedScene {
   core::SceneView view() const;
   /// Other patches for the same device, each of them once part of such a scene.
   PreparedScene with(std::vector<schema::Patch> others) const;
-  /// What makes a scene with height maps or textures small enough for this many bytes, in words; empty if
-  /// nothing does.
+  /// What makes a scene with height maps, force maps or textures small enough for this many bytes, in words;
+  /// empty if nothing does.
   std::string remedy_for(std::size_t room) const;
   /// The bytes of a layer in the block.
   std::size_t layer_bytes(const schema::Patch& patch, const schema::ForceLayer& layer) const;
 };
 
 /// The members of a layer that are numbers in the block, in its order: they can change while the scene plays
-/// (core::SceneKernel::change). Empty for a type that cannot be played yet.
+/// (core::SceneKernel::change).
 std::vector<std::string_view> numbers_in_block(const schema::ForceLayer& layer);
 
 /// The largest stiffness that is stable at this rate along both axes, with this damper of the scene: of the
@@ -74,10 +76,10 @@ double stiffness_limit_of(const schema::Device& device, double rate_hz,
 /// scene's file. Errors: unsuitable: the limit is 0, by JSON pointer.
 schema::Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::string& where);
 
-/// Reads the height maps, textures and atoms of all layers, and sets their curvature, steepest_n_per_m and
-/// stiffest_n_per_m. Textures
-/// fade at their ends as on a tray (TextureLookup). `where` is the scene's file. Errors: as read_height_map,
-/// relief_levels, read_texture, check_playable, read_atoms, check_section; unsuitable: a texture whose mean
+/// Reads the height maps, textures, atoms and force maps of all layers, and sets their curvature,
+/// steepest_n_per_m, stiffest_n_per_m and curl_n_per_m. Textures fade at their ends as on a tray
+/// (TextureLookup). `where` is the scene's file. Errors: as read_height_map, relief_levels, read_texture,
+/// check_playable, read_atoms, check_section, read_force_grid, force_levels; unsuitable: a texture whose mean
 /// force is too large for its length.
 schema::Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, double rate_hz);
 
@@ -86,9 +88,8 @@ double length_across(const schema::Patch& patch, double direction_deg);
 
 /// Builds what the scene names and nothing else. Equal orders: the later patch is above. `where` is the
 /// scene's file. Preconditions: a scene as read_scene() gives it; the device has this rate, and an axis x or
-/// y. Errors: unsuitable, if it has no patches; by JSON pointer, for a type of layer that cannot be played
-/// yet (with those that can), for bodies (check_bodies()), and for the filter of grooves on a device without
-/// viscous friction; as read_reliefs and add_adaptive_damping.
+/// y. Errors: unsuitable, if it has no patches; by JSON pointer, for bodies (check_bodies()), and for the
+/// filter of grooves on a device without viscous friction; as read_reliefs and add_adaptive_damping.
 schema::Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& where,
                                             const schema::Device& device, double rate_hz,
                                             const std::optional<schema::Hand>& hand = std::nullopt);

@@ -198,6 +198,20 @@ void note_maps(const PreparedScene& scene, const schema::Patch& patch, std::vect
                             "texture its force is 0",
                             patch.name, texture.file, length_m));
         },
+        [&](const schema::ForceMapLayer& map) {
+          const Relief& relief = scene.reliefs.of(map).x;
+          const double from_centre_m[2] = {std::abs(relief.centre_m[0]), std::abs(relief.centre_m[1])};
+          const double half_m[2] = {0.5 * static_cast<double>(relief.columns) * relief.pitch_m,
+                                    0.5 * static_cast<double>(relief.rows) * relief.pitch_m};
+          const bool wide =
+              relief.columns > 1 && patch.width_m / 2 + from_centre_m[0] > (1 + 1e-9) * half_m[0];
+          const bool high = relief.rows > 1 && patch.height_m / 2 + from_centre_m[1] > (1 + 1e-9) * half_m[1];
+          if (wide || high)
+            notes.push_back(
+                fmt::format("patch '{}' reaches beyond the grid of its force map '{}': there the outermost "
+                            "forces of the map continue",
+                            patch.name, map.file));
+        },
         [](const auto& /*other*/) {});
 }
 
@@ -292,6 +306,9 @@ double local_stiffness_n_per_m(const schema::ForceLayer& layer) {
       },
       [](const schema::FieldLayer& field) {
         return largest_value(field.force_scale) * field.stiffest_n_per_m;
+      },
+      [](const schema::ForceMapLayer& map) {
+        return std::abs(farthest_value(map.gain)) * map.stiffest_n_per_m;
       },
       [](const schema::NoiseLayer& noise) {
         double curvature = 0, cells_per_m = 1 / noise.period_m.value;

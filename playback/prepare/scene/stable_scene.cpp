@@ -148,6 +148,7 @@ std::string_view scale_stiffness(schema::ForceLayer& layer, double factor) {
       [&](schema::HeightMapLayer& map) { return scaled(map.kappa_n, "kappa_n"); },
       [&](schema::TextureForceLayer& texture) { return scaled(texture.gain, "gain"); },
       [&](schema::FieldLayer& field) { return scaled(field.force_scale, "force_scale"); },
+      [&](schema::ForceMapLayer& map) { return scaled(map.gain, "gain"); },
       [](auto& /*of another stiffness or none*/) { return std::string_view(); });
 }
 

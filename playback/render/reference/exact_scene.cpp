@@ -40,20 +40,40 @@ double spline_slope(double x) {
   return a >= 2 ? 0 : a >= 1 ? -way * (2 - a) * (2 - a) / 2 : way * (1.5 * a * a - 2 * a);
 }
 
-// The slope of a level's surface along its columns and rows at a place in samples.
-std::pair<double, double> slope_of(const ReliefLevel& level, double x, double y) {
+struct SplineValue {
+  double value = 0, by_x = 0, by_y = 0;
+};
+
+// A level's surface and its slope along columns and rows, at a place in samples.
+SplineValue spline_of(const ReliefLevel& level, double x, double y) {
   const auto held = [](double at, std::size_t count) {
     return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
   };
-  double by_x = 0, by_y = 0;
+  SplineValue at;
   for (double j = std::floor(y) - 1; j <= std::floor(y) + 2; ++j)
     for (double i = std::floor(x) - 1; i <= std::floor(x) + 2; ++i) {
       const double c =
           double{level.coefficients[held(j, level.rows) * level.columns + held(i, level.columns)]};
-      by_x += c * spline_slope(x - i) * spline(y - j);
-      by_y += c * spline(x - i) * spline_slope(y - j);
+      at.value += c * spline(x - i) * spline(y - j);
+      at.by_x += c * spline_slope(x - i) * spline(y - j);
+      at.by_y += c * spline(x - i) * spline_slope(y - j);
     }
-  return {by_x, by_y};
+  return at;
+}
+
+// The place on a level, in samples, at `from_centre_m` from the centre of the patch; axis 0 or 1.
+double place_on(const Relief& relief, const ReliefLevel& level, int axis, double from_centre_m) {
+  const auto all = static_cast<double>(axis == 0 ? relief.columns : relief.rows),
+             count = static_cast<double>(axis == 0 ? level.columns : level.rows);
+  return ((from_centre_m - relief.centre_m[axis]) / relief.pitch_m + all / 2) * count / all - 0.5;
+}
+
+// At which level a map is played, in half octaves. The highest frequency of a level reaches half the rate
+// when it is left.
+double level_at(const Relief& relief, double passed_mps, double rate_hz) {
+  const double per_tick = passed_mps * relief.highest_per_m / rate_hz;
+  const core::Detail detail = core::detail_at(static_cast<float>(per_tick * 2 * std::numbers::sqrt2));
+  return detail.coarser + double{detail.fade};
 }
 
 // A place and a speed after a tick of `tick_s` under a held force: m v' = force - b v by the method of Runge
@@ -110,34 +130,45 @@ ExactScene::Vector ExactScene::lasso_force(const schema::LassoLayer& layer, Body
   return {-on_mass.x, -on_mass.y};
 }
 
-// The levels are half octaves apart; the highest frequency of a level reaches half the rate when it is left.
 ExactScene::Vector ExactScene::relief_force(const Relief& relief, double kappa_n, double angle_rad,
                                             Vector from_centre, Vector speed) const {
   const double c = std::cos(angle_rad), s = std::sin(angle_rad);
   const double passed_mps =
       relief.rows > 1 ? std::hypot(speed.x, speed.y) : std::abs(c * speed.x + s * speed.y);
-  const double per_tick = passed_mps * relief.highest_per_m / rate_hz_;
-  const core::Detail detail = core::detail_at(static_cast<float>(per_tick * 2 * std::numbers::sqrt2));
+  const double played = level_at(relief, passed_mps, rate_hz_);
   double u = 0, v = 0;
   for (std::size_t n = 0; n < relief.levels.size(); ++n) {
-    const double above = static_cast<double>(n) - detail.coarser - double{detail.fade};
-    const double weight = std::max(0.0, 1 - std::abs(above));
+    const double weight = std::max(0.0, 1 - std::abs(static_cast<double>(n) - played));
     if (weight == 0) continue;
     const ReliefLevel& level = relief.levels[n];
-    const auto place = [&](double x, std::size_t of_map, std::size_t of_level) {
-      const auto all = static_cast<double>(of_map), count = static_cast<double>(of_level);
-      return (x / relief.pitch_m + all / 2) * count / all - 0.5;
-    };
-    const auto [by_column, by_row] =
-        slope_of(level, place(c * from_centre.x + s * from_centre.y, relief.columns, level.columns),
-                 place(c * from_centre.y - s * from_centre.x, relief.rows, level.rows));
-    u += weight * by_column * static_cast<double>(level.columns) /
+    const SplineValue at = spline_of(level, place_on(relief, level, 0, c * from_centre.x + s * from_centre.y),
+                                     place_on(relief, level, 1, c * from_centre.y - s * from_centre.x));
+    u += weight * at.by_x * static_cast<double>(level.columns) /
          (static_cast<double>(relief.columns) * relief.pitch_m);
-    v += weight * by_row * static_cast<double>(level.rows) /
+    v += weight * at.by_y * static_cast<double>(level.rows) /
          (static_cast<double>(relief.rows) * relief.pitch_m);
   }
   const double force = -kappa_n;
   return {force * (c * u - s * v), force * (s * u + c * v)};
+}
+
+// Its last level is played at all higher speeds.
+ExactScene::Vector ExactScene::map_force(const ForceRelief& forces, double gain, double angle_rad,
+                                         Vector from_centre, Vector speed) const {
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  const Relief& x = forces.x;
+  const double passed_mps = x.rows > 1 ? std::hypot(speed.x, speed.y) : std::abs(c * speed.x + s * speed.y);
+  const double played = std::min(level_at(x, passed_mps, rate_hz_), static_cast<double>(x.levels.size() - 1));
+  double u = 0, v = 0;
+  for (std::size_t n = 0; n < x.levels.size(); ++n) {
+    const double weight = std::max(0.0, 1 - std::abs(static_cast<double>(n) - played));
+    if (weight == 0) continue;
+    const double column = place_on(x, x.levels[n], 0, c * from_centre.x + s * from_centre.y),
+                 row = place_on(x, x.levels[n], 1, c * from_centre.y - s * from_centre.x);
+    u += gain * weight * spline_of(forces.x.levels[n], column, row).value;
+    v += gain * weight * spline_of(forces.y.levels[n], column, row).value;
+  }
+  return {c * u - s * v, s * u + c * v};
 }
 
 // -kappa times the derivative of the series, along the direction of the grooves.
@@ -327,7 +358,11 @@ ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vec
             const Vector along = field_force(field, angle, {place.x - patch.x_m, place.y - patch.y_m});
             sum.x += along.x, sum.y += along.y;
           },
-          [](const auto& /*not prepared*/) {});
+          [&](const schema::ForceMapLayer& map) {
+            const Vector along = map_force(scene_.reliefs.of(map), map.gain.value, angle,
+                                           {place.x - patch.x_m, place.y - patch.y_m}, speed);
+            sum.x += along.x, sum.y += along.y;
+          });
   }
   return sum;
 }

@@ -56,6 +56,8 @@ class ExactScene {
   Vector field_force(const schema::FieldLayer& field, double angle_rad, Vector from_centre) const;
   Vector relief_force(const Relief& relief, double kappa_n, double angle_rad, Vector from_centre,
                       Vector speed) const;
+  Vector map_force(const ForceRelief& forces, double gain, double angle_rad, Vector from_centre,
+                   Vector speed) const;
   /// In the axes of its patch.
   struct Body {
     Vector place, speed;
