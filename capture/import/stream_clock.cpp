@@ -23,7 +23,7 @@ tl::unexpected<schema::Error> was_reset(const std::string& where, double time_s,
   return fail(ErrorKind::unsuitable,
               fmt::format("the stream's clock was reset at {:.6f} s (it jumped by {:.6g} s)", time_s, jump_s),
               where,
-              "import the part before or after it from a file that pyxdf or MATLAB writes, or: " +
+              "write the part before or after it to a MATLAB file with pyxdf and import that, or: " +
                   std::string(kWithoutTimes));
 }
 
@@ -186,7 +186,7 @@ void Search::compare_with_nominal() {
 void Search::move_to_recorders_clock(std::span<const schema::ClockPair> pairs) {
   const auto fit = schema::fit_clock(pairs);
   if (!fit) {
-    found_.words = "times of the stream, by its own clock (too few clock offsets, or within 10 s)";
+    found_.words = "times of the stream, by its own clock (too few clock offsets, or too close in time)";
     return;
   }
   found_.clock.rate_hz *= 1 + 1e-6 * fit->drift_ppm;
