@@ -403,7 +403,7 @@ void add_stream_warnings(RecordingHeader& header, const Source& source, bool rat
   if (!source.xdf->cut.empty()) header.warnings.push_back(source.xdf->cut);
   if (!stream.stated_samples)
     header.warnings.push_back(
-        "the stream has no footer: its recording was not ended, or the file was cut; later samples are "
+        "the stream has no footer: its recording was not ended, or the file was cut; samples may be "
         "missing");
   else if (*stream.stated_samples != stream.samples)
     header.warnings.push_back(fmt::format("the stream has {} samples, but its footer states {}",
