@@ -36,9 +36,10 @@ double parsed_percent(const std::string& text) {
 
 void declare_data(CLI::App& app, ImportRequest& request) {
   app.add_option("FILE", request.file,
-                 "CSV table, MATLAB file (version 5 or 7.3; without other options: lists what it has), sound "
+                 "CSV table, MATLAB file (version 5 or 7.3) or XDF file of the Lab Streaming Layer (both: "
+                 "without other options lists what it has), sound "
                  "file that libsndfile reads (WAV, FLAC, OGG ...), a measured profile "
-                 "(XML), or a height "
+                 "(XML, X3P), or a height "
                  "map (greyscale PNG with 16 bits)")
       ->required();
   app.add_option("-o,--output", request.name,
@@ -58,10 +59,16 @@ void declare_data(CLI::App& app, ImportRequest& request) {
                     "Samples per second of a table, or of audio with a wrong header");
   app.add_option("--time-column", request.time_column,
                  "Compute the rate from a column of times, COLUMN*SCALE and a unit: t_ms*1ms");
+  app.add_option("--stream", request.stream,
+                 "Of an XDF file: the name or number of the stream, if it has several of numbers");
   cli::add_quantity(
       app, "--pitch", request.pitch_m, Dimension::length,
       "Distance between heights: makes a texture (so do a height and a position without a rate), or with a "
       "PNG a height map");
+  auto* const row = app.add_option("--row", request.row, "Of an X3P surface: the row to take, from 1");
+  app.add_option("--column", request.column, "Of an X3P surface: the column to take, from 1")->excludes(row);
+  app.add_option("--points", request.points,
+                 "Of a line of an X3P file: only these points, FIRST..LAST from 1, as 121..480");
   cli::add_quantity(app, "--height", request.full_height_m, Dimension::length,
                     "Of a PNG: height of white; black is 0");
   app.add_flag("--allow-8bit", request.allow_8bit,
@@ -160,6 +167,16 @@ std::string next_of_profile(const HeightProfile& profile, const std::string& ste
                      cli::shell_word(stem + ".png"), 1e3 * window_m);
 }
 
+std::vector<cli::Report> roughness_rows(const HeightProfile& profile) {
+  std::vector<cli::Report> rows;
+  for (const StatedRoughness& each : profile.roughness) {
+    cli::Report row;
+    row.add("name", each.name).add("stated_m", each.stated_m).add("computed_m", each.computed_m);
+    rows.push_back(std::move(row.add("agrees", each.agrees)));
+  }
+  return rows;
+}
+
 schema::Result<cli::Report> run_profile(const ImportRequest& request) {
   const auto imported = [&] {
     cli::Progress progress("importing");
@@ -174,6 +191,7 @@ schema::Result<cli::Report> run_profile(const ImportRequest& request) {
   report.add("length_m", static_cast<double>(profile.height_m.size() - 1) * profile.pitch_m);
   report.add("direction", profile.direction).add("unevenness_m", profile.unevenness_m);
   report.add("lowest_m", lowest).add("highest_m", highest);
+  if (!profile.roughness.empty()) report.add("roughness", roughness_rows(profile));
   report.add("files", std::vector{stem + ".texture.wav", stem + ".texture.json"});
   return report.add("next", next_of_profile(profile, stem));
 }
@@ -194,12 +212,40 @@ schema::Result<cli::Report> run_height_map(const ImportRequest& request) {
   return report.add("next", fmt::format("tactograph info {}", cli::shell_word(path)));
 }
 
-// What a MATLAB file has; no other file is opened without an output.
+// What an XDF file has, and a command for its first stream of numbers.
+schema::Result<cli::Report> list_streams(const Source& source) {
+  std::vector<cli::Report> rows;
+  const schema::XdfStream* first = nullptr;
+  for (const schema::XdfStream& stream : source.xdf->streams) {
+    cli::Report row;
+    row.add("number", std::uint64_t{stream.id}).add("name", stream.name).add("type", stream.type);
+    row.add("format", stream.format).add("channels", fmt::format("{}", fmt::join(stream.labels, ", ")));
+    row.add("samples", stream.samples);
+    row.add("nominal_rate_hz", stream.nominal_rate_hz).add("not_imported", stream.refusal);
+    rows.push_back(std::move(row));
+    if (first == nullptr && stream.refusal.empty()) first = &stream;
+  }
+  cli::Report report;
+  report.add("source", source.file).add("format", source.format).add("streams", rows);
+  if (!source.xdf->cut.empty()) report.add("warnings", std::vector{source.xdf->cut});
+  if (first == nullptr) return report;
+  const auto chosen = open_source(source.file, 0, std::to_string(first->id));
+  TACTO_TRY(chosen);
+  const std::string name = std::filesystem::path(source.file).stem().string();
+  const bool unique = std::ranges::count(source.xdf->streams, first->name, &schema::XdfStream::name) == 1;
+  const std::string stream = unique ? cli::shell_word(first->name) : std::to_string(first->id);
+  const std::string option = source.xdf_stream ? "" : fmt::format("--stream {} ", stream);
+  return report.add("next", fmt::format("tactograph import {} -o {} {}{}", cli::shell_word(source.file),
+                                        cli::shell_word(name), option, example_options(*chosen)));
+}
+
+// What a MATLAB or XDF file has; no other file is opened without an output.
 schema::Result<cli::Report> list_contents(const ImportRequest& request) {
   const auto source = open_source(request.file);
   if (!source && source.error().kind != schema::ErrorKind::unsuitable) return schema::forward_error(source);
-  if (!source || !source->mat || !request.channels.empty())
+  if (!source || !(source->mat || source->xdf) || !request.channels.empty() || !request.stream.empty())
     return schema::fail(schema::ErrorKind::usage, "is required", "--output", "add -o and a name");
+  if (source->xdf) return list_streams(*source);
   std::vector<cli::Report> rows;
   for (const schema::MatArray& array : source->mat->arrays) {
     cli::Report row;
@@ -219,6 +265,9 @@ schema::Result<cli::Report> run_import(const ImportRequest& request) {
   if (is_height_map_request(request)) return run_height_map(request);
   if (request.full_height_m || request.allow_8bit)
     return schema::fail(schema::ErrorKind::usage, "--height and --allow-8bit are for a PNG", request.file);
+  if (!is_x3p(request.file) && (request.row || request.column || !request.points.empty()))
+    return schema::fail(schema::ErrorKind::usage, "--row, --column and --points are for an X3P file",
+                        request.file);
   if (is_profile_request(request)) return run_profile(request);
   schema::Result<Imported> imported = [&] {
     cli::Progress progress("importing");
@@ -248,9 +297,11 @@ const cli::Verb kImportVerb{
     "  tactograph import run7.lvm -o run7 --time-column X_Value*1s --channel acceleration=Voltage*0.5g "
     "--mask-outliers\n"
     "  tactograph import trial.mat -o trial --rate 10kHz --channel tangential_force=data.force*1N\n"
+    "  tactograph import trial.xdf -o trial --stream Force --channel tangential_force=Fx*1N\n"
     "  tactograph import tap.flac -o tap\n"
     "  tactograph import edm.xml -o edm\n"
     "  tactograph import profile.csv -o profile --channel position=x*1mm --channel height=z*1um\n"
+    "  tactograph import surface.x3p --row 120 -o surface\n"
     "  tactograph import plate.png --pitch 50um --height 200um -o plate",
     declare_import};
 

@@ -19,6 +19,7 @@
 #include "capture/table/source.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/base/quantity.hpp"
+#include "data-schema/exchange/x3p_file.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/version.hpp"
 
@@ -70,10 +71,12 @@ Result<Columns> columns_of(const ImportRequest& request, const Source& source) {
 // The table's two columns in metres, and the name of a row for messages.
 struct Table {
   std::vector<double> height_m, position_m;
+  PrintedDigit printed;  // of the positions
   std::deque<CsvReader::Landmark> lines;
 
   std::string place_of(const std::string& file, std::size_t row) const {
-    return fmt::format("{}: line {}", file, line_of_row(lines, row));
+    return lines.empty() ? fmt::format("{}: sample {}", file, row)
+                         : fmt::format("{}: line {}", file, line_of_row(lines, row));
   }
 };
 
@@ -92,8 +95,11 @@ Result<Table> read_table(const Source& source, const Columns& columns,
     for (std::size_t row = 0; row < block.rows(); ++row) {
       const double* const at = block.numbers.data() + row * block.columns;
       table.height_m.push_back(columns.height.physical(at[0]));
-      if (columns.position) table.position_m.push_back(columns.position->physical(at[block.columns - 1]));
+      if (!columns.position) continue;
+      table.position_m.push_back(columns.position->physical(at[block.columns - 1]));
+      table.printed.add(at[block.columns - 1]);
     }
+    if (block.landmarks == nullptr) return {};  // of a MATLAB file
     for (const CsvReader::Landmark& line : *block.landmarks)
       if (table.lines.empty() || line.row > table.lines.back().row) table.lines.push_back(line);
     return {};
@@ -108,8 +114,26 @@ void turn_round(HeightProfile& profile, std::vector<double>& position_m) {
   profile.direction = -1;
 }
 
-// Finds the even grid from the first position to the last, and the largest deviation from it.
-Result<void> find_grid(HeightProfile& profile, Table& table, const std::string& file) {
+// Whether the positions are those of an even grid, rounded to `digit_m`; then the grid is fitted to them.
+// Positions that are even from the first to the last need no fit.
+bool is_rounded_grid(HeightProfile& profile, const std::vector<double>& x, double digit_m) {
+  constexpr double kEven = 1e-6;  // of the pitch
+  double off_m = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    off_m = std::max(off_m, std::abs(x[i] - x.front() - static_cast<double>(i) * profile.pitch_m));
+  if (off_m <= kEven * profile.pitch_m) return false;
+  const NearestGrid grid = nearest_grid(x);
+  const double half_m = digit_m / 2 * (1 + 1e-6) + 1e-12 * std::max(std::abs(x.front()), std::abs(x.back()));
+  const bool long_enough =
+      half_m <= kMostUnevenness * grid.pitch || x.back() - x.front() >= kFewestPrintedDigits * digit_m;
+  if (!(grid.pitch > 0) || grid.deviation > half_m || !long_enough) return false;
+  profile.origin_m = grid.origin, profile.pitch_m = grid.pitch, profile.unevenness_m = grid.deviation;
+  return true;
+}
+
+// Finds the even grid, of rounded positions or from the first position to the last, and the largest deviation
+// from it.
+Result<void> find_grid(HeightProfile& profile, Table& table, double digit_m, const std::string& file) {
   std::vector<double>& x = table.position_m;
   if (x.back() < x.front()) turn_round(profile, x);
   const auto last = static_cast<double>(x.size() - 1);
@@ -118,6 +142,7 @@ Result<void> find_grid(HeightProfile& profile, Table& table, const std::string& 
   if (profile.pitch_m == 0)
     return fail(ErrorKind::unsuitable, "the position does not change", file,
                 "a profile needs heights at increasing positions; check that this is the right column");
+  if (is_rounded_grid(profile, x, digit_m)) return {};
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double off_m = std::abs(x[i] - (x.front() + static_cast<double>(i) * profile.pitch_m));
     profile.unevenness_m = std::max(profile.unevenness_m, off_m);
@@ -131,7 +156,7 @@ Result<void> find_grid(HeightProfile& profile, Table& table, const std::string& 
   return {};
 }
 
-Result<HeightProfile> profile_of(const ImportRequest& request, Table table) {
+Result<HeightProfile> profile_of(const ImportRequest& request, const Columns& columns, Table table) {
   HeightProfile profile;
   if (table.height_m.size() < 2)
     return fail(ErrorKind::unsuitable, "a profile needs at least two heights", request.file);
@@ -141,7 +166,8 @@ Result<HeightProfile> profile_of(const ImportRequest& request, Table table) {
     if (*request.pitch_m > 0) return profile;
     return fail(ErrorKind::usage, "a pitch must be above 0", "--pitch");
   }
-  const auto found = find_grid(profile, table, request.file);
+  const double digit_m = table.printed.value() * std::abs(columns.position->scale);
+  const auto found = find_grid(profile, table, digit_m, request.file);
   return found ? Result<HeightProfile>(std::move(profile)) : schema::forward_error(found);
 }
 
@@ -154,16 +180,22 @@ Result<HeightProfile> read_profile_table(const ImportRequest& request,
                 "a profile must be a CSV table, a MATLAB file or XML");
   const auto columns = columns_of(request, *source);
   TACTO_TRY(columns);
+  const auto preamble = preamble_of(*source);
+  TACTO_TRY(preamble);
   auto table = read_table(*source, *columns, progress);
-  return table ? profile_of(request, std::move(*table)) : schema::forward_error(table);
+  TACTO_TRY(table);
+  auto profile = profile_of(request, *columns, std::move(*table));
+  TACTO_TRY(profile);
+  profile->notes = fmt::format("{}", fmt::join(*preamble, "; "));
+  profile->roughness = compare_roughness(*preamble, profile->height_m);
+  return profile;
 }
 
-Result<void> check_xml_options(const ImportRequest& request) {
+Result<void> check_no_channels(const ImportRequest& request) {
   if (request.channels.empty() && !request.pitch_m && !request.rate_hz && request.time_column.empty())
     return {};
-  return fail(ErrorKind::usage,
-              "an XML profile already contains the channel of its heights and their spacing", request.file,
-              "omit --channel, --pitch, --rate and --time-column");
+  return fail(ErrorKind::usage, "the file already contains the channel of its heights and their spacing",
+              request.file, "omit --channel, --pitch, --rate and --time-column");
 }
 
 Result<schema::Texture> texture_of(const HeightProfile& profile, const ImportRequest& request) {
@@ -306,18 +338,81 @@ Result<HeightProfile> read_profile_xml(const std::string& file) try {
   return fail(ErrorKind::malformed, "is too large to be read", file);
 }
 
+// Consecutive points of a line, counted from 0.
+struct Section {
+  std::size_t first = 0, count = 0;
+};
+
+Result<Section> section_of(const ImportRequest& request, const schema::X3pLine& line) {
+  if (request.points.empty()) return Section{0, line.height_m.size()};
+  const std::string_view text = request.points;
+  const auto dots = text.find("..");
+  std::size_t from = 0, to = 0;
+  const auto number = [](std::string_view part, std::size_t& value) {
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    return error == std::errc() && end == part.data() + part.size();
+  };
+  const bool read = dots != std::string_view::npos && number(text.substr(0, dots), from) &&
+                    number(text.substr(dots + 2), to);
+  if (read && 1 <= from && from < to && to <= line.height_m.size()) return Section{from - 1, to - from + 1};
+  return fail(ErrorKind::usage, fmt::format("'{}' is no section of {} points", text, line.height_m.size()),
+              "--points", fmt::format("write FIRST..LAST, for example 1..{}", line.height_m.size()));
+}
+
+Result<void> refuse_holes(const ImportRequest& request, const schema::X3pLine& line, const Section& section) {
+  std::size_t holes = 0;
+  Section whole, longest;
+  for (std::size_t i = section.first; i < section.first + section.count; ++i) {
+    const bool hole = std::isnan(line.height_m[i]);
+    holes += hole ? 1 : 0;
+    whole = hole ? Section{i + 1, 0} : Section{whole.count == 0 ? i : whole.first, whole.count + 1};
+    if (whole.count > longest.count) longest = whole;
+  }
+  if (holes == 0) return {};
+  const std::string what =
+      fmt::format("{} of {} points have no height in {}", holes, section.count, line.name);
+  if (longest.count < 2) return fail(ErrorKind::unsuitable, what, request.file, "choose another line");
+  return fail(ErrorKind::unsuitable, what, request.file,
+              fmt::format("heights are not filled in: the longest whole section is --points {}..{}",
+                          longest.first + 1, longest.first + longest.count));
+}
+
+Result<HeightProfile> read_profile_x3p(const ImportRequest& request) {
+  TACTO_TRY(check_no_channels(request));
+  const auto line = schema::read_x3p(request.file, {request.row, request.column});
+  TACTO_TRY(line);
+  const auto section = section_of(request, *line);
+  TACTO_TRY(section);
+  TACTO_TRY(refuse_holes(request, *line, *section));
+  if (section->count < 2)
+    return fail(ErrorKind::unsuitable, "a profile needs at least two heights", request.file);
+  HeightProfile profile;
+  profile.pitch_m = line->pitch_m;
+  profile.origin_m = line->origin_m + static_cast<double>(section->first) * line->pitch_m;
+  const auto begin = line->height_m.begin() + static_cast<std::ptrdiff_t>(section->first);
+  profile.height_m.assign(begin, begin + static_cast<std::ptrdiff_t>(section->count));
+  profile.notes = fmt::format("{}; {}", line->notes, line->name);
+  if (!request.points.empty()) profile.notes += ", points " + request.points;
+  return profile;
+}
+
 }  // namespace
 
+bool is_x3p(const std::string& file) {
+  return file.ends_with(".x3p") || file.ends_with(".X3P");
+}
+
 bool is_profile_request(const ImportRequest& request) {
-  if (is_xml(request.file) || request.pitch_m) return true;
+  if (is_xml(request.file) || is_x3p(request.file) || request.pitch_m) return true;
   return names(request.channels, "height") && names(request.channels, "position") && !request.rate_hz &&
          request.time_column.empty();
 }
 
 Result<HeightProfile> read_height_profile(const ImportRequest& request,
                                           const std::function<void(double)>& progress) {
+  if (is_x3p(request.file)) return read_profile_x3p(request);
   if (!is_xml(request.file)) return read_profile_table(request, progress);
-  TACTO_TRY(check_xml_options(request));
+  TACTO_TRY(check_no_channels(request));
   return read_profile_xml(request.file);
 }
 

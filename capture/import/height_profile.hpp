@@ -8,15 +8,20 @@
 #include <vector>
 
 #include "capture/import/import.hpp"
+#include "capture/import/stylus_table.hpp"
 #include "data-schema/base/error.hpp"
 #include "data-schema/texture/texture.hpp"
 
 namespace tacto::capture {
 
-/// The largest deviation of a position from the even grid, in pitches: positions are often printed with few
-/// digits. Heights are assumed to be at the positions of the grid. A profile with a larger deviation is not
-/// even.
+/// The largest deviation of a position from the even grid, in pitches. Heights are assumed to be at the
+/// positions of the grid. A profile with a larger deviation is not even, unless its positions are those of
+/// nearest_grid(), rounded to their last printed digit.
 inline constexpr double kMostUnevenness = 0.25;
+
+/// A pitch that is fitted to positions which are printed more coarsely is known to 1 % if the profile is at
+/// least so many printed digits long.
+inline constexpr double kFewestPrintedDigits = 100;
 
 /// Heights on an even grid, and the description in their file.
 struct HeightProfile {
@@ -25,18 +30,23 @@ struct HeightProfile {
   int direction = 1;    ///< -1: it was measured backwards and has been reversed
   std::vector<double> height_m;
   double unevenness_m = 0;     ///< the largest deviation of a position from the grid
-  std::string surface, notes;  ///< the object and the author of the measurement
+  std::string surface, notes;  ///< the object and the author of the measurement, lines before a table
+  std::vector<StatedRoughness> roughness = {};  ///< of the lines before a table
 };
 
-/// Whether the request is for a profile in space and not a recording in time: an XML file, a pitch, or a
-/// height and a position without a rate and without a time column.
+/// Whether the file is a surface or profile of ISO 25178-72, by its ending .x3p.
+bool is_x3p(const std::string& file);
+
+/// Whether the request is for a profile in space and not a recording in time: an XML or X3P file, a pitch, or
+/// a height and a position without a rate and without a time column.
 bool is_profile_request(const ImportRequest& request);
 
-/// Reads the XML of the National Physical Laboratory's profiles (DATA/DATAFILE: UNITS, NUMPOINTS, SPACING,
-/// DATA_POINT_VALUES), or a table with a height channel and either a position channel or request.pitch_m.
-/// Errors: usage (options that do not agree); not_found; malformed, with line and column, or with the XML's
-/// element; unsuitable, with the line, for positions that do not change, that reverse, or that deviate from
-/// the even grid by more than kMostUnevenness.
+/// Reads a line of an X3P file (schema::read_x3p), all of it or request.points, the XML of the National
+/// Physical Laboratory's profiles (DATA/DATAFILE: UNITS, NUMPOINTS, SPACING, DATA_POINT_VALUES), or a table
+/// with a height channel and either a position channel or request.pitch_m. Errors: usage (options that do not
+/// agree); not_found; malformed, with line and column, or with the XML's element; unsuitable, with the line,
+/// for positions that do not change, that reverse, or that deviate from the even grid by more than
+/// kMostUnevenness, and for points of an X3P file without a height, with the longest section that has none.
 schema::Result<HeightProfile> read_height_profile(const ImportRequest& request,
                                                   const std::function<void(double)>& progress);
 

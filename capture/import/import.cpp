@@ -16,6 +16,7 @@
 #include "capture/import/import_plan.hpp"
 #include "capture/import/outlier_mask.hpp"
 #include "capture/import/plausibility.hpp"
+#include "capture/import/stream_clock.hpp"
 #include "capture/import/uniform_clock.hpp"
 #include "capture/record/store_strokes.hpp"
 
@@ -62,6 +63,8 @@ class Import {
  private:
   void choose_derived();
   Result<void> first_clock();
+  Result<void> read_stream_clock();
+  std::vector<schema::Gap> gaps_of_times() const;
   Result<void> find_outliers();
   Result<void> survey(const RowBlock& block);
   Result<void> note_unknown(const RowBlock& block);
@@ -93,6 +96,7 @@ class Import {
   std::vector<std::uint64_t> unknown_rows_;  // only with the mask: rows that lack a value
   std::uint64_t rows_ = 0;
   ClockFinder clock_;
+  std::optional<StreamClock> stream_clock_;
   bool clock_known_ = true, decimal_comma_ = false;
   std::vector<double> times_s_, interleaved_;
   std::optional<schema::RecordingWriter> writer_;
@@ -128,6 +132,7 @@ void describe_clock(RecordingHeader& header, const ImportRequest& request, const
     return;
   }
   const auto& given = request.rate_hz;
+  if (!given && plan.source.xdf) return;  // read_stream_clock() describes it
   header.sample_rate_hz = given ? *given : *plan.source.rate_hz;
   header.clock = given ? "nominal rate, given at import" : "rate of the sound file";
   if (given && plan.source.rate_hz)
@@ -229,6 +234,21 @@ Result<void> Import::first_clock() {
   return {};
 }
 
+Result<void> Import::read_stream_clock() {
+  auto clock = find_stream_clock(request_.file, *plan_.source.xdf_stream, share(0, 0.3));
+  TACTO_TRY(clock);
+  header_.sample_rate_hz = clock->clock.rate_hz;
+  header_.gaps = clock->clock.gaps;
+  header_.clock = clock->words;
+  stream_clock_ = std::move(*clock);
+  return {};
+}
+
+std::vector<schema::Gap> Import::gaps_of_times() const {
+  if (stream_clock_) return stream_clock_->clock.gaps;
+  return plan_.time ? clock_.clock().gaps : std::vector<schema::Gap>{};
+}
+
 // Rows that lack a value are left out, too; but where a row is in time must be known.
 Result<void> Import::note_unknown(const RowBlock& block) {
   for (std::size_t i = 0; i < block.numbers.size(); ++i) {
@@ -284,7 +304,7 @@ Result<void> Import::mask_what_was_found() {
   TACTO_TRY(mask);
   mask_ = std::move(*mask);
   if (plan_.time) header_.sample_rate_hz = clock_.clock().rate_hz;
-  header_.gaps = mask_.gaps_with(plan_.time ? clock_.clock().gaps : std::vector<schema::Gap>{});
+  header_.gaps = mask_.gaps_with(gaps_of_times());
   clock_known_ = true;
   return {};
 }
@@ -378,9 +398,23 @@ Result<void> Import::second_pass(double from, double to) {
   return {};
 }
 
+void add_stream_warnings(RecordingHeader& header, const Source& source, bool rate_given) {
+  const schema::XdfStream& stream = *source.xdf_stream;
+  if (!source.xdf->cut.empty()) header.warnings.push_back(source.xdf->cut);
+  if (!stream.stated_samples)
+    header.warnings.push_back(
+        "the stream has no footer: its recording was not ended, or the file was cut; samples may be "
+        "missing");
+  else if (*stream.stated_samples != stream.samples)
+    header.warnings.push_back(fmt::format("the stream has {} samples, but its footer states {}",
+                                          stream.samples, *stream.stated_samples));
+  if (rate_given)
+    header.warnings.push_back("the rate is the one given; the times of the stream and its gaps are not read");
+}
+
 void Import::add_warnings(RecordingHeader& header) const {
   RecordingHeader source = header;  // the header before rows were left out
-  if (request_.mask_outliers) source.gaps = plan_.time ? clock_.clock().gaps : std::vector<schema::Gap>{};
+  if (request_.mask_outliers) source.gaps = gaps_of_times();
   const auto time_of = [&](std::uint64_t sample) {
     return fmt::format("{:.6g} s", schema::frame_time_s(source, sample));
   };
@@ -388,6 +422,8 @@ void Import::add_warnings(RecordingHeader& header) const {
     header.warnings.push_back(fmt::format(
         "the rate is the one given; the table's times are not read: --time-column '{}' takes it from them",
         plan_.source.columns[*column]));
+  if (plan_.source.xdf_stream) add_stream_warnings(header, plan_.source, request_.rate_hz.has_value());
+  if (stream_clock_) std::ranges::copy(stream_clock_->warnings, std::back_inserter(header.warnings));
   for (const ChannelSpec& channel : plan_.channels)
     if (!channel.source.other_unit.empty())
       header.warnings.push_back(
@@ -442,6 +478,7 @@ Result<Imported> Import::close() {
 }
 
 Result<Imported> Import::run() {
+  if (plan_.source.xdf_stream && !plan_.time && !request_.rate_hz) TACTO_TRY(read_stream_clock());
   if (request_.mask_outliers) {
     TACTO_TRY(find_outliers());
   } else if (plan_.time && derived_) {

@@ -2,6 +2,7 @@
 // Import of another program's file as a recording: unchanged numbers, and a sidecar with their meaning.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -21,7 +22,10 @@ struct ImportRequest {
   std::optional<double> rate_hz;      ///< of a table; of audio, if its header is wrong
   std::size_t skip_lines = 0;         ///< of a table: lines before its header or first row
   std::string time_column;            ///< instead of rate_hz, "time_s*1s"
-  std::optional<double> pitch_m;      ///< of a height profile or map, see height_profile.hpp
+  std::string stream = {};            ///< of an XDF file: a name or number
+  std::optional<std::uint64_t> row = std::nullopt, column = std::nullopt;  ///< of an X3P surface, from 1
+  std::string points = {};                                                 ///< of its line, "121..480"
+  std::optional<double> pitch_m;                       ///< of a height profile or map, see height_profile.hpp
   std::optional<double> full_height_m = std::nullopt;  ///< of a PNG: the height of white; black is 0
   bool allow_8bit = false;                             ///< of a PNG: also fewer than 16 bits
   std::optional<double> speed_mps;                     ///< results in a nominal position

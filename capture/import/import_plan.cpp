@@ -62,7 +62,7 @@ std::string clock_example(const Source& source) {
 Result<void> check_clock(const ImportRequest& request, const Source& source) {
   if (request.rate_hz && !request.time_column.empty())
     return fail(ErrorKind::usage, "both --rate and --time-column were given", {}, "give only one of them");
-  if (request.rate_hz || !request.time_column.empty() || source.rate_hz) return {};
+  if (request.rate_hz || !request.time_column.empty() || source.rate_hz || source.xdf) return {};
   return fail(ErrorKind::usage, "the rate of the table is not known", source.file,
               "add " + clock_example(source));
 }
@@ -131,7 +131,7 @@ ChannelSpec whole_signal(const Source& source) {
 
 Result<std::vector<ChannelSpec>> choose_channels(const ImportRequest& request, const Source& source) {
   if (!request.channels.empty()) return parse_channels(request.channels, {source.columns, source.units});
-  if (source.csv || source.mat || source.columns.size() != 1) return no_channels(source);
+  if (source.csv || source.mat || source.xdf || source.columns.size() != 1) return no_channels(source);
   return std::vector{whole_signal(source)};
 }
 
@@ -179,6 +179,20 @@ Result<void> check_metadata(const ImportRequest& request) {
   return check_date(request.calibrated, "--calibrated");
 }
 
+Result<void> check_stream(const ImportRequest& request, const Source& source) {
+  if (!request.stream.empty() && !source.xdf)
+    return fail(ErrorKind::usage, "is for XDF files", "--stream", "omit it: this is another file");
+  if (!source.xdf || source.xdf_stream) return {};
+  std::string names;
+  for (const schema::XdfStream& stream : source.xdf->streams)
+    if (stream.refusal.empty())
+      names += fmt::format("{}--stream '{}'", names.empty() ? "" : " or ", stream.name);
+  if (!names.empty())
+    return fail(ErrorKind::usage, "has several streams", source.file, "choose one: " + names);
+  return fail(ErrorKind::unsuitable, "has no stream of numbers", source.file,
+              "see what it has with 'tactograph import FILE', without other options");
+}
+
 Result<void> check_without_source(const ImportRequest& request) {
   if (const auto rate = check_rate(request.rate_hz); !rate) return rate;
   return check_metadata(request);
@@ -194,8 +208,9 @@ Result<void> check_with_source(const ImportRequest& request, const ImportPlan& p
 
 Result<ImportPlan> plan_import(const ImportRequest& request) {
   TACTO_TRY(check_without_source(request));
-  auto source = open_source(request.file, request.skip_lines);
+  auto source = open_source(request.file, request.skip_lines, request.stream);
   TACTO_TRY(source);
+  TACTO_TRY(check_stream(request, *source));
   TACTO_TRY(check_refused(request, *source));
   auto channels = choose_channels(request, *source);
   TACTO_TRY(channels);
@@ -210,9 +225,9 @@ Result<ImportPlan> plan_import(const ImportRequest& request) {
 }
 
 std::string example_options(const Source& source) {
-  const std::string clock = source.rate_hz           ? ""
-                            : time_column_of(source) ? clock_example(source) + " "
-                                                     : "--rate 10kHz ";
+  const std::string clock = source.rate_hz || source.xdf ? ""
+                            : time_column_of(source)     ? clock_example(source) + " "
+                                                         : "--rate 10kHz ";
   return clock + channels_example(source);
 }
 

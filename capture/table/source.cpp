@@ -17,6 +17,7 @@
 #include "capture/table/input_file.hpp"
 #include "data-schema/base/column_unit.hpp"
 #include "data-schema/exchange/mat_file.hpp"
+#include "data-schema/exchange/xdf_file.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/wav/wav.hpp"
 
@@ -54,7 +55,7 @@ tl::unexpected<schema::Error> not_finite(const Source& source, std::uint64_t fra
                                          double value) {
   return fail(ErrorKind::malformed, std::isnan(value) ? "is NaN" : "is infinite",
               fmt::format("{}: sample {}, {}", source.file, frame, column_in_words(source.columns, column)),
-              source.mat && std::isnan(value)
+              (source.mat || source.xdf) && std::isnan(value)
                   ? "unknown values are not filled in: --mask-outliers makes gaps of their rows"
                   : "import the part without it: unknown values are not filled in");
 }
@@ -67,7 +68,8 @@ Result<void> choose(const Source& source, std::span<const std::size_t> columns, 
   for (std::size_t i = 0; i < piece.size(); i += channels)
     for (const std::size_t column : columns) {
       const double value = piece[i + column];
-      if (!std::isfinite(value)) return not_finite(source, first + i / channels, column, value);
+      const bool passed_on = source.xdf && source.unknown_as_nan && std::isnan(value);
+      if (!std::isfinite(value) && !passed_on) return not_finite(source, first + i / channels, column, value);
       rows.push_back(value);
     }
   return {};
@@ -81,7 +83,7 @@ Result<Source> open_audio(const std::string& file) {
     schema::Error error = reader.error();
     if (error.remedy.empty())
       error.remedy =
-          "import reads tables (CSV), MATLAB files and the formats of libsndfile (WAV, FLAC, OGG ...)";
+          "import reads tables (CSV), MATLAB files, XDF files and the formats of libsndfile (WAV, FLAC ...)";
     return tl::unexpected(error);
   }
   const schema::WavInfo& info = reader->info();
@@ -156,6 +158,71 @@ Result<void> read_mat_source(const Source& source, std::span<const std::size_t> 
   return {};
 }
 
+std::string streams_in_words(const std::vector<schema::XdfStream>& streams) {
+  std::string words;
+  for (const schema::XdfStream& stream : streams)
+    words += fmt::format("{}{} '{}'", words.empty() ? "" : ", ", stream.id, stream.name);
+  return words;
+}
+
+// The stream of a name or number; without one the only stream of numbers. No stream if there are several.
+Result<std::optional<schema::XdfStream>> chosen_stream(const std::string& file, const std::string& wanted,
+                                                       const std::vector<schema::XdfStream>& streams) {
+  std::vector<const schema::XdfStream*> found;
+  for (const schema::XdfStream& stream : streams)
+    if (wanted.empty() ? stream.refusal.empty() : stream.name == wanted) found.push_back(&stream);
+  for (const schema::XdfStream& stream : streams)
+    if (found.empty() && wanted == std::to_string(stream.id)) found.push_back(&stream);
+  const std::string all = streams_in_words(streams);
+  if (wanted.empty() && found.size() != 1) return std::optional<schema::XdfStream>();
+  if (found.empty())
+    return fail(ErrorKind::usage, fmt::format("there is no stream '{}'", wanted), file,
+                "the streams are: " + all);
+  if (found.size() > 1)
+    return fail(ErrorKind::usage, fmt::format("several streams have the name '{}'", wanted), file,
+                "choose one by its number: " + all);
+  if (!found[0]->refusal.empty())
+    return fail(ErrorKind::unsuitable, found[0]->refusal, fmt::format("{}: stream '{}'", file, wanted),
+                "import takes streams of numbers");
+  return std::optional(*found[0]);
+}
+
+Result<Source> open_xdf(const std::string& file, std::size_t skip, const std::string& wanted) {
+  if (skip > 0)
+    return fail(ErrorKind::usage, "has no lines to skip", file, "omit --skip: this is an XDF file");
+  auto contents = schema::xdf_contents(file);
+  TACTO_TRY(contents);
+  Source source{file, {}, std::nullopt, std::nullopt, 0, "XDF 1.0 (Lab Streaming Layer)"};
+  auto stream = chosen_stream(file, wanted, contents->streams);
+  TACTO_TRY(stream);
+  source.xdf = std::move(*contents);
+  source.xdf_stream = std::move(*stream);
+  if (!source.xdf_stream) return source;
+  source.columns = source.xdf_stream->labels;
+  for (std::size_t k = 0; k < source.columns.size(); ++k) {
+    const std::string& unit = source.xdf_stream->units[k];
+    source.units.push_back(unit.empty() ? schema::split_unit(source.columns[k]).unit : unit);
+  }
+  return source;
+}
+
+Result<void> read_xdf_source(const Source& source, std::span<const std::size_t> columns,
+                             const RowHandler& take, const std::function<void(double)>& progress) {
+  std::vector<double> rows;
+  std::uint64_t done = 0;
+  const auto take_block = [&](std::span<const double> times_s,
+                              std::span<const double> numbers) -> Result<void> {
+    TACTO_TRY(choose(source, columns, done, numbers, rows));
+    TACTO_TRY(take({rows, columns.size(), done}));
+    done += times_s.size();
+    return {};
+  };
+  TACTO_TRY(schema::read_xdf(source.file, *source.xdf_stream, take_block, progress));
+  if (done > 0) return {};
+  return fail(ErrorKind::malformed, "contains no samples",
+              fmt::format("{}: stream '{}'", source.file, source.xdf_stream->name), source.xdf->cut);
+}
+
 // A file of another program that import does not read.
 struct ForeignFormat {
   std::string_view what;      // "a TDMS file of LabVIEW"
@@ -175,6 +242,7 @@ constexpr std::string_view kHdf5 =
     "write its columns as CSV, in Python: numpy.savetxt('trial.csv', numpy.column_stack([t, f]), "
     "delimiter=','); "
     "then import that";
+constexpr std::string_view kX3p = "with the ending .x3p, import takes it as a height profile";
 constexpr std::string_view kUnpack = "unpack it, then import its contents";
 constexpr std::string_view kExport = "export it as CSV in the program that made it, then import that";
 constexpr std::string_view kDownload = "it is a web page: download the file itself";
@@ -224,8 +292,8 @@ constexpr Magic kMagics[] = {
 
 // The kind of a ZIP archive is recognised from the names of its files, which are not compressed.
 constexpr Magic kArchived[] = {
-    {"bindata/"sv, {"an X3P height profile (ISO 25178-72)", kProfile}},
-    {"main.xml"sv, {"an X3P height profile (ISO 25178-72)", kProfile}},
+    {"bindata/"sv, {"an X3P height profile (ISO 25178-72)", kX3p}},
+    {"main.xml"sv, {"an X3P height profile (ISO 25178-72)", kX3p}},
     {"xl/"sv, {"an Excel workbook", kSheet}},
     {"application/vnd.oasis.opendocument.spreadsheet"sv, {"an OpenDocument sheet", kSheet}},
     {".npy"sv, {"an archive of NumPy arrays", kHdf5}},
@@ -237,7 +305,7 @@ struct Ending {
 };
 
 constexpr Ending kEndings[] = {
-    {".x3p", {"an X3P height profile (ISO 25178-72)", kProfile}},
+    {".x3p", {"an X3P height profile (ISO 25178-72)", kX3p}},
     {".plux", {"a height map of Sensofar", kProfile}},
     {".xlsx", {"an Excel workbook", kSheet}},
     {".xlsm", {"an Excel workbook", kSheet}},
@@ -530,7 +598,7 @@ std::string columns_in_words(const std::vector<std::string>& columns) {
   return list;
 }
 
-Result<Source> open_source(const std::string& file, std::size_t skip) {
+Result<Source> open_source(const std::string& file, std::size_t skip, const std::string& stream) {
   auto input = InputFile::open(file);
   TACTO_TRY(input);
   std::string head(kLayoutBytes, '\0');
@@ -541,6 +609,7 @@ Result<Source> open_source(const std::string& file, std::size_t skip) {
   TACTO_TRY(refuse_own(file, head));
   if (schema::is_mat(head) && !is_sound_in_mat(head)) return open_mat(file, skip);
   if (schema::is_mat(head)) return open_audio(file);
+  if (schema::is_xdf(head)) return open_xdf(file, skip, stream);
   if (const auto foreign = foreign_format(file, head)) return open_foreign(file, *foreign, head);
   if (is_binary(head)) return open_sound(file, skip);
   if (lower_case(file).ends_with(".mat"))
@@ -553,7 +622,7 @@ Result<Source> open_source(const std::string& file, std::size_t skip) {
 
 namespace {
 
-// libsndfile and matio read the file themselves, so its bytes are read once more for the sum.
+// Other readers read the file themselves, so its bytes are read once more for the sum.
 Result<void> add_file(const std::string& file, schema::Sha256& sum) {
   auto input = InputFile::open(file);
   TACTO_TRY(input);
@@ -571,8 +640,9 @@ Result<void> add_file(const std::string& file, schema::Sha256& sum) {
 Result<void> read_source(const Source& source, std::span<const std::size_t> columns, const RowHandler& take,
                          const std::function<void(double)>& progress, schema::Sha256* sum) {
   if (source.csv) return TableStages(source, columns, sum).run(take, progress);
-  const auto read = source.mat ? read_mat_source(source, columns, take, progress)
-                               : read_audio(source, columns, take, progress);
+  const auto read = source.mat          ? read_mat_source(source, columns, take, progress)
+                    : source.xdf_stream ? read_xdf_source(source, columns, take, progress)
+                                        : read_audio(source, columns, take, progress);
   return read && sum != nullptr ? add_file(source.file, *sum) : read;
 }
 

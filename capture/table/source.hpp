@@ -16,6 +16,7 @@
 #include "data-schema/base/error.hpp"
 #include "data-schema/base/sha256.hpp"
 #include "data-schema/exchange/mat_file.hpp"
+#include "data-schema/exchange/xdf_file.hpp"
 
 namespace tacto::capture {
 
@@ -29,8 +30,10 @@ struct Source {
   std::string format;                ///< for messages: "table, comma", "WAV (Microsoft), Signed 16 bit PCM"
   std::vector<std::string> units = {};  ///< of a table's columns, as it writes them; empty if it has none
   std::optional<schema::MatContents> mat =
-      std::nullopt;             ///< of a MATLAB file; without csv and mat it is audio
-  bool unknown_as_nan = false;  ///< of a MATLAB file: NaN is passed on, not refused
+      std::nullopt;             ///< of a MATLAB file; without csv, mat and xdf it is audio
+  bool unknown_as_nan = false;  ///< of a MATLAB file or a stream: NaN is passed on, not refused
+  std::optional<schema::XdfContents> xdf = std::nullopt;       ///< of a recording of the Lab Streaming Layer
+  std::optional<schema::XdfStream> xdf_stream = std::nullopt;  ///< of its streams the one that is read
 };
 
 /// Consecutive rows of a source: the numbers of the selected columns, exactly as in the file (integer audio:
@@ -50,11 +53,13 @@ struct RowBlock {
 
 using RowHandler = std::function<schema::Result<void>(const RowBlock&)>;
 
-/// Opens a file: a MATLAB file, audio if libsndfile can read it, otherwise a table that begins after `skip`
-/// lines. Errors: not_found; malformed, if it is none of them, or a MATLAB file that was cut; unsuitable, for
-/// files of tactograph itself and for other known kinds (foreign_format); usage, if lines are to be skipped
-/// in audio or in a MATLAB file.
-schema::Result<Source> open_source(const std::string& file, std::size_t skip = 0);
+/// Opens a file: a MATLAB or XDF file, audio if libsndfile can read it, otherwise a table that begins after
+/// `skip` lines. `stream` is a name or number in an XDF file; without it the only stream of numbers is taken,
+/// and none of several. Errors: not_found; malformed, if it is none of them, or a MATLAB file that was cut;
+/// unsuitable, for files of tactograph itself, for other known kinds (foreign_format) and for a stream of
+/// text; usage, if lines are to be skipped in a file without lines, or a stream does not exist.
+schema::Result<Source> open_source(const std::string& file, std::size_t skip = 0,
+                                   const std::string& stream = {});
 
 /// Reads columns (0-based, without duplicates) block by block; `sum`, if given, receives the bytes of the
 /// file. `progress` receives 0 to 1. Errors: those of `take`; not_found; malformed, with line and column or

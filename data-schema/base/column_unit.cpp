@@ -87,6 +87,7 @@ NameWithUnit split_unit(std::string_view name) {
 std::optional<Unit> known_unit(std::string_view text, Dimension target) {
   const std::string_view symbol = symbol_of(text);
   if (symbol.empty()) return std::nullopt;
+  if (symbol == "\u00C5") return Unit{symbol, Dimension::length, 1e-10};  // heights of stylus instruments
   if (const auto worth = parse_quantity("1 " + std::string(symbol), target))
     return Unit{symbol, target, *worth};
   const auto unit = parse_unit(symbol);

@@ -48,6 +48,16 @@ def write_mats():
         write("mat", name, b"MATLAB 5.0 MAT-file".ljust(116) + file.getvalue()[116:])  # without the date
 
 
+def write_xdfs():
+    import numpy as np
+    import xdf_maker as xdf
+    begin = xdf.file_header() + xdf.header(1, "F", 2, 1000, "int16", [("Fx", "N"), ("Fz", "N")]) + xdf.header(2, "M", 1, 0, "string")
+    end = xdf.clock_offset(1, 5, 1) + xdf.boundary() + xdf.footer(1, 6)
+    write("xdf", "int16", begin + xdf.samples(1, np.arange(12, dtype="<i2").reshape(6, 2), np.arange(6) / 1000, every=3) + end)
+    begin = xdf.file_header() + xdf.header(1, "F", 1, 1000, "int64")
+    write("xdf", "int64", begin + xdf.samples(1, 2**53 - 3 + np.arange(6, dtype="<i8").reshape(6, 1), np.arange(6) / 1000, every=1) + end)
+
+
 def write_tables():
     rows = [(i / 1000, 0.1 * (i % 5), 40 * i) for i in range(40)]
     lines = "".join(f"{t},{force},{count}\n" for t, force, count in rows)
@@ -75,5 +85,6 @@ def write_sidecars(tactograph):
 if __name__ == "__main__":
     write_wavs()
     write_mats()
+    write_xdfs()
     write_tables()
     write_sidecars(str(pathlib.Path(sys.argv[1]).resolve()))

@@ -17,8 +17,9 @@ MAY_INCLUDE = {
     "data-schema/corpus": "data-schema/{base json}",
     "data-schema/device": "data-schema/{base json}",
     "data-schema/experiment": "data-schema/{base files json}",
-    "data-schema/exchange": "data-schema/{base exchange/matio texture}",
+    "data-schema/exchange": "data-schema/{base exchange/matio exchange/zip files texture}",
     "data-schema/exchange/matio": "",
+    "data-schema/exchange/zip": "",
     "data-schema/files": "data-schema/base",
     "data-schema/height": "data-schema/{base files spectrogram}",
     "data-schema/json": "data-schema/{base files}",
@@ -61,7 +62,7 @@ MAY_INCLUDE = {
         "capture/{calibrate doctor import record table} data-schema/{base cli command files height kinds recording report} "
         "firmware-host/{. sim/device}",
     "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. core/wire link}",
-    "capture/import": "capture/{calibrate record table} data-schema/{base calibration files height recording texture}",
+    "capture/import": "capture/{calibrate record table} data-schema/{base calibration exchange files height recording texture}",
     "capture/record":
         "capture/table data-schema/{base calibration files recording} firmware-host/link spatial/strokes",
     "capture/table": "data-schema/{base exchange files recording wav}",

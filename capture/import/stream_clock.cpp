@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/import/stream_clock.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "data-schema/recording/clock_fit.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::ErrorKind;
+using schema::fail;
+using schema::Result;
+
+constexpr std::string_view kWithoutTimes = "--rate imports its samples as even, without their times";
+
+tl::unexpected<schema::Error> was_reset(const std::string& where, double time_s, double jump_s) {
+  return fail(ErrorKind::unsuitable,
+              fmt::format("the stream's clock was reset at {:.6f} s (it jumped by {:.6g} s)", time_s, jump_s),
+              where,
+              "write the part before or after it to a MATLAB file with pyxdf and import that, or: " +
+                  std::string(kWithoutTimes));
+}
+
+Result<std::vector<schema::ClockPair>> clock_pairs(const std::string& where,
+                                                   const schema::XdfStream& stream) {
+  std::vector<schema::ClockPair> pairs;
+  for (const auto& [time_s, ahead_s] : stream.clock_offsets) {
+    const schema::ClockPair pair{0, time_s, time_s + ahead_s};
+    if (!pairs.empty()) {
+      const double step_s = time_s - pairs.back().device_s;
+      const double jump_s = step_s - (pair.host_s - pairs.back().host_s);
+      if (step_s < 0 || std::abs(jump_s) > kClockReset_s) return was_reset(where, time_s, jump_s);
+    }
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+// Sums for a line through the times of the samples between two gaps, updated sample by sample (Welford), so
+// that the hours since the computer was started cost no precision.
+class Part {
+ public:
+  Part(std::uint64_t first_sample, double first_s) : first_sample_(first_sample), first_s_(first_s) {}
+  void add(double time_s) {
+    const double x = n_, y = time_s - first_s_;
+    n_ += 1;
+    const double dx = x - mean_x_, dy = y - mean_y_;
+    mean_x_ += dx / n_;
+    mean_y_ += dy / n_;
+    xx_ += dx * (x - mean_x_);
+    xy_ += dx * (y - mean_y_);
+    yy_ += dy * (y - mean_y_);
+  }
+  double xx() const { return xx_; }
+  double xy() const { return xy_; }
+  double yy() const { return yy_; }
+  std::uint64_t first_sample() const { return first_sample_; }
+  // The times of the first and last sample on a line of this slope.
+  double begin_s(double period_s) const { return first_s_ + mean_y_ - period_s * mean_x_; }
+  double end_s(double period_s) const { return begin_s(period_s) + period_s * (n_ - 1); }
+
+ private:
+  std::uint64_t first_sample_;
+  double first_s_, n_ = 0, mean_x_ = 0, mean_y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0;
+};
+
+struct ScatteredClock {
+  UniformClock clock;
+  double scatter_s = 0;  // RMS about the lines
+};
+
+// Times of a stream that has a nominal rate, whatever their scatter.
+class ScatterFit {
+ public:
+  explicit ScatterFit(double nominal_rate_hz)
+      : longest_step_s_(std::max(kLongestScatter_s, kLongestScatter_samples / nominal_rate_hz)) {}
+  void add(double time_s) {
+    if (parts_.empty() || time_s - last_s_ > longest_step_s_) parts_.emplace_back(samples_, time_s);
+    parts_.back().add(time_s);
+    last_s_ = time_s;
+    ++samples_;
+  }
+  std::optional<ScatteredClock> clock() const;
+
+ private:
+  double longest_step_s_, last_s_ = 0;
+  std::uint64_t samples_ = 0;
+  std::vector<Part> parts_;
+};
+
+std::optional<ScatteredClock> ScatterFit::clock() const {
+  double xx = 0, xy = 0, yy = 0;
+  for (const Part& part : parts_) xx += part.xx(), xy += part.xy(), yy += part.yy();
+  const double period_s = xy / xx;
+  if (!(period_s > 0)) return std::nullopt;  // also NaN: parts of one sample
+  ScatteredClock found{{1 / period_s, {}},
+                       std::sqrt(std::max(0.0, yy - period_s * xy) / static_cast<double>(samples_))};
+  std::uint64_t missing = 0;
+  for (std::size_t k = 1; k < parts_.size(); ++k) {
+    const double periods = (parts_[k].begin_s(period_s) - parts_[k - 1].end_s(period_s)) / period_s;
+    const auto count = static_cast<std::uint64_t>(std::max(0.0, std::round(periods) - 1));
+    if (count == 0) continue;
+    missing += count;
+    const std::uint64_t sample = parts_[k].first_sample();
+    found.clock.gaps.push_back({sample, sample + missing, count});
+  }
+  return found;
+}
+
+// The stream during reading.
+class Search {
+ public:
+  Search(const std::string& file, const schema::XdfStream& stream,
+         const std::function<void(double)>& progress)
+      : file_(file),
+        stream_(stream),
+        progress_(progress),
+        where_(fmt::format("{}: stream '{}'", file, stream.name)) {}
+  Result<StreamClock> run();
+
+ private:
+  Result<void> survey();
+  Result<void> locate();
+  void use_scattered(const ScatteredClock& scattered);
+  void compare_with_nominal();
+  void move_to_recorders_clock(std::span<const schema::ClockPair> pairs);
+
+  const std::string& file_;
+  const schema::XdfStream& stream_;
+  const std::function<void(double)>& progress_;
+  std::string where_;
+  ClockFinder even_;
+  std::optional<ScatterFit> scatter_;
+  StreamClock found_;
+};
+
+Result<void> Search::survey() {
+  if (stream_.nominal_rate_hz > 0) scatter_.emplace(stream_.nominal_rate_hz);
+  std::optional<double> last_s;
+  const auto take = [&](std::span<const double> times_s, std::span<const double>) -> Result<void> {
+    even_.survey(times_s);
+    for (const double time_s : times_s) {
+      if (last_s && time_s < *last_s - kClockReset_s) return was_reset(where_, *last_s, time_s - *last_s);
+      if (scatter_) scatter_->add(time_s);
+      last_s = time_s;
+    }
+    return {};
+  };
+  TACTO_TRY(schema::read_xdf(file_, stream_, take, progress_));
+  return even_.end_survey(where_);
+}
+
+Result<void> Search::locate() {
+  const auto place_of = [](std::uint64_t row) { return fmt::format("sample {}", row); };
+  return schema::read_xdf(
+      file_, stream_,
+      [&](std::span<const double> times_s, std::span<const double>) {
+        return even_.locate(times_s, place_of, where_);
+      },
+      progress_);
+}
+
+void Search::use_scattered(const ScatteredClock& scattered) {
+  found_.clock = scattered.clock;
+  found_.warnings.push_back(fmt::format(
+      "its times scatter by {:.3g} ms (RMS) about an even rate, so gaps shorter than {:g} s are not "
+      "found",
+      1e3 * scattered.scatter_s,
+      std::max(kLongestScatter_s, kLongestScatter_samples / stream_.nominal_rate_hz)));
+}
+
+void Search::compare_with_nominal() {
+  constexpr double kFarFromNominal = 0.01;  // crystals deviate by less than 0.0001
+  const double nominal_hz = stream_.nominal_rate_hz, rate_hz = found_.clock.rate_hz;
+  if (nominal_hz > 0 && std::abs(rate_hz / nominal_hz - 1) > kFarFromNominal)
+    found_.warnings.push_back(fmt::format(
+        "its times give a rate of {:.6g} Hz, but its nominal rate is {:.6g} Hz", rate_hz, nominal_hz));
+}
+
+void Search::move_to_recorders_clock(std::span<const schema::ClockPair> pairs) {
+  const auto fit = schema::fit_clock(pairs);
+  if (!fit) {
+    found_.words = "times of the stream, by its own clock (too few clock offsets, or too close in time)";
+    return;
+  }
+  found_.clock.rate_hz *= 1 + 1e-6 * fit->drift_ppm;
+  found_.words = fmt::format(
+      "times of the stream, by the recorder's clock: that of the stream is {:.3g} ppm {} ({} clock "
+      "offsets, scatter {:.3g} ms)",
+      std::abs(fit->drift_ppm), fit->drift_ppm < 0 ? "slower" : "faster", pairs.size(), 1e3 * fit->scatter_s);
+}
+
+Result<StreamClock> Search::run() {
+  const auto pairs = clock_pairs(where_, stream_);
+  TACTO_TRY(pairs);
+  TACTO_TRY(survey());
+  auto located = even_.second_pass_needed() ? locate() : Result<void>{};
+  const auto scattered = located || !scatter_ ? std::nullopt : scatter_->clock();
+  if (located) {
+    found_.clock = even_.clock();
+  } else if (scattered) {
+    use_scattered(*scattered);
+  } else {
+    located.error().remedy = kWithoutTimes;
+    return schema::forward_error(located);
+  }
+  compare_with_nominal();
+  move_to_recorders_clock(*pairs);
+  return std::move(found_);
+}
+
+}  // namespace
+
+Result<StreamClock> find_stream_clock(const std::string& file, const schema::XdfStream& stream,
+                                      const std::function<void(double)>& progress) {
+  return Search(file, stream, progress).run();
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,188 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`import` of X3P files (ISO 25178-72) that Python's zipfile and struct write: the heights of each type, holes, checksums, cuts and damage."""
+import hashlib
+import io
+import json
+import pathlib
+import random
+import zipfile
+
+import numpy as np
+import tacto
+
+USAGE, NOT_FOUND, MALFORMED, UNSUITABLE = 2, 3, 4, 5
+TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
+COLUMNS, ROWS = 40, 30
+PITCH_X_M, PITCH_Y_M = 2e-6, 3e-6
+
+
+def main_xml(letter, points, mask=None, feature="SUR", sizes=(COLUMNS, ROWS, 1), scale=1e-9, offset=5e-7, sums=True, axis="I", link=True):
+    data = "<PointDataLink>bindata/data.bin</PointDataLink>" if link else ""
+    if sums:
+        data += f"<MD5ChecksumPointData>{hashlib.md5(points).hexdigest().upper()}</MD5ChecksumPointData>"
+    if mask is not None:
+        data += f"<ValidPointsLink>bindata/valid.bin</ValidPointsLink><MD5ChecksumValidPoints>{hashlib.md5(mask).hexdigest()}</MD5ChecksumValidPoints>"
+    size = "".join(f"<Size{name}>{value}</Size{name}>" for name, value in zip("XYZ", sizes))
+    return f"""<?xml version="1.0" encoding="UTF-8"?>
+<p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2">
+<Record1><Revision>ISO5436 - 2000</Revision><FeatureType>{feature}</FeatureType><Axes>
+<CX><AxisType>{axis}</AxisType><DataType>D</DataType><Increment>{PITCH_X_M}</Increment><Offset>1e-3</Offset></CX>
+<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>{PITCH_Y_M}</Increment><Offset>0</Offset></CY>
+<CZ><AxisType>A</AxisType><DataType>{letter}</DataType><Increment>{scale}</Increment><Offset>{offset}</Offset></CZ></Axes></Record1>
+<Record2><Date>2026-11-29T12:00:00</Date><Creator>tester</Creator><Instrument><Manufacturer>M</Manufacturer><Model>T-1</Model></Instrument></Record2>
+<Record3><MatrixDimension>{size}</MatrixDimension><DataLink>{data}</DataLink></Record3>
+<Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4></p:ISO5436_2>""".encode()
+
+
+def x3p(xml, points, mask=None, folder="", more=(), sums=True, packing=zipfile.ZIP_DEFLATED):
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", packing) as archive:
+        for name, content in more:
+            archive.writestr(name, content)
+        archive.writestr(folder + "bindata/data.bin", points)
+        if mask is not None:
+            archive.writestr(folder + "bindata/valid.bin", mask)
+        archive.writestr(folder + "main.xml", xml)
+        if sums:
+            archive.writestr(folder + "md5checksum.hex", f"{hashlib.md5(xml).hexdigest()} *main.xml\n")
+    return file.getvalue()
+
+
+def imported(content, *more, code=0):
+    pathlib.Path("s.x3p").write_bytes(content)
+    words = ["import", "s.x3p", "-o", "s", "--force", *more]
+    return tacto.run_json(*words) if code == 0 else tacto.error_of(*words, code=code)
+
+
+def heights():
+    return tacto.soundfile.read("s.texture.wav", dtype="float64")[0]
+
+
+def stored_matrix(letter):
+    rng = np.random.default_rng(1)
+    if letter in "IL":
+        return rng.integers(-3000, 3000, (ROWS, COLUMNS)).astype(TYPES[letter])
+    return (rng.normal(size=(ROWS, COLUMNS)) * 1000).astype(TYPES[letter])
+
+
+def each_type_along_rows_and_columns():
+    for letter in TYPES:
+        matrix = stored_matrix(letter)
+        made_m = (matrix.astype(float) * 1e-9 + 5e-7).astype(np.float32)  # a texture has 32 bits
+        content = x3p(main_xml(letter, matrix.tobytes()), matrix.tobytes())
+        told = imported(content, "--row", "7")
+        assert np.array_equal(heights(), made_m[6]) and told["pitch_m"] == PITCH_X_M, (letter, told)
+        texture = json.loads(pathlib.Path("s.texture.json").read_text())
+        assert texture["source_origin_m"] == 1e-3 and "row 7" in texture["notes"] and "T-1" in texture["notes"], texture
+        told = imported(content, "--column", "40")
+        assert np.array_equal(heights(), made_m[:, 39]) and told["pitch_m"] == PITCH_Y_M, (letter, told)
+        assert np.array_equal(tacto_points(content, "5..10"), made_m[6, 4:10])
+        assert json.loads(pathlib.Path("s.texture.json").read_text())["source_origin_m"] == 1e-3 + 4 * PITCH_X_M
+    profile = stored_matrix("D")[0]
+    imported(x3p(main_xml("D", profile.tobytes(), feature="PRF", sizes=(COLUMNS, 1, 1)), profile.tobytes()))
+    assert np.array_equal(heights(), (profile * 1e-9 + 5e-7).astype(np.float32))
+
+
+def tacto_points(content, points):
+    imported(content, "--row", "7", "--points", points)
+    return heights()
+
+
+def holes_are_refused_with_the_longest_section():
+    matrix = stored_matrix("L")
+    valid = np.ones((ROWS, COLUMNS), bool)
+    valid[6, [0, 3, 30]] = False
+    mask = np.packbits(valid.ravel(), bitorder="little").tobytes()
+    masked = x3p(main_xml("L", matrix.tobytes(), mask), matrix.tobytes(), mask)
+    floats = stored_matrix("F")
+    floats[6, [0, 3, 30]] = np.nan
+    for content in (masked, x3p(main_xml("F", floats.tobytes()), floats.tobytes())):
+        error = imported(content, "--row", "7", code=UNSUITABLE)
+        assert error["what"].startswith("3 of 40 ") and error["remedy"].endswith("--points 5..30"), error
+        assert imported(content, "--row", "7", "--points", "5..30")["samples"] == 26
+        imported(content, "--row", "7", "--points", "4..30", code=UNSUITABLE)
+        assert imported(content, "--row", "8")["samples"] == COLUMNS
+
+
+def lines_and_options_that_do_not_fit():
+    matrix = stored_matrix("F")
+    content = x3p(main_xml("F", matrix.tobytes()), matrix.tobytes())
+    for more in ([], ["--row", "0"], ["--row", "31"], ["--column", "41"], ["--row", "1", "--points", "7..7"], ["--row", "1", "--points", "30..41"],
+                 ["--row", "1", "--points", "0..4"], ["--row", "1", "--points", "x"], ["--row", "1", "--pitch", "1um"], ["--row", "1", "--column", "1"]):
+        imported(content, *more, code=USAGE)
+    assert "--row N (1 to 30)" in imported(content, code=USAGE)["remedy"]
+    imported(x3p(main_xml("F", matrix[0].tobytes(), feature="PRF", sizes=(COLUMNS, 1, 1)), matrix[0].tobytes()), "--row", "1", code=USAGE)
+    tacto.error_of("import", "none.x3p", "-o", "s", "--row", "1", code=NOT_FOUND)
+    pathlib.Path("t.csv").write_text("1,2\n3,4\n")
+    tacto.error_of("import", "t.csv", "-o", "s", "--row", "1", code=USAGE)
+    assert not list(pathlib.Path(".").glob("s.texture.*"))
+
+
+def folders_foreign_files_and_checksums():
+    matrix = stored_matrix("D")
+    points = matrix.tobytes()
+    xml = main_xml("D", points)
+    foreign = [("readme.txt", b"x"), ("__MACOSX/._main.xml", b"x"), ("other/data.bin", b"y" * 1000)]
+    for content in (x3p(xml, points, folder="sample 3/"), x3p(xml, points, more=foreign), x3p(xml, points, packing=zipfile.ZIP_STORED)):
+        imported(content, "--row", "1")
+        assert np.array_equal(heights(), (matrix[0] * 1e-9 + 5e-7).astype(np.float32))
+    assert "main.xml" in imported(x3p(xml.replace(b"tester", b"Tester"), points, sums=False, more=[("md5checksum.hex", hashlib.md5(xml).hexdigest())]),
+                                  "--row", "1", code=MALFORMED)["where"]
+    changed = bytearray(points)
+    changed[17] ^= 1
+    assert "data.bin" in imported(x3p(xml, bytes(changed)), "--row", "1", code=MALFORMED)["where"]
+    mask = bytes([255] * (ROWS * COLUMNS // 8))
+    assert "valid.bin" in imported(x3p(main_xml("D", points, mask), points, mask[:-1] + b"\0"), "--row", "1", code=MALFORMED)["where"]
+    imported(x3p(main_xml("D", points, sums=False), points), "--row", "1")
+    assert "no checksum" in json.loads(pathlib.Path("s.texture.json").read_text())["notes"]
+
+
+def what_is_not_read_is_named():
+    matrix = stored_matrix("F")
+    points = matrix.tobytes()
+    unsuitable = (main_xml("F", points, feature="PCL"), main_xml("F", points, sizes=(COLUMNS, ROWS, 2)), main_xml("F", points, axis="A"),
+                  main_xml("F", points, link=False), main_xml("F", points, sizes=(2**40, 2**40, 1)), main_xml("F", points, sizes=(2**20, 2**12, 1)))
+    for xml in unsuitable:
+        imported(x3p(xml, points), "--row", "1", code=UNSUITABLE)
+    malformed = (main_xml("Q", points), main_xml("F", points, sizes=(COLUMNS, ROWS + 1, 1)), main_xml("F", points, sizes=(0, ROWS, 1)),
+                 main_xml("F", points, scale="x"), b"<a/>", b"no xml", main_xml("F", points).replace(b"data.bin", b"else.bin"),
+                 main_xml("F", points).replace(b"2e-06", b"-2e-06"))
+    for xml in malformed:
+        imported(x3p(xml, points), "--row", "1", code=MALFORMED)
+    both = [("a/main.xml", b""), ("b/main.xml", b"")]
+    imported(x3p(main_xml("F", points), points, folder="c/", more=both), "--row", "1", code=MALFORMED)
+
+
+def cuts_and_damage_are_never_silent():
+    matrix = stored_matrix("I")
+    whole = x3p(main_xml("I", matrix.tobytes()), matrix.tobytes())
+    imported(whole, "--row", "3")
+    right = heights()
+    rng = random.Random(2)
+    for size in rng.sample(range(1, len(whole)), 200):
+        imported(whole[:size], "--row", "3", code=MALFORMED)
+    for _ in range(100):  # a changed byte is found, or does not matter
+        damaged = bytearray(whole)
+        damaged[rng.randrange(len(whole))] ^= 1 << rng.randrange(8)
+        judged("s.x3p", bytes(damaged), right)
+    xml = main_xml("I", matrix.tobytes(), sums=False)
+    for _ in range(100):  # the archive is in order, but its XML is not
+        begin = rng.randrange(len(xml))
+        changed = xml[:begin] + rng.choice([b"", b"<", b"9", b"-1e400", b"</CX>", bytes([rng.randrange(256)])]) + xml[begin + rng.randrange(9):]
+        judged("s.x3p", x3p(changed, matrix.tobytes()), None)
+
+
+def judged(name, content, right):
+    pathlib.Path(name).write_bytes(content)
+    done = tacto.subprocess.run([tacto.COMMAND, "import", name, "-o", "s", "--force", "--row", "3"], capture_output=True, text=True)
+    assert done.returncode in (0, USAGE, MALFORMED, UNSUITABLE), done
+    if done.returncode == 0 and right is not None:
+        assert np.array_equal(heights(), right)
+    assert done.returncode == 0 or done.stderr.count("\n") == 1, done
+
+
+if __name__ == "__main__":
+    for test in (each_type_along_rows_and_columns, holes_are_refused_with_the_longest_section, lines_and_options_that_do_not_fit,
+                 folders_foreign_files_and_checksums, what_is_not_read_is_named, cuts_and_damage_are_never_silent):
+        tacto.in_folder(test)

@@ -1,0 +1,233 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`import` of XDF files that Python's struct writes (tests/fuzz/xdf_maker.py): numbers to the bit, rates and gaps as made, cuts never silently short.
+
+A second reader, read_with_numpy(), follows the specification on its own and shares no code with the maker.
+"""
+import json
+import pathlib
+import random
+import re
+import shlex
+import struct
+import sys
+import xml.etree.ElementTree
+
+import numpy as np
+import tacto
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "fuzz"))
+from xdf_maker import boundary, chunk, clock_offset, file_header, footer, header, samples, varied
+
+USAGE, MALFORMED, UNSUITABLE = 2, 4, 5
+ROWS = 3000
+FORMATS = {"int8": "<i1", "int16": "<i2", "int32": "<i4", "int64": "<i8", "float32": "<f4", "double64": "<f8"}
+
+
+def read_with_numpy(data, wanted):
+    """Times and numbers of a stream whose samples are all numbers."""
+    at, times, rows, info = 4, [], [], None
+
+    def length(at):
+        width = data[at]
+        return int.from_bytes(data[at + 1:at + 1 + width], "little"), at + 1 + width
+
+    while at < len(data):
+        size, at = length(at)
+        end, tag, at = at + size, int.from_bytes(data[at:at + 2], "little"), at + 2
+        if tag in (2, 3) and int.from_bytes(data[at:at + 4], "little") == wanted:
+            if tag == 2:
+                info = {child.tag: child.text for child in xml.etree.ElementTree.fromstring(data[at + 4:end])}
+                kind = np.dtype(FORMATS[info["channel_format"]])
+            else:
+                count, at = length(at + 4)
+                for _ in range(count):
+                    stamped, at = data[at] == 8, at + 1
+                    times.append(np.frombuffer(data, "<f8", 1, at)[0] if stamped else times[-1] + 1 / float(info["nominal_srate"]))
+                    at += 8 * stamped
+                    rows.append(np.frombuffer(data, kind, int(info["channel_count"]), at))
+                    at += kind.itemsize * int(info["channel_count"])
+        at = end
+    return np.array(times), np.array(rows)
+
+
+def stored(name):
+    return tacto.soundfile.read(f"{name}.wav", dtype="float64", always_2d=True)[0]
+
+
+def sidecar(name):
+    return json.loads(pathlib.Path(f"{name}.json").read_text())
+
+
+def imported(data, *more, channel="signal=1", code=0):
+    pathlib.Path("trial.xdf").write_bytes(data)
+    words = ["import", "trial.xdf", "-o", "x", "--force", "--channel", channel, *more]
+    return tacto.run_json(*words) if code == 0 else tacto.error_of(*words, code=code)
+
+
+def each_type_is_exact():
+    rng = np.random.default_rng(1)
+    for kind, dtype in FORMATS.items():
+        if kind.startswith("int"):
+            limit = min(2**53, 2**(8 * np.dtype(dtype).itemsize - 1) - 1)
+            values = rng.integers(-limit, limit, (ROWS, 2), endpoint=True).astype(dtype)
+            values[0] = [limit, -limit]
+        else:
+            values = rng.normal(size=(ROWS, 2)).astype(dtype)
+        data = file_header() + header(7, "F", 2, 1000, kind) + samples(7, values, 100 + np.arange(ROWS) / 1000, every=250) + footer(7, ROWS)
+        told = imported(data, "--channel", "b:signal=ch2")
+        assert np.array_equal(stored("x"), values.astype(float)), kind
+        times_s, numbers = read_with_numpy(data, 7)
+        assert np.array_equal(stored("x"), numbers.astype(float)), kind
+        assert told["sample_rate_hz"] == round(1 / np.mean(np.diff(times_s)), 6) == 1000 and told["gaps"] == 0, told
+
+
+def counts_above_2_24_and_beyond_2_53():
+    counts = 20_000_001 + 2 * np.arange(ROWS).reshape(-1, 1)
+    start = file_header() + header(1, "Encoder", 1, 1000, "int64", [("count", "")])
+    imported(start + samples(1, counts.astype("<i8"), np.arange(ROWS) / 1000) + footer(1, ROWS), channel="position=count*1um")
+    assert stored("x")[0, 0] == 20_000_001 and np.array_equal(stored("x")[:, 0], counts[:, 0])
+    counts[1234] = 2**53 + 1
+    error = imported(start + samples(1, counts.astype("<i8"), np.arange(ROWS) / 1000) + footer(1, ROWS), channel="position=count*1um", code=UNSUITABLE)
+    assert "count" in error["where"] and "1234" in error["where"] and str(2**53 + 1) in error["what"], error
+
+
+def many_streams(values):
+    times_s = np.arange(ROWS) / 1000
+    return (file_header() + header(1, "Markers", 1, 0, "string") + header(2, "Force", 2, 1000, "float32", [("Fx", "N"), ("Fz", "N")]) +
+            header(3, "Eye", 1, 250, "double64") + boundary() + samples(2, values, times_s, every=400) + chunk(3, struct.pack("<I", 1) + b"\1\1\x08" +
+            struct.pack("<d", 1) + b"\1\5hello") + samples(3, np.zeros((10, 1)), np.arange(10) / 250) + footer(2, ROWS) + footer(3, 10) + footer(1, 1))
+
+
+def streams_are_listed_and_chosen():
+    values = np.random.default_rng(2).normal(size=(ROWS, 2)).astype("<f4")
+    pathlib.Path("trial.xdf").write_bytes(many_streams(values))
+    told = tacto.run_json("import", "trial.xdf")
+    rows = {row["name"]: row for row in told["streams"]}
+    assert rows["Force"]["channels"] == "Fx, Fz" and rows["Force"]["samples"] == ROWS and rows["Force"]["nominal_rate_hz"] == 1000, rows
+    assert rows["Markers"]["not_imported"] and not rows["Eye"]["not_imported"], rows
+    tacto.run(*shlex.split(told["next"])[1:])
+    assert np.array_equal(stored("trial")[:, 0], values[:, 0].astype(float))
+    assert sidecar("trial")["channels"][0]["scale"] == 1  # the unit is the header's: N
+    for name in ("Force", "2"):
+        tacto.run("import", "trial.xdf", "-o", "two", "--force", "--stream", name, "--channel", "normal_force=Fz")
+        assert np.array_equal(stored("two")[:, 0], values[:, 1].astype(float))
+    force = ["--channel", "tangential_force=Fx"]
+    assert "Eye" in tacto.error_of("import", "trial.xdf", "-o", "x", *force, code=USAGE)["remedy"]
+    assert "Eye" in tacto.error_of("import", "trial.xdf", "-o", "x", "--stream", "Fourse", *force, code=USAGE)["remedy"]
+    tacto.error_of("import", "trial.xdf", "-o", "x", "--stream", "Markers", *force, code=UNSUITABLE)
+    tacto.run("import", "trial.xdf", "--stream", "Force", code=USAGE)
+    pathlib.Path("t.csv").write_text("a,b\n1,2\n3,4\n5,6\n")
+    tacto.run("import", "t.csv", "-o", "x", "--rate", "1kHz", "--stream", "Force", "--channel", "signal=a", code=USAGE)
+    assert not list(pathlib.Path(".").glob("x.*"))
+
+
+def one_stream(times_s, nominal, kind="int32", offsets=(), every=250):
+    values = np.arange(len(times_s), dtype=FORMATS[kind]).reshape(-1, 1)
+    return (file_header() + header(1, "F", 1, nominal, kind) + b"".join(clock_offset(1, *each) for each in offsets) +
+            samples(1, values, times_s, every=every) + footer(1, len(times_s)))
+
+
+def gaps_are_kept():
+    kept = np.setdiff1d(np.arange(ROWS), [*range(700, 710), 2000])  # 10 and 1 missing
+    told = imported(one_stream(5000 + kept / 1000, 1000, every=1))
+    assert told["sample_rate_hz"] == 1000 and told["frames"] == kept.size, told
+    assert [(gap["frame"], gap["count"]) for gap in sidecar("x")["gaps"]] == [(700, 10), (1990, 1)], sidecar("x")["gaps"]
+    # An irregular stream has no nominal rate; its times may be even all the same.
+    assert imported(one_stream(kept / 1000, 0, every=1))["gaps"] == 2
+    uneven_s = np.cumsum(np.random.default_rng(3).uniform(1e-3, 3e-3, ROWS))
+    assert "sample" in imported(one_stream(uneven_s, 0, every=1), code=MALFORMED)["where"]
+    assert imported(one_stream(uneven_s, 0, every=1), "--rate", "500Hz")["sample_rate_hz"] == 500
+
+
+def scattered_times_are_fitted():
+    """Times of LSL are those at which a program had the samples: here 2 ms (RMS) late or early, five periods, with a gap of 3 s."""
+    rng = np.random.default_rng(4)
+    rate_hz, rows = 2500.37, 100_000
+    sample = np.arange(rows) + np.where(np.arange(rows) >= 40_000, 7501, 0)
+    times_s = 1e5 + sample / rate_hz + np.repeat(rng.normal(0, 2e-3, rows // 50), 50)
+    data = one_stream(times_s, 2500, every=50)
+    told = imported(data)
+    # A slope through n/50 independent errors of 2 ms: relative error 2 ms sqrt(12 / (n/50)) / duration; five times that.
+    bound = 5 * 2e-3 * np.sqrt(12 / (rows / 50)) / (rows / rate_hz)
+    assert abs(told["sample_rate_hz"] / rate_hz - 1) < bound, (told, bound)
+    assert [gap["frame"] for gap in sidecar("x")["gaps"]] == [40_000] and abs(sidecar("x")["gaps"][0]["count"] - 7501) <= 2, sidecar("x")["gaps"]
+    times_s, numbers = read_with_numpy(data, 1)
+    parts = [slice(0, 40_000), slice(40_000, rows)]
+    centred = [(np.arange(rows)[part] - np.mean(np.arange(rows)[part]), times_s[part] - times_s[part].mean()) for part in parts]
+    slope = sum(np.dot(x, y) for x, y in centred) / sum(np.dot(x, x) for x, _ in centred)
+    assert abs(told["sample_rate_hz"] * slope - 1) < 1e-9, (told, slope)
+    assert np.array_equal(stored("x"), numbers)
+    assert any("RMS" in warning for warning in told["warnings"]), told
+
+
+def clock_offsets_give_the_recorders_rate():
+    times_s = 500 + np.arange(30_000) / 1000
+    offsets = [(t, 17.5 - 40e-6 * (t - 500)) for t in np.arange(500, 530, 5.0)]  # the stream's clock is 40 ppm fast
+    told = imported(one_stream(times_s, 1000, offsets=offsets))
+    assert abs(told["sample_rate_hz"] - 1000 / (1 - 40e-6)) < 1e-6, told
+    assert "faster" in told["clock"] and " 40 ppm" in told["clock"], told
+    assert imported(one_stream(times_s, 1000, offsets=offsets[:2]))["sample_rate_hz"] == 1000  # too few to fit
+
+
+def a_reset_clock_is_refused_with_its_time():
+    times_s = 500 + np.arange(30_000) / 1000
+    jumped = [(t, 17.5 if t < 515 else -400) for t in np.arange(500, 530, 5.0)]
+    assert "515.0" in imported(one_stream(times_s, 1000, offsets=jumped), code=UNSUITABLE)["what"]
+    back = [(500, 1), (505, 1), (3, 503)]
+    assert "3.0" in imported(one_stream(times_s, 1000, offsets=back), code=UNSUITABLE)["what"]
+    times_s[20_000:] -= 510
+    assert "519.999" in imported(one_stream(times_s, 1000, every=1), code=UNSUITABLE)["what"]
+    assert imported(one_stream(times_s, 1000, every=1), "--rate", "1kHz")["frames"] == 30_000
+
+
+def a_cut_file_is_read_to_its_last_whole_chunk_and_says_so():
+    values = np.arange(ROWS).reshape(-1, 1)
+    times_s = np.arange(ROWS) / 1000
+    whole = file_header() + header(1, "F", 1, 1000, "int32") + samples(1, values.astype("<i4"), times_s, every=150) + footer(1, ROWS)
+    assert "warnings" not in imported(whole)
+    ends = [m.start() for m in re.finditer(re.escape(struct.pack("<HI", 3, 1)), whole)]
+    rng = random.Random(5)
+    for size in rng.sample(range(len(whole)), 200):
+        pathlib.Path("cut.xdf").write_bytes(whole[:size])
+        words = ["import", "cut.xdf", "-o", "c", "--force", "--channel", "signal=1", "--json"]
+        done = tacto.subprocess.run([tacto.COMMAND, *words], capture_output=True, text=True)
+        complete = max(0, sum(end < size for end in ends) - 1)
+        if done.returncode == 0:
+            told = json.loads(done.stdout)
+            assert told["frames"] in (150 * complete, 150 * (complete + 1)) and told["warnings"], (size, told)
+            assert np.array_equal(stored("c"), values[:told["frames"]])
+        else:
+            # Shorter than "XDF:" it is a table; without a header or samples there is nothing to import.
+            assert done.returncode in (USAGE, MALFORMED) and complete == 0, (size, done)
+
+
+def damaged_files_are_refused():
+    good = one_stream(np.arange(ROWS) / 1000, 1000)
+    head = file_header() + header(1, "F", 1, 1000, "int32")
+    one = struct.pack("<I", 1)
+    for data in (head + chunk(3, one + b"\1\2\x08" + bytes(12)),                       # two samples in the space of one
+                 head + chunk(3, one + b"\x08" + b"\xff" * 8),                          # 2^64 samples
+                 head + chunk(3, one + b"\1\1\x08" + bytes(13)),                        # a byte too many
+                 head + chunk(3, one + b"\1\1\x04" + bytes(8)),                         # a time of four bytes
+                 head + chunk(3, one + b"\1\1\x00" + bytes(4)),                         # the first sample without a time
+                 head + chunk(3, struct.pack("<I", 9) + b"\1\0"),                       # a stream without a header
+                 head + header(1, "F", 1, 1000, "int32"),                               # two headers
+                 file_header() + header(1, "F", 0, 1000, "int32"), file_header() + header(1, "F", 1, -3, "int32"),
+                 file_header() + chunk(2, one + b"<info><name>"), file_header() + chunk(5, bytes(16)), good + b"\2", b"XDF:"):
+        assert imported(data, code=MALFORMED)["where"].startswith("trial.xdf")
+    imported(file_header() + header(1, "F", 5000, 1000, "int32"), code=UNSUITABLE)
+    imported(file_header("2.0") + header(1, "F", 1, 1000, "int32"), code=UNSUITABLE)
+    assert imported(good + chunk(99, b"later"))["frames"] == ROWS  # the specification: unknown chunks are skipped
+    holes = np.zeros((ROWS, 1), "<f4")
+    holes[17] = np.nan
+    data = file_header() + header(1, "F", 1, 1000, "float32") + samples(1, holes, np.arange(ROWS) / 1000) + footer(1, ROWS)
+    assert "sample 17" in imported(data, code=MALFORMED)["where"]
+    assert imported(data, "--mask-outliers")["gaps"] == 1
+
+
+if __name__ == "__main__":
+    for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, scattered_times_are_fitted,
+                 clock_offsets_give_the_recorders_rate, a_reset_clock_is_refused_with_its_time,
+                 a_cut_file_is_read_to_its_last_whole_chunk_and_says_so, damaged_files_are_refused):
+        tacto.in_folder(test)
