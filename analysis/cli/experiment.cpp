@@ -275,7 +275,7 @@ Report identification_report(const IdentificationAnswers& all, const std::string
     add_information(row, each.information);
     row.add("answers", std::vector<Report>{confusion_report(all, each.matrix)});
   }
-  for (const SessionOverPeople& over : over_people(all)) {
+  for (const SessionOverPeople& over : sessions_over_people(all)) {
     Report& row = sessions.emplace_back();
     row.add("session", over.session).add("people", over.people).add("success", over.success);
     if (over.success_deviation) row.add("success_deviation", *over.success_deviation);

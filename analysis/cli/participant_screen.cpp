@@ -29,7 +29,7 @@ void show(const std::string& text) {
 }
 
 // From 1; 0: it is none.
-int choice_of(std::string_view answer, const schema::Protocol& protocol) {
+int choice_number(std::string_view answer, const schema::Protocol& protocol) {
   const auto found = std::ranges::find_if(protocol.choices, [&](const schema::AnswerWord& each) {
     return answer == each.word || answer == each.key;
   });
@@ -131,7 +131,7 @@ Result<Participant> answers_from(const std::string& file, const schema::Protocol
   for (std::string line; std::getline(lines, line);) {
     if (line.ends_with('\r')) line.pop_back();
     const std::string where = fmt::format("{}: line {}", file, ++number);
-    if (const int choice = choice_of(line, protocol); choice != 0) {
+    if (const int choice = choice_number(line, protocol); choice != 0) {
       answers.push_back(choice);
     } else if (is_label(line)) {
       labels.emplace_back(line, where);

@@ -13,7 +13,7 @@
 namespace tacto::analysis {
 namespace {
 
-std::size_t place_of(const std::vector<std::string>& names, const std::string& name) {
+std::size_t number_of_name(const std::vector<std::string>& names, const std::string& name) {
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
 }
 
@@ -60,7 +60,7 @@ std::string matrix_in_words(const IdentificationAnswers& all, const ConfusionMat
   return fmt::format("{}", fmt::join(rows, "; "));
 }
 
-std::vector<std::vector<std::string>> table_of(const IdentificationAnswers& all) {
+std::vector<std::vector<std::string>> people_table(const IdentificationAnswers& all) {
   std::vector<std::vector<std::string>> rows = {
       {"participant", "session", "order", "trials", "success", "transmitted information"}};
   for (const SessionAnswers& each : all.sessions)
@@ -84,7 +84,7 @@ IdentificationAnswers identification_answers(const std::vector<Run>& runs) {
       SessionAnswers& session = session_of(all, run, attempt.trial);
       const std::string& presented = stimulus_of(run.study.key, attempt.trial.code).name;
       const auto choice = static_cast<std::size_t>(attempt.answered->choice) - 1;
-      session.matrix[place_of(all.comparisons, presented)][choice] += 1;
+      session.matrix[number_of_name(all.comparisons, presented)][choice] += 1;
       session.success += all.standards[choice] == presented ? 1 : 0;
       session.trials += 1;
     }
@@ -97,7 +97,7 @@ IdentificationAnswers identification_answers(const std::vector<Run>& runs) {
   return all;
 }
 
-std::vector<SessionOverPeople> over_people(const IdentificationAnswers& all) {
+std::vector<SessionOverPeople> sessions_over_people(const IdentificationAnswers& all) {
   std::vector<SessionOverPeople> sessions;
   for (const char* const name : {schema::kRealSession, schema::kVirtualSession}) {
     SessionOverPeople over{name, 0, 0, {}, Information{}, empty_matrix(all)};
@@ -131,7 +131,7 @@ Findings findings_of(const IdentificationAnswers& all) {
   Findings findings;
   findings.figures.push_back({"verdict", ""});
   std::vector<std::string> verdicts;
-  for (const SessionOverPeople& over : over_people(all)) {
+  for (const SessionOverPeople& over : sessions_over_people(all)) {
     verdicts.push_back(fmt::format("success {} with {} comparisons", success_in_words(over), over.session));
     findings.figures.push_back(
         {over.session + ", success",
@@ -145,7 +145,7 @@ Findings findings_of(const IdentificationAnswers& all) {
     findings.figures.push_back({over.session + ", answers", matrix_in_words(all, over.matrix)});
   }
   findings.figures.front().value = fmt::format("{}", fmt::join(verdicts, "; "));
-  findings.groups = table_of(all);
+  findings.groups = people_table(all);
   findings.simulated = all.simulated;
   return findings;
 }

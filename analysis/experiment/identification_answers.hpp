@@ -41,7 +41,7 @@ struct SessionOverPeople {
   std::optional<Information> information;   ///< none: one of the people has none
   ConfusionMatrix matrix;
 };
-std::vector<SessionOverPeople> over_people(const IdentificationAnswers& answers);
+std::vector<SessionOverPeople> sessions_over_people(const IdentificationAnswers& answers);
 
 Findings findings_of(const IdentificationAnswers& answers);
 

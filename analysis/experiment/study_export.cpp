@@ -46,7 +46,7 @@ constexpr Column kColumns[] = {
     {"seemed_longer", "1: the stretched stimulus seemed to have the longer period, else 0", ""},
 };
 
-bool has_two_intervals(const schema::Protocol& protocol) {
+bool is_two_interval(const schema::Protocol& protocol) {
   return protocol.task == schema::Task::two_interval;
 }
 
@@ -117,7 +117,7 @@ std::string bids_cell(const std::string& text) {
 }
 
 bool is_right(const Run& run, const Attempt& attempt) {
-  return has_two_intervals(run.study.protocol)
+  return is_two_interval(run.study.protocol)
              ? seemed_longer(attempt)
              : attempt.answered->word == stimulus_of(run.study.key, attempt.trial.code).name;
 }
@@ -131,7 +131,7 @@ std::vector<std::vector<std::string>> rows_of(const Run& run) {
     rows.push_back(split(lines[i], '\t'));
     const Attempt* const attempt = i > 0 ? &run.queue.attempts()[i - 1] : nullptr;
     const bool answered = attempt != nullptr && attempt->answered;
-    const char* const name = has_two_intervals(run.study.protocol) ? "seemed_longer" : "correct";
+    const char* const name = is_two_interval(run.study.protocol) ? "seemed_longer" : "correct";
     rows.back().emplace_back(attempt == nullptr ? name
                              : !answered        ? ""
                                                 : (is_right(run, *attempt) ? "1" : "0"));
@@ -215,7 +215,7 @@ Result<std::vector<std::string>> export_study(const std::string& study, const st
   const std::string name = runs->front().study.name(), task = task_label(name);
   Export all(folder);
   TACTO_TRY(all.add("trials.csv", csv_of(*runs)));
-  if (has_two_intervals(runs->front().study.protocol)) TACTO_TRY(all.add("analysis.R", kScript));
+  if (is_two_interval(runs->front().study.protocol)) TACTO_TRY(all.add("analysis.R", kScript));
   TACTO_TRY(all.add("dataset_description.json",
                     fmt::format("{{\"Name\": {}, \"BIDSVersion\": \"1.8.0\", \"DatasetType\": \"raw\", "
                                 "\"GeneratedBy\": [{{\"Name\": {}}}]}}\n",

@@ -161,13 +161,14 @@ class LiveSteps {
   BlockClock::time_point block_since_;
 };
 
-// The row of session orders that the fewest complete runs have.
-Result<int> next_order(const Study& study) {
+// The row of session orders that the fewest complete runs have. A journal that cannot be read is of no
+// complete run.
+int next_order(const Study& study) {
   std::vector<int> complete(static_cast<std::size_t>(
       study.protocol.task == schema::Task::two_interval ? 1 : williams_rows(study.protocol.sessions.size())));
   for (const std::string& stem : runs_of(study)) {
     const auto journal = schema::read_journal(schema::journal_path(stem));
-    TACTO_TRY(journal);
+    if (!journal) continue;
     const auto row = static_cast<std::size_t>(journal->plan.order) - 1;
     if (std::holds_alternative<schema::RunEnded>(journal->entries.back()) && row < complete.size())
       ++complete[row];
@@ -210,16 +211,15 @@ Result<Run> begin_run(const std::string& study_name, const std::string& particip
   TACTO_TRY(check_not_withdrawn(study->stem, participant));
   TACTO_TRY(check_observer(study->protocol, request.observer));
   TACTO_TRY(check_on_device(*study, request.device_uri));
-  const auto order = next_order(*study);
-  TACTO_TRY(order);
+  const int order = next_order(*study);
   const std::string stem = study->run(participant);
   auto file = schema::JournalFile::create(schema::journal_path(stem));
   TACTO_TRY(file);
   schema::RunPlanned plan{
       study->name(),           participant,           study->protocol.sha256,
       study->key.sha256,       request.device_uri,    request.observer ? request.observer->text : "",
-      schema::creation_time(), std::string(kCreator), *order};
-  TrialQueue queue(ordered_trials(study->protocol, study->key, participant, *order),
+      schema::creation_time(), std::string(kCreator), order};
+  TrialQueue queue(ordered_trials(study->protocol, study->key, participant, order),
                    study->protocol.most_attempts);
   Run run{stem, {plan, {}, 0}, std::move(*study), std::move(queue)};
   TACTO_TRY(go_on(run, *file, request, plan));
