@@ -267,22 +267,22 @@ Report identification_report(const IdentificationAnswers& all, const std::string
   Report report;
   report.add("verdict", verdict);
   if (!all.simulated.empty()) report.add("simulated", all.simulated);
-  std::vector<Report> people, sessions;
-  for (const SessionAnswers& each : all.sessions) {
+  std::vector<Report> people, conditions;
+  for (const BlockAnswers& each : all.blocks) {
     Report& row = people.emplace_back();
-    row.add("participant", each.participant).add("session", each.session).add("order", each.block);
+    row.add("participant", each.participant).add("condition", each.condition).add("block", each.block);
     row.add("trials", each.trials).add("success", each.success);
     add_information(row, each.information);
     row.add("answers", std::vector<Report>{confusion_report(all, each.matrix)});
   }
-  for (const SessionOverPeople& over : sessions_over_people(all)) {
-    Report& row = sessions.emplace_back();
-    row.add("session", over.session).add("people", over.people).add("success", over.success);
+  for (const BlocksOverPeople& over : blocks_over_people(all)) {
+    Report& row = conditions.emplace_back();
+    row.add("condition", over.condition).add("people", over.people).add("success", over.success);
     if (over.success_deviation) row.add("success_deviation", *over.success_deviation);
     add_information(row, over.information);
     row.add("answers", std::vector<Report>{confusion_report(all, over.matrix)});
   }
-  return report.add("sessions", std::move(sessions)).add("people", std::move(people));
+  return report.add("conditions", std::move(conditions)).add("people", std::move(people));
 }
 
 Result<Report> analyse_task(const AnalyseOptions& o, bool json) {

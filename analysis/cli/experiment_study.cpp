@@ -62,7 +62,7 @@ Report study_report(const Study& study) {
   else
     report.add("standards", protocol.standards.size())
         .add("comparisons", protocol.comparisons.size())
-        .add("sessions", protocol.sessions.size());
+        .add("conditions", protocol.conditions.size());
   report.add("repetitions", protocol.repetitions)
       .add("trials", ordered_trials(protocol, study.key, "P1", 1).size());
   return report.add("interval_s", paced_path(protocol.pace).duration_s());
@@ -434,7 +434,7 @@ cli::Action declare_new_study(CLI::App& app) {
   app.add_option("--seed", options->seed, "Seed of codes and order: letters and digits");
   app.footer(
       "stretch: which of two sinusoids has the smaller period. identification: which of the standards is a "
-      "comparison, a real sample in one session and played in the other one, each of 100 trials or 15 "
+      "comparison, a real sample in one block and played in the other one, each of 100 trials or 15 "
       "minutes. "
       "Label the real samples with the codes of STUDY.key.json, which neither operator nor participant "
       "reads.");

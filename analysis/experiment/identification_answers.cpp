@@ -21,16 +21,16 @@ ConfusionMatrix empty_matrix(const IdentificationAnswers& all) {
   return ConfusionMatrix(all.comparisons.size(), std::vector<double>(all.standards.size(), 0));
 }
 
-SessionAnswers& session_of(IdentificationAnswers& all, const Run& run, const StudyTrial& trial) {
+BlockAnswers& block_of(IdentificationAnswers& all, const Run& run, const StudyTrial& trial) {
   const std::string& participant = run.journal.plan.participant;
-  for (SessionAnswers& each : all.sessions)
+  for (BlockAnswers& each : all.blocks)
     if (each.participant == participant && each.block == trial.block) return each;
-  SessionAnswers& session = all.sessions.emplace_back();
-  session.participant = participant;
-  session.session = trial.real ? schema::kRealSession : schema::kVirtualSession;
-  session.block = trial.block;
-  session.matrix = empty_matrix(all);
-  return session;
+  BlockAnswers& block = all.blocks.emplace_back();
+  block.participant = participant;
+  block.condition = trial.real ? schema::kRealCondition : schema::kVirtualCondition;
+  block.block = trial.block;
+  block.matrix = empty_matrix(all);
+  return block;
 }
 
 bool has_information(const ConfusionMatrix& matrix) {
@@ -44,7 +44,7 @@ std::string information_in_words(const std::optional<Information>& information) 
                      information->plug_in, information->miller_madow);
 }
 
-std::string success_in_words(const SessionOverPeople& over) {
+std::string success_in_words(const BlocksOverPeople& over) {
   return over.success_deviation ? fmt::format("{:.3f} +- {:.3f}", over.success, *over.success_deviation)
                                 : fmt::format("{:.3f}", over.success);
 }
@@ -62,9 +62,9 @@ std::string matrix_in_words(const IdentificationAnswers& all, const ConfusionMat
 
 std::vector<std::vector<std::string>> people_table(const IdentificationAnswers& all) {
   std::vector<std::vector<std::string>> rows = {
-      {"participant", "session", "order", "trials", "success", "transmitted information"}};
-  for (const SessionAnswers& each : all.sessions)
-    rows.push_back({each.participant, each.session, fmt::format("{}", each.block),
+      {"participant", "condition", "block", "trials", "success", "transmitted information"}};
+  for (const BlockAnswers& each : all.blocks)
+    rows.push_back({each.participant, each.condition, fmt::format("{}", each.block),
                     fmt::format("{:g}", each.trials), fmt::format("{:.3f}", each.success),
                     information_in_words(each.information)});
   return rows;
@@ -81,15 +81,15 @@ IdentificationAnswers identification_answers(const std::vector<Run>& runs) {
     add_simulated(simulated, run);
     for (const Attempt& attempt : run.queue.attempts()) {
       if (!attempt.counts()) continue;
-      SessionAnswers& session = session_of(all, run, attempt.trial);
+      BlockAnswers& block = block_of(all, run, attempt.trial);
       const std::string& presented = stimulus_of(run.study.key, attempt.trial.code).name;
       const auto choice = static_cast<std::size_t>(attempt.answered->choice) - 1;
-      session.matrix[number_of_name(all.comparisons, presented)][choice] += 1;
-      session.success += all.standards[choice] == presented ? 1 : 0;
-      session.trials += 1;
+      block.matrix[number_of_name(all.comparisons, presented)][choice] += 1;
+      block.success += all.standards[choice] == presented ? 1 : 0;
+      block.trials += 1;
     }
   }
-  for (SessionAnswers& each : all.sessions) {
+  for (BlockAnswers& each : all.blocks) {
     each.success /= each.trials;
     if (has_information(each.matrix)) each.information = information_of(each.matrix);
   }
@@ -97,13 +97,13 @@ IdentificationAnswers identification_answers(const std::vector<Run>& runs) {
   return all;
 }
 
-std::vector<SessionOverPeople> sessions_over_people(const IdentificationAnswers& all) {
-  std::vector<SessionOverPeople> sessions;
-  for (const char* const name : {schema::kRealSession, schema::kVirtualSession}) {
-    SessionOverPeople over{name, 0, 0, {}, Information{}, empty_matrix(all)};
+std::vector<BlocksOverPeople> blocks_over_people(const IdentificationAnswers& all) {
+  std::vector<BlocksOverPeople> blocks;
+  for (const char* const name : {schema::kRealCondition, schema::kVirtualCondition}) {
+    BlocksOverPeople over{name, 0, 0, {}, Information{}, empty_matrix(all)};
     double squares = 0;
-    for (const SessionAnswers& each : all.sessions) {
-      if (each.session != name) continue;
+    for (const BlockAnswers& each : all.blocks) {
+      if (each.condition != name) continue;
       ++over.people;
       over.success += each.success, squares += each.success * each.success;
       if (!each.information) over.information.reset();
@@ -122,27 +122,27 @@ std::vector<SessionOverPeople> sessions_over_people(const IdentificationAnswers&
     if (over.information)
       for (const auto member : {&Information::plug_in, &Information::miller_madow, &Information::jackknife})
         *over.information.*member /= people;
-    sessions.push_back(std::move(over));
+    blocks.push_back(std::move(over));
   }
-  return sessions;
+  return blocks;
 }
 
 Findings findings_of(const IdentificationAnswers& all) {
   Findings findings;
   findings.figures.push_back({"verdict", ""});
   std::vector<std::string> verdicts;
-  for (const SessionOverPeople& over : sessions_over_people(all)) {
-    verdicts.push_back(fmt::format("success {} with {} comparisons", success_in_words(over), over.session));
+  for (const BlocksOverPeople& over : blocks_over_people(all)) {
+    verdicts.push_back(fmt::format("success {} with {} comparisons", success_in_words(over), over.condition));
     findings.figures.push_back(
-        {over.session + ", success",
+        {over.condition + ", success",
          fmt::format("{} ({}, chance {:.3g})", success_in_words(over),
                      over.people == 1 ? "one person"
                                       : fmt::format("mean and standard deviation of {} people", over.people),
                      1 / static_cast<double>(all.standards.size()))});
     findings.figures.push_back(
-        {over.session + ", transmitted information",
+        {over.condition + ", transmitted information",
          information_in_words(over.information) + (over.people > 1 ? ", mean over people" : "")});
-    findings.figures.push_back({over.session + ", answers", matrix_in_words(all, over.matrix)});
+    findings.figures.push_back({over.condition + ", answers", matrix_in_words(all, over.matrix)});
   }
   findings.figures.front().value = fmt::format("{}", fmt::join(verdicts, "; "));
   findings.groups = people_table(all);

@@ -12,10 +12,10 @@
 
 namespace tacto::analysis {
 
-/// What one participant answered in one session.
-struct SessionAnswers {
-  std::string participant, session;        ///< "real", "virtual"
-  int block = 0;                           ///< 1: the participant's first session
+/// What one participant answered in one block.
+struct BlockAnswers {
+  std::string participant, condition;      ///< "real", "virtual"
+  int block = 0;                           ///< 1: the participant's first block
   ConfusionMatrix matrix;                  ///< a row per comparison, a column per standard
   double trials = 0, success = 0;          ///< share of right answers
   std::optional<Information> information;  ///< none: a comparison with fewer than two answers
@@ -23,7 +23,7 @@ struct SessionAnswers {
 
 struct IdentificationAnswers {
   std::vector<std::string> comparisons, standards;
-  std::vector<SessionAnswers> sessions;
+  std::vector<BlockAnswers> blocks;
   std::string simulated;
 };
 
@@ -31,17 +31,17 @@ struct IdentificationAnswers {
 /// run, all of one identification.
 IdentificationAnswers identification_answers(const std::vector<Run>& runs);
 
-/// The people of one kind of session: mean and standard deviation of their success, mean of their
+/// The people in one condition: mean and standard deviation of their success, mean of their
 /// information, and the sum of their matrices.
-struct SessionOverPeople {
-  std::string session;
+struct BlocksOverPeople {
+  std::string condition;
   std::size_t people = 0;
   double success = 0;
   std::optional<double> success_deviation;  ///< none: one person
   std::optional<Information> information;   ///< none: one of the people has none
   ConfusionMatrix matrix;
 };
-std::vector<SessionOverPeople> sessions_over_people(const IdentificationAnswers& answers);
+std::vector<BlocksOverPeople> blocks_over_people(const IdentificationAnswers& answers);
 
 Findings findings_of(const IdentificationAnswers& answers);
 

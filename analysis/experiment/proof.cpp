@@ -22,7 +22,7 @@ using schema::Result;
 namespace {
 
 constexpr const char *kStretchColumns = "standard_interval\tnominal_stretch\tpredicted_stretch",
-                     *kIdentificationColumns = "block\tsession\tpresented";
+                     *kIdentificationColumns = "block\tcondition\tpresented";
 constexpr const char* kTrialColumns =
     "attempt\ttrial\t{}\tpredicted_error_db\tmeasured_error_db\t{}\tanswer\tanswer_s\tdelivered\twhy\t"
     "simulated\n";
@@ -127,7 +127,8 @@ std::string cells_of_task(const Run& run, const Attempt& attempt) {
   const schema::CodedStimulus& stimulus = stimulus_of(run.study.key, attempt.trial.code);
   if (!has_two_intervals(run))
     return fmt::format("{}\t{}\t{}", attempt.trial.block,
-                       attempt.trial.real ? schema::kRealSession : schema::kVirtualSession, stimulus.name);
+                       attempt.trial.real ? schema::kRealCondition : schema::kVirtualCondition,
+                       stimulus.name);
   const auto predicted = attempt.judged ? predicted_stretch(attempt) : std::nullopt;
   return fmt::format("{}\t{:.9g}\t{}", attempt.trial.standard_comes_first() ? 1 : 2, stimulus.stretch,
                      predicted ? fmt::format("{:.9g}", *predicted) : "");

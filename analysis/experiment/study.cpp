@@ -172,7 +172,7 @@ Result<schema::Protocol> identification_protocol(const std::string& seed, const 
   protocol.task = schema::Task::identification;
   protocol.standard = {}, protocol.keep_slope = false, protocol.levels.clear();
   protocol.comparisons = comparisons;
-  protocol.sessions = {schema::kRealSession, schema::kVirtualSession};
+  protocol.conditions = {schema::kRealCondition, schema::kVirtualCondition};
   protocol.most_trials = 100;
   protocol.longest_s = 900;
   protocol.repetitions = static_cast<int>(std::ceil(100.0 / static_cast<double>(comparisons.size())));

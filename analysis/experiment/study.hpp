@@ -31,9 +31,10 @@ schema::Protocol stretch_protocol(const std::string& seed);
 using NamedTextures = std::map<std::string, schema::Texture>;
 
 /// Experiment 1 of the same paper: which of five textures is one of three of them, `comparisons`, as a real
-/// sample in one session and played in the other one. The path is that of the shortest texture without its
-/// ends, the gain 1 mm/N or what the largest force permits. Errors: usage: fewer than two textures, or more
-/// than there are keys, or a comparison that is none of them; unsuitable: a texture that is not of force.
+/// sample in one block of trials and played in the other one. The path is that of the shortest texture
+/// without its ends, the gain 1 mm/N or what the largest force permits. Errors: usage: fewer than two
+/// textures, or more than there are keys, or a comparison that is none of them; unsuitable: a texture that is
+/// not of force.
 schema::Result<schema::Protocol> identification_protocol(const std::string& seed,
                                                          const NamedTextures& textures,
                                                          const std::vector<std::string>& comparisons);

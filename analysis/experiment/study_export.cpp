@@ -26,8 +26,8 @@ struct Column {
 constexpr Column kColumns[] = {
     {"attempt", "number of the attempt in the run; what was not delivered comes again", ""},
     {"trial", "code of the stretched stimulus, or of the comparison, and number of its repetition", ""},
-    {"block", "session of the participant, 1 or 2", ""},
-    {"session", "whether the comparisons were real samples or played (virtual)", ""},
+    {"block", "number of the block of trials", ""},
+    {"condition", "whether the comparisons were real samples or played (virtual)", ""},
     {"presented", "name of the comparison", ""},
     {"answer_choice", "number of the standard that was answered", ""},
     {"correct", "1: the answer is the comparison, else 0", ""},

@@ -161,11 +161,12 @@ class LiveSteps {
   BlockClock::time_point block_since_;
 };
 
-// The row of session orders that the fewest complete runs have. A journal that cannot be read is of no
+// The row of block orders that the fewest complete runs have. A journal that cannot be read is of no
 // complete run.
 int next_order(const Study& study) {
-  std::vector<int> complete(static_cast<std::size_t>(
-      study.protocol.task == schema::Task::two_interval ? 1 : williams_rows(study.protocol.sessions.size())));
+  std::vector<int> complete(static_cast<std::size_t>(study.protocol.task == schema::Task::two_interval
+                                                         ? 1
+                                                         : williams_rows(study.protocol.conditions.size())));
   for (const std::string& stem : runs_of(study)) {
     const auto journal = schema::read_journal(schema::journal_path(stem));
     if (!journal) continue;

@@ -36,7 +36,7 @@ struct RunRequest {
   std::function<void(double)> tell;  ///< the part of the trials that are done
 };
 
-/// Begins a run and returns it as it ended. The order of its sessions is the row that the fewest complete
+/// Begins a run and returns it as it ended. The order of its blocks is the row that the fewest complete
 /// runs of the study have, the first of these rows. Errors: those of read_study and of check_on_device;
 /// usage: no code of a participant, one that has begun; those of playback: the run can be resumed.
 schema::Result<Run> begin_run(const std::string& study, const std::string& participant,

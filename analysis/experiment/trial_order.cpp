@@ -47,8 +47,8 @@ std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const s
     return trials_of_block(protocol, key, participant, {{}, 0, 1, false});
   std::vector<StudyTrial> trials;
   StudyTrial kind;
-  for (const std::size_t session : williams_row(protocol.sessions.size(), order)) {
-    kind.real = protocol.sessions[session] == schema::kRealSession;
+  for (const std::size_t condition : williams_row(protocol.conditions.size(), order)) {
+    kind.real = protocol.conditions[condition] == schema::kRealCondition;
     std::vector<StudyTrial> block = trials_of_block(protocol, key, participant, kind);
     block.resize(std::min(block.size(), static_cast<std::size_t>(protocol.most_trials)));
     trials.insert(trials.end(), block.begin(), block.end());

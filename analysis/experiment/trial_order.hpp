@@ -21,7 +21,7 @@ struct StudyTrial {
 
 /// All trials of a participant. Those of each block are sorted by the SHA-256 of
 /// SEED/PARTICIPANT/BLOCK/CODE.REPETITION. two_interval has one block, 1; the blocks of an identification are
-/// its sessions, in the order of row `order` of their Williams square, and each has its first most_trials
+/// its conditions, in the order of row `order` of their Williams square, and each has its first most_trials
 /// trials.
 std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                        const std::string& participant, int order);

@@ -17,7 +17,7 @@ Result<cli::Report> describe_protocol(const std::string& path) {
   else
     report.add("standards", protocol->standards.size())
         .add("comparisons", protocol->comparisons.size())
-        .add("sessions", protocol->sessions);
+        .add("conditions", protocol->conditions);
   report.add("repetitions", protocol->repetitions);
   report.add("participants", protocol->participants).add("seed", protocol->seed);
   add_text(report, "notes", protocol->notes);

@@ -22,7 +22,7 @@ struct RunPlanned {
   std::string device;
   std::string observer;  ///< simulated; empty: a person
   std::string created, creator;
-  int order = 1;  ///< row of the square of session orders, from 1
+  int order = 1;  ///< row of the square of block orders, from 1
 };
 
 /// An attempt at a trial begins: the first line of it.

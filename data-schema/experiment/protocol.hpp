@@ -23,8 +23,8 @@ enum class Task { two_interval, identification };
 /// "two_interval", "identification".
 const char* word_of(Task task);
 
-/// One session of an identification: the comparisons are real samples, or played.
-inline constexpr const char *kRealSession = "real", *kVirtualSession = "virtual";
+/// One condition of an identification: the comparisons are real samples, or played.
+inline constexpr const char *kRealCondition = "real", *kVirtualCondition = "virtual";
 
 /// How the finger is to move in each interval.
 struct ProtocolPace {
@@ -60,12 +60,13 @@ struct Protocol {
   bool keep_slope = false;     ///< the amplitude is stretched alike
   std::vector<double> levels;  ///< stretch of the period: 0.3 is 30 % longer; ascending, never 0
   std::vector<std::string> standards, comparisons;  ///< names of textures; comparisons are standards
-  std::vector<std::string> sessions;  ///< of an identification; their order is a row of a Williams square
-  int most_trials = 0;                ///< of one session
-  double longest_s = 0;               ///< of one session: then no further trial of it begins
-  int repetitions = 0;                ///< of each level or comparison (in each session)
-  std::string seed;                   ///< of codes and order
-  double gain_m_per_n = 0;            ///< of playback
+  std::vector<std::string>
+      conditions;           ///< of an identification, a block each; their order is a row of a Williams square
+  int most_trials = 0;      ///< of one block
+  double longest_s = 0;     ///< of one block: then no further trial of it begins
+  int repetitions = 0;      ///< of each level or comparison (in each condition)
+  std::string seed;         ///< of codes and order
+  double gain_m_per_n = 0;  ///< of playback
   ProtocolPace pace;
   double lead_s = 0;  ///< from the participant's go-ahead to the beginning of an interval: above any load
   std::vector<AnswerWord> choices;  ///< the answers: first and second interval; or a standard each, in order

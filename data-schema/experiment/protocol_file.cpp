@@ -43,7 +43,7 @@ struct ShownText {
 constexpr const char* kTaskWords[] = {"two_interval", "identification"};
 // Members that one task has and the other one does not.
 constexpr const char* kTwoIntervalMembers[] = {"standard", "keep", "levels"};
-constexpr const char* kIdentificationMembers[] = {"standards", "comparisons", "sessions", "most_trials",
+constexpr const char* kIdentificationMembers[] = {"standards", "comparisons", "conditions", "most_trials",
                                                   "longest_s"};
 constexpr ShownText kShownTexts[] = {{"welcome", &ProtocolTexts::welcome},
                                      {"begin", &ProtocolTexts::begin},
@@ -65,7 +65,7 @@ void take_two_interval(const Json& body, Protocol& protocol) {
 void take_identification(const Json& body, Protocol& protocol) {
   protocol.standards = body["standards"].get<std::vector<std::string>>();
   protocol.comparisons = body["comparisons"].get<std::vector<std::string>>();
-  protocol.sessions = body["sessions"].get<std::vector<std::string>>();
+  protocol.conditions = body["conditions"].get<std::vector<std::string>>();
   protocol.most_trials = body["most_trials"];
   protocol.longest_s = body["longest_s"];
 }
@@ -109,7 +109,7 @@ void put_two_interval(Json& body, const Protocol& protocol) {
 void put_identification(Json& body, const Protocol& protocol) {
   body["standards"] = protocol.standards;
   body["comparisons"] = protocol.comparisons;
-  body["sessions"] = protocol.sessions;
+  body["conditions"] = protocol.conditions;
   body["most_trials"] = protocol.most_trials;
   body["longest_s"] = protocol.longest_s;
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`tactograph experiment` with the protocol identification on the emulated device: order of sessions, labels of real samples,
+"""`tactograph experiment` with the protocol identification on the emulated device: order of blocks, labels of real samples,
 a run that is killed, confusions against NumPy, a swapped stimulus, export and power."""
 import csv
 import hashlib
@@ -78,7 +78,7 @@ def a_run_without_noise_is_right():
     assert failed and len(virtual) == 6 + len(failed) and all("too fast" in entry["why"][0] for entry in failed)
     assert [entry["label"] for entry in entries if entry["event"] == "placed"] == [entry["trial"].split(".")[0] for entry in real]
     rows = table("faces-P01")
-    assert [row["session"] for row in rows] == ["real"] * 6 + ["virtual"] * len(virtual)
+    assert [row["condition"] for row in rows] == ["real"] * 6 + ["virtual"] * len(virtual)
     assert [row["delivered"] for row in rows[:6]] == ["unknown"] * 6 and [row["delivered"] for row in rows].count("yes") == 6
     assert all(row["answer"] == row["presented"] == key()[row["trial"].split(".")[0]] for row in rows if row["delivered"] != "no"), rows
     proof = tacto.run_json("experiment", "prove", "faces-P01")
@@ -87,7 +87,7 @@ def a_run_without_noise_is_right():
 
 
 def labels_are_typed():
-    """P02 gets the other order of sessions. A wrong label ends the run before the answer, and the run goes on."""
+    """P02 gets the other order of blocks. A wrong label ends the run before the answer, and the run goes on."""
     labels = [trial.split(".")[0] for trial in order_of("P02", 2)]
     answers = ["1", "B", "3", "D", "5", "A"] + ["2"] * 6
     command = ["-d", "sim:", "--answers", "answers.txt"]
@@ -98,7 +98,7 @@ def labels_are_typed():
     assert [entry["event"] for entry in journal("faces-P02")][-1] == "begun"
     pathlib.Path("answers.txt").write_text("\n".join(answers[:6]))
     assert tacto.run_json("experiment", "resume", "faces-P02", *command)["complete"] is False
-    # The trials that were begun without a label come again at the session's end, the first one after the second.
+    # The trials that were begun without a label come again at the block's end, the first one after the second.
     again = labels[2:] + labels[:2]
     pathlib.Path("answers.txt").write_text("\n".join(answers[:6] + [line for label in again for line in (label, "2")]))
     assert tacto.run_json("experiment", "resume", "faces-P02", *command)["complete"] is True
@@ -154,14 +154,14 @@ def confusions_are_counted():
     report = tacto.run_json("experiment", "analyse", "faces", "--unblind", "-o", "faces.html", "-o", "faces.results.json")
     assert pathlib.Path("faces.html").exists() and "observer template,seed=3 (P03)" in report["simulated"]
     rows = [row for person in ("P01", "P02", "P03") for row in table(f"faces-{person}") if row["answer"] and row["delivered"] != "no"]
-    assert [(one["participant"], one["session"]) for one in report["people"]] == [("P01", "real"), ("P01", "virtual"), ("P02", "virtual"), ("P02", "real"), ("P03", "real"), ("P03", "virtual")]
-    for over in report["sessions"]:
+    assert [(one["participant"], one["condition"]) for one in report["people"]] == [("P01", "real"), ("P01", "virtual"), ("P02", "virtual"), ("P02", "real"), ("P03", "real"), ("P03", "virtual")]
+    for over in report["conditions"]:
         (cells,) = over["answers"]
         for name in COMPARISONS:
             for answer in NAMES:
-                expected = sum(row["session"] == over["session"] and row["presented"] == name and row["answer"] == answer for row in rows)
-                assert cells[name][0][answer] == expected, (over["session"], name, answer)
-        people = [one for one in report["people"] if one["session"] == over["session"]]
+                expected = sum(row["condition"] == over["condition"] and row["presented"] == name and row["answer"] == answer for row in rows)
+                assert cells[name][0][answer] == expected, (over["condition"], name, answer)
+        people = [one for one in report["people"] if one["condition"] == over["condition"]]
         assert over["people"] == len(people) == 3
         assert np.isclose(over["success"], np.mean([one["success"] for one in people]), rtol=1e-12)
         assert np.isclose(over["success_deviation"], np.std([one["success"] for one in people], ddof=1), rtol=1e-9)
@@ -199,12 +199,12 @@ def totals_are_those_of_the_paper():
     """One participant with all trials: the standard error of a success of 100 trials is 2.6 and 4.3 %, the bound four of them."""
     new_study("total", 34)
     tacto.run("experiment", "run", "total", "-d", "sim:", "--participant", "P11", "--observer", "template,seed=1")
-    totals = {one["session"]: one for one in tacto.run_json("experiment", "analyse", "total", "--unblind")["sessions"]}
+    totals = {one["condition"]: one for one in tacto.run_json("experiment", "analyse", "total", "--unblind")["conditions"]}
     assert abs(totals["real"]["success"] - 0.93) < 0.103 and abs(totals["virtual"]["success"] - 0.75) < 0.174, totals
     assert journal("total-P11")[-1]["event"] == "end" and len([1 for row in table("total-P11") if row["answer"]]) >= 200
 
 
-def a_session_ends_after_its_time():
+def a_block_ends_after_its_time():
     new_study("short", 2, longest_s=1e-9)
     done = tacto.run_json("experiment", "run", "short", "-d", "sim:", "--participant", "P21", "--observer", "template")
     assert done["complete"] is True and done["trials"] == 0 == done["delivered_and_answered"], done
@@ -220,7 +220,7 @@ def study():
     other_verbs()
     a_swapped_stimulus_is_refused()
     totals_are_those_of_the_paper()
-    a_session_ends_after_its_time()
+    a_block_ends_after_its_time()
 
 
 if __name__ == "__main__":

@@ -35,13 +35,13 @@ schema::ProtocolKey key_of(const schema::Protocol& protocol) {
   return {stimuli_by_code(protocol), ""};
 }
 
-// Identification of five names: three comparisons, in a real and in a virtual session of five trials each.
+// Identification of five names: three comparisons, in a real and in a virtual block of five trials each.
 schema::Protocol ten_trials() {
   schema::Protocol protocol = twenty_trials();
   protocol.task = schema::Task::identification;
   protocol.levels.clear();
   protocol.standards = {"A", "B", "C", "D", "E"}, protocol.comparisons = {"C", "D", "E"};
-  protocol.sessions = {"real", "virtual"};
+  protocol.conditions = {"real", "virtual"};
   protocol.most_trials = 5, protocol.longest_s = 900;
   return protocol;
 }
@@ -157,8 +157,8 @@ TEST(ExperimentRun, AJournalCutAtEachByteIsResumedWithEachAnswerOnce) {
   }
 }
 
-// The same with two sessions: real samples, then playback, of which what was not delivered comes again.
-TEST(ExperimentRun, AJournalOfTwoSessionsCutAtEachByteIsResumed) {
+// The same with two blocks: real samples, then playback, of which what was not delivered comes again.
+TEST(ExperimentRun, AJournalOfTwoBlocksCutAtEachByteIsResumed) {
   for (const int in_time : {1000, 3}) {
     TextRun whole(ten_trials());
     whole.attempts_in_time = in_time;
@@ -179,7 +179,7 @@ TEST(ExperimentRun, AJournalOfTwoSessionsCutAtEachByteIsResumed) {
       ASSERT_EQ(resumed.text().substr(0, whole_lines), text.substr(0, whole_lines)) << bytes;
       ASSERT_TRUE(resumed.queue().has_ended()) << bytes;
       const auto counted = counted_trials(resumed.queue());
-      // An interrupted real sample comes again at its session's end, where the time may be over.
+      // An interrupted real sample comes again at its block's end, where the time may be over.
       ASSERT_LE(counted.size(), trials) << bytes;
       ASSERT_GE(counted.size(), in_time == 3 ? trials - 1 : trials) << bytes;
       for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
@@ -187,7 +187,7 @@ TEST(ExperimentRun, AJournalOfTwoSessionsCutAtEachByteIsResumed) {
   }
 }
 
-TEST(ExperimentRun, SessionsAreOrderedByAWilliamsSquare) {
+TEST(ExperimentRun, BlocksAreOrderedByAWilliamsSquare) {
   for (std::size_t count = 1; count <= 7; ++count) {
     std::map<std::pair<std::size_t, std::size_t>, int> at_place, after;
     for (int row = 1; row <= williams_rows(count); ++row) {

@@ -84,7 +84,7 @@ TEST_F(ProtocolFile, EachFaultHasItsPlace) {
 nlohmann::json identification(nlohmann::json body, const nlohmann::json& change) {
   for (const char* member : {"standard", "keep", "levels"}) body.erase(member);
   body.merge_patch(nlohmann::json::parse(R"({
-    "task": "identification", "standards": ["A", "B"], "comparisons": ["B"], "sessions": ["virtual", "real"],
+    "task": "identification", "standards": ["A", "B"], "comparisons": ["B"], "conditions": ["virtual", "real"],
     "most_trials": 100, "longest_s": 900.0})"));
   body["texts"]["place"] = "p";
   body.merge_patch(change);
@@ -106,7 +106,7 @@ TEST_F(ProtocolFile, AnIdentificationReadsBackAndEachFaultHasItsPlace) {
                                       {R"({"comparisons": ["C"]})", "/comparisons/0"},
                                       {R"({"comparisons": ["B", "B"]})", "/comparisons/1"},
                                       {R"({"standards": ["A", "B", "C"]})", "/answers/choices"},
-                                      {R"({"sessions": ["real", "real"]})", "/sessions"},
+                                      {R"({"conditions": ["real", "real"]})", "/conditions"},
                                       {R"({"longest_s": null})", "/longest_s"},
                                       {R"({"levels": [0.5, 0.7]})", "/levels"}}) {
     const auto refused = read(nlohmann::json::parse(change));
