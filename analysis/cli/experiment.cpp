@@ -7,6 +7,7 @@
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/experiment/answers_page.hpp"
+#include "analysis/experiment/identification_answers.hpp"
 #include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/withdrawal.hpp"
 #include "analysis/page/picture_svg.hpp"
@@ -244,13 +245,66 @@ struct AnalyseOptions {
   bool unblind = false;
 };
 
+// The table of confusions, for --json and results.
+Report confusion_report(const IdentificationAnswers& all, const ConfusionMatrix& matrix) {
+  Report report;
+  for (std::size_t i = 0; i < matrix.size(); ++i) {
+    Report row;
+    for (std::size_t j = 0; j < matrix[i].size(); ++j) row.add(all.standards[j], matrix[i][j]);
+    report.add(all.comparisons[i], std::vector<Report>{row});
+  }
+  return report;
+}
+
+void add_information(Report& row, const std::optional<Information>& information) {
+  if (!information) return;
+  row.add("information_bit", information->jackknife)
+      .add("plug_in_bit", information->plug_in)
+      .add("miller_madow_bit", information->miller_madow);
+}
+
+Report identification_report(const IdentificationAnswers& all, const std::string& verdict) {
+  Report report;
+  report.add("verdict", verdict);
+  if (!all.simulated.empty()) report.add("simulated", all.simulated);
+  std::vector<Report> people, conditions;
+  for (const BlockAnswers& each : all.blocks) {
+    Report& row = people.emplace_back();
+    row.add("participant", each.participant).add("condition", each.condition).add("block", each.block);
+    row.add("trials", each.trials).add("success", each.success);
+    add_information(row, each.information);
+    row.add("answers", std::vector<Report>{confusion_report(all, each.matrix)});
+  }
+  for (const BlocksOverPeople& over : blocks_over_people(all)) {
+    Report& row = conditions.emplace_back();
+    row.add("condition", over.condition).add("people", over.people).add("success", over.success);
+    if (over.success_deviation) row.add("success_deviation", *over.success_deviation);
+    add_information(row, over.information);
+    row.add("answers", std::vector<Report>{confusion_report(all, over.matrix)});
+  }
+  return report.add("conditions", std::move(conditions)).add("people", std::move(people));
+}
+
+Result<Report> analyse_task(const AnalyseOptions& o, bool json) {
+  const auto protocol = schema::read_protocol(o.fit.file);
+  TACTO_TRY(protocol);
+  if (protocol->task == schema::Task::two_interval) {
+    auto table = study_answers(o.fit.file, o.unblind);
+    TACTO_TRY(table);
+    return fit_table(o.fit, std::move(*table), json);
+  }
+  const auto runs = answered_runs(o.fit.file, o.unblind);
+  TACTO_TRY(runs);
+  const IdentificationAnswers answers = identification_answers(*runs);
+  const Findings findings = findings_of(answers);
+  return write_fit(o.fit, findings, identification_report(answers, findings.verdict()), json);
+}
+
 Result<Report> run_analyse(const AnalyseOptions& o, bool json) {
   const Findings nothing_yet;
   const OutputKind svg = svg_output(nothing_yet);
   TACTO_TRY(check_outputs(o.fit.outputs, o.fit.existing, {&svg, 1}));
-  auto table = study_answers(o.fit.file, o.unblind);
-  TACTO_TRY(table);
-  auto report = fit_table(o.fit, std::move(*table), json);
+  auto report = analyse_task(o, json);
   TACTO_TRY(report);
   if (!o.fit.outputs.empty()) TACTO_TRY(log_outputs(schema::stem_of(o.fit.file, ".protocol"), o.fit.outputs));
   return report;
@@ -267,9 +321,13 @@ cli::Action declare_analyse(CLI::App& app) {
                  "may be repeated");
   cli::declare_force(app, options->fit.existing);
   app.footer(
-      "The trials that were delivered and answered, of all participants; the JND is the Weber fraction, re "
-      "the "
-      "standard's period.");
+      "The trials that were delivered and answered, of all participants. Of two intervals: the JND is the "
+      "Weber fraction, re the standard's period.\nOf an identification: success and transmitted information "
+      "of "
+      "real and of virtual comparisons, each person analysed and then the mean taken; information is "
+      "corrected for its bias by the jackknife, with the plug-in value and that of Miller and Madow beside "
+      "it; "
+      "the answers are the sum over people.");
   CLI::App* const verb = app.get_parent();
   return [options, verb] { return run_analyse(*options, verb->count("--json") > 0); };
 }
@@ -280,7 +338,7 @@ constexpr cli::VerbPart kExperimentParts[] = {
     {"run", "Run a study with one participant, or with a simulated observer", declare_run_study},
     {"resume", "Continue an interrupted run", declare_resume_study},
     {"prove", "Compute from the sessions of a run what was delivered", declare_prove_run},
-    {"analyse", "Fit psychometric functions to the answers of a study", declare_analyse},
+    {"analyse", "Fit psychometric functions to the answers of a study, or count confusions", declare_analyse},
     {"power", "How many participants a study needs for a difference of Weber fractions", declare_study_power},
     {"export", "Write the trials of a study as CSV and BIDS, with a script for R", declare_export_study},
     {"withdraw", "Delete all files of a participant; code and date are noted", declare_withdraw},
@@ -293,21 +351,25 @@ cli::Action declare_experiment(CLI::App& app) {
 
 }  // namespace
 
-const cli::Verb kExperimentVerb{"experiment",
-                                "Psychophysics: run a protocol, prove what was delivered, fit the answers",
-                                "tactograph experiment new stretch -o stretch\n"
-                                "  tactograph experiment run stretch -d usb: --participant P01\n"
-                                "  tactograph experiment run stretch -d sim: --participant P02 --observer "
-                                "weber=25%,lapse=2%\n"
-                                "  tactograph experiment prove stretch-P01\n"
-                                "  tactograph experiment analyse stretch --unblind -o stretch.html\n"
-                                "  tactograph experiment prove sessions/2026-11-29.session\n"
-                                "  tactograph experiment power stretch --weber 15.5%,25.3% --spread 23%\n"
-                                "  tactograph experiment export stretch -o stretch-export\n"
-                                "  tactograph experiment withdraw stretch --participant P07\n"
-                                "  tactograph experiment fit answers.csv --guess 50% -o answers.html\n"
-                                "  tactograph experiment fit answers.csv --by participant,vibration_hz\n"
-                                "  tactograph experiment fit --pairs preferences.csv",
-                                declare_experiment};
+const cli::Verb kExperimentVerb{
+    "experiment", "Psychophysics: run a protocol, prove what was delivered, fit the answers",
+    "tactograph experiment new stretch -o stretch\n"
+    "  tactograph experiment new identification --textures A,B,C,D,E --comparisons C,D,E "
+    "-o surfaces\n"
+    "  tactograph experiment run stretch -d usb: --participant P01\n"
+    "  tactograph experiment run stretch -d sim: --participant P02 --observer "
+    "weber=25%,lapse=2%\n"
+    "  tactograph experiment run surfaces -d sim: --participant P01 --observer "
+    "template\n"
+    "  tactograph experiment prove stretch-P01\n"
+    "  tactograph experiment analyse stretch --unblind -o stretch.html\n"
+    "  tactograph experiment prove sessions/2026-11-29.session\n"
+    "  tactograph experiment power stretch --weber 15.5%,25.3% --spread 23%\n"
+    "  tactograph experiment export stretch -o stretch-export\n"
+    "  tactograph experiment withdraw stretch --participant P07\n"
+    "  tactograph experiment fit answers.csv --guess 50% -o answers.html\n"
+    "  tactograph experiment fit answers.csv --by participant,vibration_hz\n"
+    "  tactograph experiment fit --pairs preferences.csv",
+    declare_experiment};
 
 }  // namespace tacto::analysis

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -33,6 +34,7 @@ using schema::Result;
 
 struct NewStudyOptions {
   std::string what, stem, seed = "1";
+  std::vector<std::string> textures, comparisons;
   schema::Existing existing = schema::Existing::keep;
 };
 
@@ -48,15 +50,21 @@ struct RunStudyOptions {
 constexpr const char* kDeviceHelp =
     "Device: usb:, sim: ... (as of 'play'; an emulated finger moves at the protocol's pace)";
 constexpr const char* kAnswersHelp =
-    "File with an answer on each line, its word or its key; default: the keys of this terminal";
+    "File with an answer on each line, its word or its key, and between them the labels (K3) of the real "
+    "samples that the operator places; default: the keys of this terminal";
 
 Report study_report(const Study& study) {
   const schema::Protocol& protocol = study.protocol;
   Report report;
-  report.add("study", study.stem)
-      .add("levels", protocol.levels.size())
-      .add("repetitions", protocol.repetitions)
-      .add("trials", protocol.levels.size() * static_cast<std::size_t>(protocol.repetitions));
+  report.add("study", study.stem).add("task", schema::word_of(protocol.task));
+  if (protocol.task == schema::Task::two_interval)
+    report.add("levels", protocol.levels.size());
+  else
+    report.add("standards", protocol.standards.size())
+        .add("comparisons", protocol.comparisons.size())
+        .add("conditions", protocol.conditions.size());
+  report.add("repetitions", protocol.repetitions)
+      .add("trials", ordered_trials(protocol, study.key, "P1", 1).size());
   return report.add("interval_s", paced_path(protocol.pace).duration_s());
 }
 
@@ -67,12 +75,34 @@ Result<Report> warn_and_report(const Study& study) {
   return study_report(study);
 }
 
-Result<Report> run_new_study(const NewStudyOptions& o) {
-  if (o.what != "stretch")
+// Takes the textures that the protocol is of.
+Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& textures) {
+  if (o.what == "stretch" && o.textures.empty() && o.comparisons.empty()) return stretch_protocol(o.seed);
+  if (o.what == "stretch")
+    return schema::fail(ErrorKind::usage, "the stimuli of stretch are computed", "--textures",
+                        "leave it out");
+  if (o.what != "identification")
     return schema::fail(ErrorKind::usage,
                         fmt::format("'{}' is not a protocol that comes with tactograph", o.what),
-                        "experiment new", "there is one: stretch");
-  const auto study = write_study(o.stem.empty() ? o.what : o.stem, stretch_protocol(o.seed), o.existing);
+                        "experiment new", "there are: stretch, identification");
+  for (const std::string& file : o.textures) {
+    auto texture = schema::read_texture(file);
+    TACTO_TRY(texture);
+    const std::string name = std::filesystem::path(schema::stem_of(file, ".texture")).filename().string();
+    if (!textures.emplace(name, std::move(*texture)).second)
+      return schema::fail(ErrorKind::usage, name + " is named twice", "--textures", "name each texture once");
+  }
+  std::vector<std::string> comparisons = o.comparisons;
+  if (comparisons.empty())
+    for (const auto& [name, texture] : textures) comparisons.push_back(name);
+  return identification_protocol(o.seed, textures, comparisons);
+}
+
+Result<Report> run_new_study(const NewStudyOptions& o) {
+  NamedTextures textures;
+  auto protocol = new_protocol(o, textures);
+  TACTO_TRY(protocol);
+  const auto study = write_study(o.stem.empty() ? o.what : o.stem, *protocol, textures, o.existing);
   TACTO_TRY(study);
   auto report = warn_and_report(*study);
   TACTO_TRY(report);
@@ -177,10 +207,13 @@ Result<Report> run_resume_study(const RunStudyOptions& o) {
 }
 
 std::string proof_in_words(const Proof& proof) {
-  return fmt::format(
-      "{} of {} trials delivered; predicted stretch within {:.2g} of the nominal one; {} of {} "
-      "sessions the same to the bit",
-      proof.delivered, proof.trials, proof.stretch_error, proof.same_to_the_bit, proof.sessions);
+  std::string words = fmt::format("{} of {} trials delivered", proof.delivered, proof.trials);
+  if (proof.placed > 0)
+    words += fmt::format(", {} with real samples, of which there is only the operator's word", proof.placed);
+  if (proof.stretch_error)
+    words += fmt::format("; predicted stretch within {:.2g} of the nominal one", *proof.stretch_error);
+  return words +
+         fmt::format("; {} of {} sessions the same to the bit", proof.same_to_the_bit, proof.sessions);
 }
 
 struct ProveOptions {
@@ -260,8 +293,9 @@ Result<Report> run_prove_run(const ProveOptions& o) {
       .add("not_delivered", proof.failed)
       .add("interrupted", proof.interrupted)
       .add("sessions", proof.sessions)
-      .add("same_to_the_bit", proof.same_to_the_bit)
-      .add("stretch_error", proof.stretch_error);
+      .add("same_to_the_bit", proof.same_to_the_bit);
+  if (run->study.protocol.task == schema::Task::identification) report.add("real_samples", proof.placed);
+  if (proof.stretch_error) report.add("stretch_error", *proof.stretch_error);
   report.add("recorded", "ticks and drive").add("predicted", "displacement, by the transducer's model");
   if (!proof.simulated.empty()) report.add("simulated", proof.simulated);
   if (!run->journal.plan.observer.empty()) report.add("observer", run->journal.plan.observer);
@@ -335,7 +369,9 @@ Result<Report> run_export_study(const ExportOptions& o) {
   TACTO_TRY(files);
   Report report;
   report.add("written", *files);
-  return report.add("next", fmt::format("Rscript {}/analysis.R", o.folder));
+  const std::string script = o.folder + "/analysis.R";
+  if (std::ranges::find(*files, script) != files->end()) report.add("next", "Rscript " + script);
+  return report;
 }
 
 struct WithdrawOptions {
@@ -385,9 +421,23 @@ Result<Report> run_withdraw(const WithdrawOptions& o) {
 
 cli::Action declare_new_study(CLI::App& app) {
   auto options = std::make_shared<NewStudyOptions>();
-  app.add_option("PROTOCOL", options->what, "stretch: experiment 2 of Wiertlewski 2011")->required();
+  app.add_option("PROTOCOL", options->what,
+                 "stretch or identification: experiments 2 and 1 of Wiertlewski 2011")
+      ->required();
   app.add_option("-o,--output", options->stem, "Stem of the study's files; default: the protocol's name");
+  app.add_option("--textures", options->textures,
+                 "Of identification: the standards, textures of force, A,B,C,D,E")
+      ->delimiter(',');
+  app.add_option("--comparisons", options->comparisons,
+                 "Of identification: which of them are presented, C,D,E; default: all")
+      ->delimiter(',');
   app.add_option("--seed", options->seed, "Seed of codes and order: letters and digits");
+  app.footer(
+      "stretch: which of two sinusoids has the smaller period. identification: which of the standards is a "
+      "comparison, a real sample in one block and played in the other one, each of 100 trials or 15 "
+      "minutes. "
+      "Label the real samples with the codes of STUDY.key.json, which neither operator nor participant "
+      "reads.");
   cli::declare_force(app, options->existing);
   return [options] { return run_new_study(*options); };
 }
@@ -409,7 +459,9 @@ cli::Action declare_run_study(CLI::App& app) {
   CLI::Option* observer = app.add_option(
       "--observer", options->observer,
       "A simulated participant, which gets only the displacement that the sessions predict: "
-      "weber=25.3%,lapse=2%,hurry=5%,seed=1 (hurry: share of trials with a finger of twice the speed)");
+      "weber=25.3%,lapse=2%,hurry=5%,seed=1 (hurry: share of trials with a finger of twice the speed). Of an "
+      "identification: template,noise=9dB,hurry=5%,seed=1, which compares its spectrum with the standards'; "
+      "its noise is tuned, so its success says nothing about people");
   app.add_option("--answers", options->answers, kAnswersHelp)->excludes(observer);
   app.footer(
       "Each step is in STUDY-P07.trials.jsonl before the next one begins. Whether a trial was delivered is "
@@ -476,7 +528,8 @@ cli::Action declare_export_study(CLI::App& app) {
                "Export before the planned participants are complete; STUDY.unblinded.txt keeps the date");
   cli::declare_force(app, options->existing);
   app.footer(
-      "trials.csv has a row for each attempt of all participants; analysis.R fits a generalised linear mixed "
+      "trials.csv has a row for each attempt of all participants; analysis.R (of two intervals) fits a "
+      "generalised linear mixed "
       "model "
       "(probit) to it with lme4, and to other tables: its first lines say how. The folder is a data set "
       "after BIDS: "

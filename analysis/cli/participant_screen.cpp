@@ -2,8 +2,10 @@
 #include "analysis/cli/participant_screen.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <sstream>
@@ -26,10 +28,24 @@ void show(const std::string& text) {
   fmt::print(stderr, "\n{}\n", text);
 }
 
-// 0: it is none.
-int interval_of(std::string_view answer, const schema::Protocol& protocol) {
-  if (answer == protocol.first.word || answer == protocol.first.key) return 1;
-  return answer == protocol.second.word || answer == protocol.second.key ? 2 : 0;
+// From 1; 0: it is none.
+int choice_number(std::string_view answer, const schema::Protocol& protocol) {
+  const auto found = std::ranges::find_if(protocol.choices, [&](const schema::AnswerWord& each) {
+    return answer == each.word || answer == each.key;
+  });
+  return found == protocol.choices.end() ? 0 : static_cast<int>(found - protocol.choices.begin()) + 1;
+}
+
+// K1, K2 ...
+bool is_label(const std::string& line) {
+  return line.size() > 1 && line.front() == 'K' &&
+         line.find_first_not_of("0123456789", 1) == std::string::npos;
+}
+
+tl::unexpected<schema::Error> wrong_label(const std::string& typed, const std::string& label,
+                                          const std::string& where) {
+  return schema::fail(ErrorKind::malformed, fmt::format("'{}' is not the sample {}", typed, label), where,
+                      fmt::format("place sample {}", label));
 }
 
 }  // namespace
@@ -55,12 +71,17 @@ Participant ParticipantScreen::participant() {
   const auto answer = [this](std::size_t /*number*/) -> Result<std::optional<GivenAnswer>> {
     show(protocol_.texts.question);
     const ScreenClock::time_point asked = ScreenClock::now();
-    const char key = wait_for(protocol_.first.key + protocol_.second.key);
+    std::string keys;
+    for (const schema::AnswerWord& choice : protocol_.choices) keys += choice.key;
+    const char key = wait_for(keys);
     if (key == 0) return std::nullopt;
     const std::chrono::duration<double> after = ScreenClock::now() - asked;
-    return GivenAnswer{key == protocol_.first.key.front() ? 1 : 2, after.count()};
+    return GivenAnswer{static_cast<int>(keys.find(key)) + 1, after.count()};
   };
-  return {go_ahead, answer};
+  const auto place = [this](const std::string& label, std::size_t /*number*/) {
+    return wait_for_label(label);
+  };
+  return {place, go_ahead, answer};
 }
 
 void ParticipantScreen::show_end() const {
@@ -79,24 +100,58 @@ char ParticipantScreen::wait_for(std::string_view keys) {
   return 0;
 }
 
+// Until the operator types this label and Enter; false: the run ends.
+Result<bool> ParticipantScreen::wait_for_label(const std::string& label) {
+  show(fmt::format("{} {}", protocol_.texts.place, label));
+  std::string typed;
+  while (!stop_asked_()) {
+    const char key = keys_.next();
+    if (key == 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    } else if (key != '\n' && key != '\r') {
+      typed += key;
+      fmt::print(stderr, "{}", key);
+    } else if (typed == label) {
+      return true;
+    } else {
+      show(schema::message(wrong_label(typed, label, "").value()));
+      typed.clear();
+    }
+  }
+  return false;
+}
+
 Result<Participant> answers_from(const std::string& file, const schema::Protocol& protocol) {
   const auto text = schema::read_file(file);
   TACTO_TRY(text);
   std::vector<int> answers;
+  std::vector<std::pair<std::string, std::string>> labels;  // with their places
   std::istringstream lines(*text);
+  std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
     if (line.ends_with('\r')) line.pop_back();
-    answers.push_back(interval_of(line, protocol));
-    if (answers.back() == 0)
-      return schema::fail(ErrorKind::malformed, fmt::format("'{}' is not an answer", line),
-                          fmt::format("{}: line {}", file, answers.size()),
-                          fmt::format("give {} or {}", protocol.first.word, protocol.second.word));
+    const std::string where = fmt::format("{}: line {}", file, ++number);
+    if (const int choice = choice_number(line, protocol); choice != 0) {
+      answers.push_back(choice);
+    } else if (is_label(line)) {
+      labels.emplace_back(line, where);
+    } else {
+      std::vector<std::string> words;
+      for (const schema::AnswerWord& each : protocol.choices) words.push_back(each.word);
+      return schema::fail(ErrorKind::malformed, fmt::format("'{}' is not an answer", line), where,
+                          fmt::format("give one of {}", fmt::join(words, ", ")));
+    }
   }
-  const auto answer = [answers](std::size_t number) -> Result<std::optional<GivenAnswer>> {
-    if (number >= answers.size()) return std::nullopt;
-    return GivenAnswer{answers[number], 0};
+  const auto place = [labels](const std::string& label, std::size_t at) -> Result<bool> {
+    if (at >= labels.size()) return false;
+    if (labels[at].first != label) return wrong_label(labels[at].first, label, labels[at].second);
+    return true;
   };
-  return Participant{[](int) { return true; }, answer};
+  const auto answer = [answers](std::size_t at) -> Result<std::optional<GivenAnswer>> {
+    if (at >= answers.size()) return std::nullopt;
+    return GivenAnswer{answers[at], 0};
+  };
+  return Participant{place, [](int) { return true; }, answer};
 }
 
 }  // namespace tacto::analysis

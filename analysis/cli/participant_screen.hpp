@@ -23,6 +23,7 @@ class ParticipantScreen {
 
  private:
   char wait_for(std::string_view keys);
+  schema::Result<bool> wait_for_label(const std::string& label);
 
   const schema::Protocol& protocol_;
   const std::function<bool()>& stop_asked_;
@@ -30,8 +31,9 @@ class ParticipantScreen {
   bool welcomed_ = false;
 };
 
-/// The answers of a file, one on each line: a word or a key of the protocol. After the last one the run ends.
-/// Errors: not_found; malformed, with the line.
+/// The answers of a file, one on each line: a word or a key of the protocol. The operator's labels of real
+/// samples (K3) are lines between them; answers and labels are counted separately. After the last one the run
+/// ends. Errors: not_found; malformed, with the line.
 schema::Result<Participant> answers_from(const std::string& file, const schema::Protocol& protocol);
 
 }  // namespace tacto::analysis

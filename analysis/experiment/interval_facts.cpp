@@ -129,7 +129,7 @@ std::vector<std::string> reasons_against(const IntervalFacts& facts, const schem
 }
 
 schema::DeliveryJudged judged_delivery(int attempt, std::vector<IntervalFacts> intervals,
-                                       const std::array<std::string, 2>& sha256,
+                                       const std::vector<std::string>& sha256,
                                        const schema::Protocol& protocol,
                                        const std::vector<std::string>& late_start) {
   schema::DeliveryJudged judged{attempt, false, late_start, {}};

@@ -2,7 +2,6 @@
 // What was delivered in one interval, by its session alone.
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,9 +33,9 @@ std::vector<std::string> reasons_by_limits(const schema::IntervalFacts& facts,
 std::vector<std::string> reasons_against(const schema::IntervalFacts& facts, const schema::Protocol& protocol,
                                          const std::string& sha256);
 
-/// The same for both intervals of an attempt. `late_start` holds further reasons, which are in no session.
+/// The same for all intervals of an attempt. `late_start` holds further reasons, which are in no session.
 schema::DeliveryJudged judged_delivery(int attempt, std::vector<schema::IntervalFacts> intervals,
-                                       const std::array<std::string, 2>& sha256,
+                                       const std::vector<std::string>& sha256,
                                        const schema::Protocol& protocol,
                                        const std::vector<std::string>& late_start);
 

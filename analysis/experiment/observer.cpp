@@ -22,6 +22,8 @@ namespace {
 
 constexpr double kQuantile75 = 0.6744897501960817;  // of the normal distribution, at 0.75
 
+constexpr std::string_view kTemplateWord = "template";
+
 struct ObserverShare {
   std::string name;
   double Observer::*member;
@@ -31,7 +33,8 @@ const ObserverShare kObserverShares[] = {
     {"weber", &Observer::weber, 10}, {"lapse", &Observer::lapse, 1}, {"hurry", &Observer::hurry, 1}};
 
 tl::unexpected<schema::Error> bad_observer(const std::string& what) {
-  return fail(ErrorKind::usage, what, "--observer", "give for example weber=25.3%,lapse=2%,seed=1");
+  return fail(ErrorKind::usage, what, "--observer",
+              "give for example weber=25.3%,lapse=2%,seed=1, or template,seed=1");
 }
 
 Result<void> set(Observer& observer, const std::string& name, const std::string& value) {
@@ -39,11 +42,19 @@ Result<void> set(Observer& observer, const std::string& name, const std::string&
     observer.seed = value;
     return {};
   }
+  if (name == "noise" && observer.identifies) {
+    const auto noise_db = schema::parse_quantity(value, schema::Dimension::level);
+    if (!noise_db || !(*noise_db >= 0)) return bad_observer("noise is not a level from 0dB, such as 12dB");
+    observer.noise_db = *noise_db;
+    return {};
+  }
   const auto* const found = std::ranges::find(kObserverShares, name, &ObserverShare::name);
-  if (found == std::end(kObserverShares))
-    return bad_observer(
-        fmt::format("'{}' is unknown{}", name,
-                    schema::did_you_mean(name, std::vector<std::string>{"weber", "lapse", "hurry", "seed"})));
+  if (found == std::end(kObserverShares) || (observer.identifies && found->member != &Observer::hurry))
+    return bad_observer(fmt::format(
+        "'{}' is unknown{}", name,
+        schema::did_you_mean(name, observer.identifies
+                                       ? std::vector<std::string>{"noise", "hurry", "seed"}
+                                       : std::vector<std::string>{"weber", "lapse", "hurry", "seed"})));
   const auto share = schema::parse_quantity(value, schema::Dimension::share);
   if (!share) return bad_observer(fmt::format("{}: {}", name, share.error().what));
   if (!(*share >= 0 && *share <= found->most))
@@ -52,19 +63,19 @@ Result<void> set(Observer& observer, const std::string& name, const std::string&
   return {};
 }
 
+}  // namespace
+
 // Above 0, below 1: 52 bits of the SHA-256 of SEED/PLACE/WHAT.
-double uniform(const Observer& observer, const std::string& place, const char* what) {
+double uniform_of(const Observer& observer, const std::string& place, const char* what) {
   const std::string sum = schema::sha256_of(fmt::format("{}/{}/{}", observer.seed, place, what));
   return (static_cast<double>(std::stoull(sum.substr(0, 13), nullptr, 16)) + 0.5) / 0x1p52;
 }
 
 // Box and Muller 1958.
-double standard_normal(const Observer& observer, const std::string& place) {
-  return std::sqrt(-2 * std::log(uniform(observer, place, "radius"))) *
-         std::cos(2 * std::numbers::pi * uniform(observer, place, "angle"));
+double normal_of(const Observer& observer, const std::string& place) {
+  return std::sqrt(-2 * std::log(uniform_of(observer, place, "radius"))) *
+         std::cos(2 * std::numbers::pi * uniform_of(observer, place, "angle"));
 }
-
-}  // namespace
 
 Result<Observer> parse_observer(std::string_view text) {
   Observer observer;
@@ -73,24 +84,29 @@ Result<Observer> parse_observer(std::string_view text) {
     const std::size_t end = std::min(text.find(',', from), text.size());
     const std::string part(text.substr(from, end - from));
     const auto equals = part.find('=');
+    if (from == 0 && part == kTemplateWord) {
+      observer.identifies = true;
+      from = end + 1;
+      continue;
+    }
     if (equals == std::string::npos) return bad_observer(fmt::format("'{}' is not NAME=VALUE", part));
     TACTO_TRY(set(observer, part.substr(0, equals), part.substr(equals + 1)));
     from = end + 1;
   }
-  if (!(observer.weber > 0)) return bad_observer("weber is missing, or 0");
+  if (!observer.identifies && !(observer.weber > 0)) return bad_observer("weber is missing, or 0");
   return observer;
 }
 
 int smaller_period(const Observer& observer, const std::string& place,
                    const std::array<std::optional<double>, 2>& period_m, double standard_m) {
-  const bool by_chance = uniform(observer, place, "lapse") < observer.lapse;
-  if (by_chance || !period_m[0] || !period_m[1]) return uniform(observer, place, "guess") < 0.5 ? 1 : 2;
-  const double noise_m = observer.weber * standard_m / kQuantile75 * standard_normal(observer, place);
+  const bool by_chance = uniform_of(observer, place, "lapse") < observer.lapse;
+  if (by_chance || !period_m[0] || !period_m[1]) return uniform_of(observer, place, "guess") < 0.5 ? 1 : 2;
+  const double noise_m = observer.weber * standard_m / kQuantile75 * normal_of(observer, place);
   return *period_m[0] - *period_m[1] + noise_m < 0 ? 1 : 2;
 }
 
 bool hurries(const Observer& observer, const std::string& place) {
-  return uniform(observer, place, "hurry") < observer.hurry;
+  return uniform_of(observer, place, "hurry") < observer.hurry;
 }
 
 }  // namespace tacto::analysis

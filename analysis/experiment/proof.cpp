@@ -21,9 +21,16 @@ using schema::Result;
 
 namespace {
 
+constexpr const char *kStretchColumns = "standard_interval\tnominal_stretch\tpredicted_stretch",
+                     *kIdentificationColumns = "block\tcondition\tpresented";
 constexpr const char* kTrialColumns =
-    "attempt\ttrial\tstandard_interval\tnominal_stretch\tpredicted_stretch\tpredicted_error_db\t"
-    "measured_error_db\tanswer_interval\tanswer\tanswer_s\tdelivered\twhy\tsimulated";
+    "attempt\ttrial\t{}\tpredicted_error_db\tmeasured_error_db\t{}\tanswer\tanswer_s\tdelivered\twhy\t"
+    "simulated\n";
+constexpr const char* kPlacedReason = "real sample, placed by the operator: no session records it";
+
+bool has_two_intervals(const Run& run) {
+  return run.study.protocol.task == schema::Task::two_interval;
+}
 
 std::string folder_with(const std::string& stem) {
   const auto folder = std::filesystem::path(stem).parent_path().string();
@@ -54,6 +61,7 @@ class Prover {
 
   void take(const Attempt& attempt) {
     if (!attempt.answered) ++proof_.interrupted;
+    if (attempt.placed && attempt.answered) ++proof_.placed;
     if (!attempt.judged) return;
     if (!attempt.judged->delivered) ++proof_.failed;
     std::vector<schema::IntervalFacts> facts;
@@ -82,21 +90,22 @@ class Prover {
   }
 
   void compare(const Attempt& attempt, std::vector<schema::IntervalFacts> facts) {
-    const auto sum = [&](std::size_t i) {
-      return stimulus_of(run_.study.key, attempt.begun.stimuli[i]).sha256;
-    };
+    std::vector<std::string> sums;
+    for (const std::string& code : attempt.begun.stimuli)
+      sums.push_back(stimulus_of(run_.study.key, code).sha256);
     Attempt again = attempt;
-    again.judged = judged_delivery(attempt.begun.attempt, std::move(facts), {sum(0), sum(1)},
-                                   run_.study.protocol, other_reasons(*attempt.judged));
+    again.judged = judged_delivery(attempt.begun.attempt, std::move(facts), sums, run_.study.protocol,
+                                   other_reasons(*attempt.judged));
     if (again.judged->why != attempt.judged->why)
       proof_.faults.push_back(fmt::format("attempt {}: its sessions say '{}', the journal '{}'",
                                           attempt.begun.attempt, fmt::join(again.judged->why, "; "),
                                           fmt::join(attempt.judged->why, "; ")));
     if (!again.counts()) return;
     ++proof_.delivered;
+    if (!has_two_intervals(run_)) return;
     const double nominal = stimulus_of(run_.study.key, attempt.trial.code).stretch;
     if (const auto predicted = predicted_stretch(again))
-      proof_.stretch_error = std::max(proof_.stretch_error, std::abs(*predicted - nominal));
+      proof_.stretch_error = std::max(proof_.stretch_error.value_or(0), std::abs(*predicted - nominal));
     else
       proof_.faults.push_back(fmt::format("attempt {}: its sessions have no period", attempt.begun.attempt));
   }
@@ -114,21 +123,31 @@ std::string level_cell(const Attempt& attempt, std::optional<double> schema::Int
   return worst ? fmt::format("{:.9g}", *worst) : "";
 }
 
-std::string trial_row(const Run& run, const Attempt& attempt) {
+std::string cells_of_task(const Run& run, const Attempt& attempt) {
+  const schema::CodedStimulus& stimulus = stimulus_of(run.study.key, attempt.trial.code);
+  if (!has_two_intervals(run))
+    return fmt::format("{}\t{}\t{}", attempt.trial.block,
+                       attempt.trial.real ? schema::kRealCondition : schema::kVirtualCondition,
+                       stimulus.name);
   const auto predicted = attempt.judged ? predicted_stretch(attempt) : std::nullopt;
-  std::string row = fmt::format("{}\t{}\t{}\t{:.9g}\t{}", attempt.begun.attempt, attempt.trial.name(),
-                                attempt.trial.standard_comes_first() ? 1 : 2,
-                                stimulus_of(run.study.key, attempt.trial.code).stretch,
-                                predicted ? fmt::format("{:.9g}", *predicted) : "");
+  return fmt::format("{}\t{:.9g}\t{}", attempt.trial.standard_comes_first() ? 1 : 2, stimulus.stretch,
+                     predicted ? fmt::format("{:.9g}", *predicted) : "");
+}
+
+std::string trial_row(const Run& run, const Attempt& attempt) {
+  std::string row =
+      fmt::format("{}\t{}\t{}", attempt.begun.attempt, attempt.trial.name(), cells_of_task(run, attempt));
   for (const auto member :
        {&schema::IntervalFacts::predicted_error_db, &schema::IntervalFacts::measured_error_db})
     row += "\t" + (attempt.judged ? level_cell(attempt, member) : "");
   if (const auto& answered = attempt.answered)
-    row += fmt::format("\t{}\t{}\t{:.3f}", answered->interval, answered->word, answered->answer_s);
+    row += fmt::format("\t{}\t{}\t{:.3f}", answered->choice, answered->word, answered->answer_s);
   else
     row += "\t\t\t";
   row += std::string("\t") + (!attempt.judged ? "unknown" : attempt.judged->delivered ? "yes" : "no");
-  std::vector<std::string> why = attempt.judged ? attempt.judged->why : std::vector<std::string>();
+  std::vector<std::string> why;
+  if (attempt.placed) why.emplace_back(kPlacedReason);
+  if (attempt.judged) why = attempt.judged->why;
   if (!attempt.answered) why.emplace_back("interrupted before the answer");
   row += fmt::format("\t{}\t{}", fmt::join(why, "; "), run.journal.plan.observer);
   return row;
@@ -177,7 +196,9 @@ std::optional<double> predicted_stretch(const Attempt& attempt) {
 }
 
 std::string trials_table(const Run& run) {
-  std::string table = std::string(kTrialColumns) + "\n";
+  std::string table = has_two_intervals(run)
+                          ? fmt::format(kTrialColumns, kStretchColumns, "answer_interval")
+                          : fmt::format(kTrialColumns, kIdentificationColumns, "answer_choice");
   for (const Attempt& attempt : run.queue.attempts()) table += trial_row(run, attempt) + "\n";
   return table;
 }

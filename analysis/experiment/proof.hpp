@@ -31,16 +31,18 @@ schema::Result<Run> run_of(const std::string& stem, schema::Journal journal);
 inline constexpr double kStretchTolerance = 0.01;
 
 struct Proof {
-  std::size_t trials = 0;                                 ///< planned
+  std::size_t trials = 0;                                 ///< planned; without those whose time was over
   std::size_t delivered = 0;                              ///< with an answer
   std::size_t attempts = 0, interrupted = 0, failed = 0;  ///< of the attempts: without answer; not delivered
   std::size_t sessions = 0, same_to_the_bit = 0;
-  double stretch_error = 0;         ///< largest |predicted - nominal| of those delivered
+  std::size_t placed = 0;  ///< answered real samples: what they were is the operator's word
+  /// Largest |predicted - nominal| of those delivered; none in an identification.
+  std::optional<double> stretch_error;
   std::vector<std::string> faults;  ///< what differs from the journal, session by session
   std::string simulated;
 
   bool holds() const {
-    return faults.empty() && same_to_the_bit == sessions && stretch_error <= kStretchTolerance;
+    return faults.empty() && same_to_the_bit == sessions && stretch_error.value_or(0) <= kStretchTolerance;
   }
 };
 
@@ -48,10 +50,11 @@ struct Proof {
 /// `tell` receives 0 to 1.
 Proof prove(const Run& run, const std::function<void(double)>& tell);
 
-/// Predicted period of the stretched stimulus over that of the standard, minus 1; none: a period is unknown.
+/// Of a trial of two intervals: predicted period of the stretched stimulus over that of the standard, minus
+/// 1; none: a period is unknown.
 std::optional<double> predicted_stretch(const Attempt& attempt);
 
-/// STUDY-P07.trials.tsv: a row for each attempt.
+/// STUDY-P07.trials.tsv: a row for each attempt. Its columns are those of the task.
 std::string trials_table(const Run& run);
 
 }  // namespace tacto::analysis

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <set>
 
 #include "analysis/experiment/trial_order.hpp"
 #include "data-schema/base/creation_time.hpp"
@@ -28,6 +29,10 @@ namespace {
 
 constexpr double kStimulusPitchM = 5e-6;  // 100 samples in the shortest period of `stretch`
 constexpr double kStimulusGain = 1e-3;    // m/N: 12.8 um are 12.8 mN
+constexpr std::string_view kAnswerKeys = "123456789";
+constexpr double kTextureEndM = 2e-3;  // left out of an identification's path, at both ends
+// Of the 100 um to each side of Wiertlewski 2011: the response of the actuator falls below 500 Hz.
+constexpr double kLargestDisplacementM = 50e-6;
 
 schema::Texture standard_texture(const schema::Protocol& protocol) {
   const schema::StandardStimulus& standard = protocol.standard;
@@ -45,48 +50,55 @@ schema::Texture standard_texture(const schema::Protocol& protocol) {
   return texture;
 }
 
-Result<schema::Texture> stimulus_texture(const schema::Protocol& protocol, const schema::Texture& standard,
-                                         double stretch) {
-  if (stretch == 0) return standard;
+// What is played, without what names the surface: people look into files.
+schema::Texture coded(const schema::Texture& texture) {
+  schema::Texture stimulus;
+  stimulus.signal = texture.signal;
+  stimulus.valid_band = texture.valid_band;
+  stimulus.simulated = texture.simulated;
+  stimulus.created = schema::creation_time();
+  stimulus.creator = kCreator;
+  return stimulus;
+}
+
+Result<schema::Texture> stimulus_texture(const schema::Protocol& protocol, const NamedTextures& textures,
+                                         const schema::CodedStimulus& stimulus) {
+  if (!stimulus.name.empty()) return coded(textures.at(stimulus.name));
+  const schema::Texture standard = standard_texture(protocol);
+  if (stimulus.stretch == 0) return standard;
   spatial::Stretch by;
-  by.factor = 1 + stretch;
+  by.factor = 1 + stimulus.stretch;
   by.keep_slope = protocol.keep_slope;
   by.period_m = protocol.standard.period_m;
   return spatial::stretch(standard, by);
 }
 
-std::string code_of(std::size_t index) {
-  return fmt::format("K{}", index + 1);
-}
-
-Result<void> write_stimuli(const Study& study, const std::vector<double>& stretches,
-                           schema::Existing existing) {
-  const schema::Texture standard = standard_texture(study.protocol);
+Result<void> write_stimuli(const Study& study, const NamedTextures& textures, schema::Existing existing) {
   schema::PendingFiles pending;
-  for (std::size_t i = 0; i < stretches.size(); ++i) {
-    const auto texture = stimulus_texture(study.protocol, standard, stretches[i]);
+  for (const schema::CodedStimulus& stimulus : study.key.stimuli) {
+    const auto texture = stimulus_texture(study.protocol, textures, stimulus);
     TACTO_TRY(texture);
-    TACTO_TRY(schema::add_texture(pending, study.stimulus(code_of(i)), *texture));
+    TACTO_TRY(schema::add_texture(pending, study.stimulus(stimulus.code), *texture));
   }
   return pending.commit(existing);
 }
 
-Result<void> check_free(const Study& study, const std::vector<double>& stretches, schema::Existing existing) {
+Result<void> check_free(const Study& study, schema::Existing existing) {
   TACTO_TRY(schema::check_output_free(schema::protocol_path(study.stem), existing));
   TACTO_TRY(schema::check_output_free(schema::key_path(study.stem), existing));
-  for (std::size_t i = 0; i < stretches.size(); ++i)
-    TACTO_TRY(schema::check_texture_free(study.stimulus(code_of(i)), existing));
+  for (const schema::CodedStimulus& stimulus : study.key.stimuli)
+    TACTO_TRY(schema::check_texture_free(study.stimulus(stimulus.code), existing));
   return {};
 }
 
 Result<void> check_key(const Study& study, const std::string& path) {
-  std::vector<double> expected = study.protocol.levels, found;
-  expected.push_back(0);
-  for (const schema::CodedStimulus& stimulus : study.key.stimuli) found.push_back(stimulus.stretch);
-  std::ranges::sort(expected);
-  std::ranges::sort(found);
-  if (found == expected) return {};
-  return fail(ErrorKind::malformed, "has other stretches than the protocol", path + "#/stimuli",
+  const auto meanings = [](const std::vector<schema::CodedStimulus>& stimuli) {
+    std::set<std::pair<double, std::string>> all;
+    for (const schema::CodedStimulus& each : stimuli) all.emplace(each.stretch, each.name);
+    return all;
+  };
+  if (meanings(study.key.stimuli) == meanings(stimuli_by_code(study.protocol))) return {};
+  return fail(ErrorKind::malformed, "has other stimuli than the protocol", path + "#/stimuli",
               "it belongs to another protocol: make the study again");
 }
 
@@ -105,7 +117,7 @@ Result<void> check_stimulus(const Study& study, const schema::CodedStimulus& sti
   return fail(ErrorKind::unsuitable,
               fmt::format("ends at {:g} m, before the path's end at {:g} m", texture->signal.length_m(),
                           study.protocol.pace.to_m),
-              wav->path, "make the standard longer, or end the path earlier");
+              wav->path, "use a longer texture, or end the path earlier");
 }
 
 }  // namespace
@@ -132,33 +144,75 @@ schema::Protocol stretch_protocol(const std::string& seed) {
   protocol.gain_m_per_n = kStimulusGain;
   protocol.pace = {0.01, 0.05, 0.06, 2};
   protocol.lead_s = 0.5;
-  protocol.first = {"f", "first"};
-  protocol.second = {"j", "second"};
+  protocol.choices = {{"f", "first"}, {"j", "second"}};
   protocol.begin_key = " ";
   protocol.most_attempts = 3;
   protocol.participants = 8;
   // At 45 mm/s the longest period, 2.99 mm, is at 15.04 Hz: still in the band from 15 Hz.
   protocol.delivered = {0, 0, 10, 0, -40, -20, 0.045, 0.085};
-  protocol.texts = {
-      "You feel two textures, one after the other. Say which of them has the smaller period.",
-      "Put the finger at the left end and press the space bar.", "Move the finger to the right end and back.",
-      "Which one had the smaller period? f: the first, j: the second.", "That was all. Thank you."};
+  protocol.texts = {"You feel two textures, one after the other. Say which of them has the smaller period.",
+                    "Put the finger at the left end and press the space bar.",
+                    "Move the finger to the right end and back.",
+                    "Which one had the smaller period? f: the first, j: the second.",
+                    "That was all. Thank you.",
+                    ""};
+  return protocol;
+}
+
+Result<schema::Protocol> identification_protocol(const std::string& seed, const NamedTextures& textures,
+                                                 const std::vector<std::string>& comparisons) {
+  if (textures.size() < 2 || textures.size() > kAnswerKeys.size())
+    return fail(ErrorKind::usage, fmt::format("there are {} textures", textures.size()), "--textures",
+                fmt::format("name 2 to {}", kAnswerKeys.size()));
+  for (const std::string& name : comparisons)
+    if (!textures.contains(name))
+      return fail(ErrorKind::usage, fmt::format("'{}' is none of the textures", name), "--comparisons",
+                  "name those of --textures that are to be presented");
+  schema::Protocol protocol = stretch_protocol(seed);
+  protocol.task = schema::Task::identification;
+  protocol.standard = {}, protocol.keep_slope = false, protocol.levels.clear();
+  protocol.comparisons = comparisons;
+  protocol.conditions = {schema::kRealCondition, schema::kVirtualCondition};
+  protocol.most_trials = 100;
+  protocol.longest_s = 900;
+  protocol.repetitions = static_cast<int>(std::ceil(100.0 / static_cast<double>(comparisons.size())));
+  protocol.participants = 10;
+  protocol.choices.clear();
+  double shortest_m = INFINITY, largest_n = 0;
+  for (const auto& [name, texture] : textures) {
+    if (texture.unit != "N")
+      return fail(ErrorKind::unsuitable,
+                  fmt::format("is in {}, and the gain of a protocol is for forces", texture.unit), name,
+                  "name textures of tangential force");
+    protocol.standards.push_back(name);
+    protocol.choices.push_back({std::string(1, kAnswerKeys[protocol.choices.size()]), name});
+    shortest_m = std::min(shortest_m, texture.signal.length_m());
+    for (const double force_n : texture.signal.values) largest_n = std::max(largest_n, std::abs(force_n));
+  }
+  const double inner_m = std::floor((shortest_m - 2 * kTextureEndM) * 1e3) / 1e3;
+  protocol.pace = {kTextureEndM, kTextureEndM + inner_m, 0.05, 2};
+  protocol.delivered.slowest_mps = 0.035, protocol.delivered.fastest_mps = 0.065;  // 50 +- 15 mm/s
+  if (largest_n * protocol.gain_m_per_n > kLargestDisplacementM)
+    protocol.gain_m_per_n = std::floor(1e6 * kLargestDisplacementM / largest_n) / 1e6;
+  protocol.texts.welcome = "You feel one texture at a time. Say which of the textures before you it is.";
+  protocol.texts.question = fmt::format("Which one was it? Press its button, {} to {}.", kAnswerKeys.front(),
+                                        protocol.choices.back().key);
+  protocol.texts.place = "For the operator: put this sample on the bench, type its label and press Enter.";
   return protocol;
 }
 
 Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,
-                          schema::Existing existing) {
+                          const NamedTextures& textures, schema::Existing existing) {
   TACTO_TRY(schema::check_stem(stem));
   const auto protocol_text = schema::protocol_text(protocol);
   TACTO_TRY(protocol_text);
-  Study study{stem, protocol, {}};
-  const std::vector<double> stretches = stretches_by_code(protocol);
-  TACTO_TRY(check_free(study, stretches, existing));
-  TACTO_TRY(write_stimuli(study, stretches, existing));
-  for (std::size_t i = 0; i < stretches.size(); ++i) {
-    const auto wav = schema::texture_wav(study.stimulus(code_of(i)));
+  Study study{stem, protocol, {stimuli_by_code(protocol), {}}};
+  TACTO_TRY(check_free(study, existing));
+  TACTO_TRY(write_stimuli(study, textures, existing));
+  for (schema::CodedStimulus& stimulus : study.key.stimuli) {
+    const auto wav = schema::texture_wav(study.stimulus(stimulus.code));
     TACTO_TRY(wav);
-    study.key.stimuli.push_back({code_of(i), stretches[i], wav->sha256});
+    stimulus.sha256 = wav->sha256;
   }
   const auto key_text = schema::protocol_key_text(study.key);
   TACTO_TRY(key_text);

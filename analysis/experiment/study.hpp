@@ -2,6 +2,7 @@
 // The files of an experiment: protocol, key, and stimuli under their codes.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,18 +27,30 @@ struct Study {
 /// amplitude stretched by +-10, 30, 50 and 70 %, ten times each; which one has the smaller period.
 schema::Protocol stretch_protocol(const std::string& seed);
 
-/// Makes the stimuli (spatial/transform) and writes all files. Errors: usage, if there is one of them and it
-/// is to be kept; cannot_write; those of stretching.
-schema::Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,
-                                  schema::Existing existing);
+/// Textures by their names.
+using NamedTextures = std::map<std::string, schema::Texture>;
 
-/// Reads protocol and key, and checks that the key has the protocol's stretches and that each texture is the
-/// one of the key. `name`: STEM or STEM.protocol.json. Errors: of read_protocol, read_protocol_key and
-/// read_texture; malformed: another key; unsuitable: a texture that was changed or swapped, or is shorter
-/// than the path.
+/// Experiment 1 of the same paper: which of five textures is one of three of them, `comparisons`, as a real
+/// sample in one block of trials and played in the other one. The path is that of the shortest texture
+/// without its ends, the gain 1 mm/N or what the largest force permits. Errors: usage: fewer than two
+/// textures, or more than there are keys, or a comparison that is none of them; unsuitable: a texture that is
+/// not of force.
+schema::Result<schema::Protocol> identification_protocol(const std::string& seed,
+                                                         const NamedTextures& textures,
+                                                         const std::vector<std::string>& comparisons);
+
+/// Makes the stimuli (spatial/transform; or of `textures`, without what names their surface) and writes all
+/// files. Errors: usage, if there is one of them and it is to be kept; cannot_write; those of stretching.
+schema::Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,
+                                  const NamedTextures& textures, schema::Existing existing);
+
+/// Reads protocol and key, and checks that the key has the protocol's stretches or names, and that each
+/// texture is the one of the key. `name`: STEM or STEM.protocol.json. Errors: of read_protocol,
+/// read_protocol_key and read_texture; malformed: another key; unsuitable: a texture that was changed or
+/// swapped, or is shorter than the path.
 schema::Result<Study> read_study(const std::string& name);
 
-/// The code and the SHA-256 of the standard. Precondition: a study that was read.
+/// The code and the SHA-256 of the standard. Precondition: a study of two intervals that was read.
 const schema::CodedStimulus& standard_of(const schema::ProtocolKey& key);
 const schema::CodedStimulus& stimulus_of(const schema::ProtocolKey& key, const std::string& code);
 

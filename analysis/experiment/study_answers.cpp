@@ -19,6 +19,34 @@ using schema::Result;
 
 namespace {
 
+AnswerGroup<LevelCount> answers_of_run(const Run& run) {
+  std::map<double, LevelCount> levels;
+  for (const Attempt& attempt : run.queue.attempts()) {
+    if (!attempt.counts()) continue;
+    const double stretch = stimulus_of(run.study.key, attempt.trial.code).stretch;
+    LevelCount& level = levels[stretch];
+    level.level = stretch;
+    level.yes += seemed_longer(attempt) ? 1 : 0;
+    level.trials += 1;
+  }
+  AnswerGroup<LevelCount> group{{run.journal.plan.participant}, {}};
+  for (const auto& [stretch, level] : levels) group.rows.push_back(level);
+  return group;
+}
+
+// Reads the file and writes it with a further line.
+Result<void> log_unblinding(const Study& study, std::size_t complete) {
+  const std::string path = study.stem + ".unblinded.txt";
+  std::string text = schema::is_file(path) ? schema::read_file(path).value_or("") : "";
+  text += fmt::format("{}\t{} of {} planned participants complete\n", schema::creation_time(), complete,
+                      study.protocol.participants);
+  schema::PendingFiles pending;
+  TACTO_TRY(pending.write(path, text));
+  return pending.commit();
+}
+
+}  // namespace
+
 std::vector<std::string> runs_of(const Study& study) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(study.stem).parent_path();
@@ -35,22 +63,6 @@ std::vector<std::string> runs_of(const Study& study) {
   return runs;
 }
 
-AnswerGroup<LevelCount> answers_of_run(const Run& run) {
-  std::map<double, LevelCount> levels;
-  for (const Attempt& attempt : run.queue.attempts()) {
-    if (!attempt.counts()) continue;
-    const double stretch = stimulus_of(run.study.key, attempt.trial.code).stretch;
-    LevelCount& level = levels[stretch];
-    level.level = stretch;
-    level.yes += seemed_longer(attempt) ? 1 : 0;
-    level.trials += 1;
-  }
-  AnswerGroup<LevelCount> group{{run.journal.plan.participant}, {}};
-  for (const auto& [stretch, level] : levels) group.rows.push_back(level);
-  return group;
-}
-
-// By what a run is simulated: its answers, its device.
 void add_simulated(std::vector<std::string>& all, const Run& run) {
   const auto add = [&](const std::string& what) {
     if (std::ranges::find(all, what) == all.end()) all.push_back(what);
@@ -63,22 +75,9 @@ void add_simulated(std::vector<std::string>& all, const Run& run) {
         if (!facts.simulated.empty()) add(facts.simulated);
 }
 
-// Reads the file and writes it with a further line.
-Result<void> log_unblinding(const Study& study, std::size_t complete) {
-  const std::string path = study.stem + ".unblinded.txt";
-  std::string text = schema::is_file(path) ? schema::read_file(path).value_or("") : "";
-  text += fmt::format("{}\t{} of {} planned participants complete\n", schema::creation_time(), complete,
-                      study.protocol.participants);
-  schema::PendingFiles pending;
-  TACTO_TRY(pending.write(path, text));
-  return pending.commit();
-}
-
-}  // namespace
-
-// Interval `interval` has the smaller period by the answer: whether that is the standard's.
+// Interval `choice` has the smaller period by the answer: whether that is the standard's.
 bool seemed_longer(const Attempt& attempt) {
-  return attempt.trial.standard_comes_first() == (attempt.answered->interval == 1);
+  return attempt.trial.standard_comes_first() == (attempt.answered->choice == 1);
 }
 
 Result<std::vector<Run>> answered_runs(const std::string& name, bool unblind) {

@@ -10,6 +10,12 @@
 
 namespace tacto::analysis {
 
+/// STUDY-P01 ...: the runs of a study, in order, without those of who has withdrawn.
+std::vector<std::string> runs_of(const Study& study);
+
+/// By what a run is simulated, its answers and its device: adds to `all` what is not in it.
+void add_simulated(std::vector<std::string>& all, const Run& run);
+
 /// The runs STUDY-*.trials.jsonl of participants who have not withdrawn. Before as many are complete as the
 /// protocol plans, they are given only to `unblind`, and STUDY.unblinded.txt keeps when that was. Errors:
 /// those of read_study and read_run; unsuitable: no answers, not enough complete runs; cannot_write.
@@ -20,6 +26,7 @@ bool seemed_longer(const Attempt& attempt);
 
 /// Of those runs, by the stretch of the period: how often the stretched stimulus seemed the longer one, among
 /// the trials that were delivered and answered. Errors: those of answered_runs.
+/// Precondition: the task is two_interval.
 schema::Result<AnswersTable> study_answers(const std::string& study, bool unblind);
 
 }  // namespace tacto::analysis

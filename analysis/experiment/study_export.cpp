@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
 #include <utility>
@@ -23,10 +22,15 @@ struct Column {
   const char *name, *description, *units;
 };
 
-// Those of trials_table(), and seemed_longer.
-constexpr std::array<Column, 14> kColumns = {{
+// Those of trials_table(), of each task, and what is added to them.
+constexpr Column kColumns[] = {
     {"attempt", "number of the attempt in the run; what was not delivered comes again", ""},
-    {"trial", "code of the stretched stimulus and number of its repetition", ""},
+    {"trial", "code of the stretched stimulus, or of the comparison, and number of its repetition", ""},
+    {"block", "number of the block of trials", ""},
+    {"condition", "whether the comparisons were real samples or played (virtual)", ""},
+    {"presented", "name of the comparison", ""},
+    {"answer_choice", "number of the standard that was answered", ""},
+    {"correct", "1: the answer is the comparison, else 0", ""},
     {"standard_interval", "interval in which the standard was played, 1 or 2", ""},
     {"nominal_stretch", "period of the stretched stimulus over that of the standard, minus 1", "1"},
     {"predicted_stretch", "the same of the displacement that the transducer's model predicts", "1"},
@@ -35,11 +39,16 @@ constexpr std::array<Column, 14> kColumns = {{
     {"answer_interval", "interval whose stimulus seemed to have the smaller period, 1 or 2", ""},
     {"answer", "the answer in the protocol's word", ""},
     {"answer_s", "time from the question to the answer; 0 of an observer or a file", "s"},
-    {"delivered", "whether the session proves that both intervals kept the protocol's limits", ""},
+    {"delivered",
+     "whether the session proves that the intervals kept the protocol's limits; unknown of real samples", ""},
     {"why", "reasons why an attempt was not delivered, or has no answer", ""},
     {"simulated", "simulated observer that answered", ""},
     {"seemed_longer", "1: the stretched stimulus seemed to have the longer period, else 0", ""},
-}};
+};
+
+bool is_two_interval(const schema::Protocol& protocol) {
+  return protocol.task == schema::Task::two_interval;
+}
 
 constexpr const char* kScript =
     R"R(# Generalised linear mixed model (probit) of the answers of all persons, by lme4: the point of subjective
@@ -107,7 +116,13 @@ std::string bids_cell(const std::string& text) {
   return text.empty() ? "n/a" : text;
 }
 
-// The cells of trials_table(), with seemed_longer.
+bool is_right(const Run& run, const Attempt& attempt) {
+  return is_two_interval(run.study.protocol)
+             ? seemed_longer(attempt)
+             : attempt.answered->word == stimulus_of(run.study.key, attempt.trial.code).name;
+}
+
+// The cells of trials_table(), with seemed_longer or correct.
 std::vector<std::vector<std::string>> rows_of(const Run& run) {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::string> lines = split(trials_table(run), '\n');
@@ -116,9 +131,10 @@ std::vector<std::vector<std::string>> rows_of(const Run& run) {
     rows.push_back(split(lines[i], '\t'));
     const Attempt* const attempt = i > 0 ? &run.queue.attempts()[i - 1] : nullptr;
     const bool answered = attempt != nullptr && attempt->answered;
-    rows.back().emplace_back(attempt == nullptr ? "seemed_longer"
+    const char* const name = is_two_interval(run.study.protocol) ? "seemed_longer" : "correct";
+    rows.back().emplace_back(attempt == nullptr ? name
                              : !answered        ? ""
-                                                : (seemed_longer(*attempt) ? "1" : "0"));
+                                                : (is_right(run, *attempt) ? "1" : "0"));
   }
   return rows;
 }
@@ -131,9 +147,10 @@ std::string task_label(const std::string& study) {
   return label.empty() ? "study" : label;
 }
 
-std::string sidecar(const std::string& task) {
+std::string sidecar(const std::string& task, const std::vector<std::string>& names) {
   std::string text = "{\n  \"TaskName\": " + json_text(task);
-  for (const Column& column : kColumns) {
+  for (const std::string& name : names) {
+    const Column& column = *std::ranges::find(kColumns, name, &Column::name);
     text +=
         fmt::format(",\n  {}: {{\"Description\": {}", json_text(column.name), json_text(column.description));
     if (*column.units != '\0') text += fmt::format(", \"Units\": {}", json_text(column.units));
@@ -154,9 +171,10 @@ class Export {
     const std::string subject = "sub-" + run.journal.plan.participant;
     const std::string stem = fmt::format("{0}/beh/{0}_task-{1}_beh", subject, task);
     std::string table;
-    for (const auto& row : rows_of(run)) table += row_of(row, '\t', bids_cell);
+    const auto rows = rows_of(run);
+    for (const auto& row : rows) table += row_of(row, '\t', bids_cell);
     TACTO_TRY(add(stem + ".tsv", table));
-    return add(stem + ".json", sidecar(task));
+    return add(stem + ".json", sidecar(task, rows.front()));
   }
   Result<void> commit(schema::Existing existing) { return pending_.commit(existing); }
   const std::vector<std::string>& files() const { return files_; }
@@ -197,7 +215,7 @@ Result<std::vector<std::string>> export_study(const std::string& study, const st
   const std::string name = runs->front().study.name(), task = task_label(name);
   Export all(folder);
   TACTO_TRY(all.add("trials.csv", csv_of(*runs)));
-  TACTO_TRY(all.add("analysis.R", kScript));
+  if (is_two_interval(runs->front().study.protocol)) TACTO_TRY(all.add("analysis.R", kScript));
   TACTO_TRY(all.add("dataset_description.json",
                     fmt::format("{{\"Name\": {}, \"BIDSVersion\": \"1.8.0\", \"DatasetType\": \"raw\", "
                                 "\"GeneratedBy\": [{{\"Name\": {}}}]}}\n",

@@ -120,6 +120,10 @@ void add_rows(StudyPower& power, const std::array<std::vector<double>, 2>& logs,
 Result<StudyPower> study_power(const schema::Protocol& protocol, const PowerAssumptions& assumed,
                                const std::function<void(double)>& tell) {
   TACTO_TRY(check(assumed));
+  if (protocol.task != schema::Task::two_interval)
+    return schema::fail(schema::ErrorKind::unsuitable,
+                        fmt::format("the task {} has no Weber fraction", schema::word_of(protocol.task)),
+                        "STUDY", "power is for protocols of two intervals, such as 'new stretch'");
   Draws draws(assumed.seed);
   PsychometricOptions fit;
   if (!assumed.lapse) fit.lapse = 0;

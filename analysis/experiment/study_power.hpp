@@ -43,8 +43,8 @@ struct StudyPower {
 /// Simulates kSimulatedPeople, each with the protocol's levels and repetitions in both conditions, fits each
 /// as `analyse` does, and draws from them the people of kSimulatedStudies studies of each size. In each,
 /// Student's t test of ln W (5 %, two-sided; two groups, or paired) finds the difference or not. The seed
-/// decides all draws. Errors: usage: equal fractions, or values out of range; unsuitable: hardly any of these
-/// people can be fitted. `tell` receives 0 to 1.
+/// decides all draws. Errors: usage: equal fractions, or values out of range; unsuitable: a protocol without
+/// Weber fractions; hardly any of these people can be fitted. `tell` receives 0 to 1.
 schema::Result<StudyPower> study_power(const schema::Protocol& protocol, const PowerAssumptions& assumed,
                                        const std::function<void(double)>& tell);
 

@@ -21,24 +21,66 @@ std::vector<Value> sorted_by_sum(std::vector<Value> values, const TextOf& text_o
   return values;
 }
 
-}  // namespace
+bool is_presented(const schema::Protocol& protocol, const schema::CodedStimulus& stimulus) {
+  return protocol.task == schema::Task::two_interval
+             ? stimulus.stretch != 0
+             : std::ranges::find(protocol.comparisons, stimulus.name) != protocol.comparisons.end();
+}
 
-std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
-                                       const std::string& participant) {
+// `kind`: a trial of the block, without its stimulus.
+std::vector<StudyTrial> trials_of_block(const schema::Protocol& protocol, const schema::ProtocolKey& key,
+                                        const std::string& participant, const StudyTrial& kind) {
   std::vector<StudyTrial> trials;
   for (const schema::CodedStimulus& stimulus : key.stimuli)
-    for (int i = 1; i <= protocol.repetitions && stimulus.stretch != 0; ++i)
-      trials.push_back({stimulus.code, i});
+    for (int i = 1; i <= protocol.repetitions && is_presented(protocol, stimulus); ++i)
+      trials.push_back({stimulus.code, i, kind.block, kind.real});
   return sorted_by_sum(std::move(trials), [&](const StudyTrial& trial) {
-    return fmt::format("{}/{}/1/{}", protocol.seed, participant, trial.name());
+    return fmt::format("{}/{}/{}/{}", protocol.seed, participant, trial.block, trial.name());
   });
 }
 
-std::vector<double> stretches_by_code(const schema::Protocol& protocol) {
-  std::vector<double> stretches = protocol.levels;
-  stretches.push_back(0);
-  return sorted_by_sum(std::move(stretches),
-                       [&](double stretch) { return fmt::format("{}/code/{:g}", protocol.seed, stretch); });
+}  // namespace
+
+std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
+                                       const std::string& participant, int order) {
+  if (protocol.task == schema::Task::two_interval)
+    return trials_of_block(protocol, key, participant, {{}, 0, 1, false});
+  std::vector<StudyTrial> trials;
+  StudyTrial kind;
+  for (const std::size_t condition : williams_row(protocol.conditions.size(), order)) {
+    kind.real = protocol.conditions[condition] == schema::kRealCondition;
+    std::vector<StudyTrial> block = trials_of_block(protocol, key, participant, kind);
+    block.resize(std::min(block.size(), static_cast<std::size_t>(protocol.most_trials)));
+    trials.insert(trials.end(), block.begin(), block.end());
+    ++kind.block;
+  }
+  return trials;
+}
+
+std::vector<schema::CodedStimulus> stimuli_by_code(const schema::Protocol& protocol) {
+  std::vector<schema::CodedStimulus> stimuli;
+  for (const std::string& name : protocol.standards) stimuli.push_back({{}, 0, name, {}});
+  for (const double stretch : protocol.levels) stimuli.push_back({{}, stretch, {}, {}});
+  if (protocol.task == schema::Task::two_interval) stimuli.push_back({{}, 0, {}, {}});
+  stimuli = sorted_by_sum(std::move(stimuli), [&](const schema::CodedStimulus& each) {
+    return fmt::format("{}/code/{}", protocol.seed,
+                       each.name.empty() ? fmt::format("{:g}", each.stretch) : each.name);
+  });
+  for (std::size_t i = 0; i < stimuli.size(); ++i) stimuli[i].code = fmt::format("K{}", i + 1);
+  return stimuli;
+}
+
+std::vector<std::size_t> williams_row(std::size_t count, int row) {
+  const auto shift = static_cast<std::size_t>(row - 1);
+  std::vector<std::size_t> conditions;
+  for (std::size_t i = 0; i < count; ++i)
+    conditions.push_back(((i % 2 == 1 ? (i + 1) / 2 : count - i / 2) + shift) % count);
+  if (shift >= count) std::ranges::reverse(conditions);
+  return conditions;
+}
+
+int williams_rows(std::size_t count) {
+  return static_cast<int>(count % 2 == 0 ? count : 2 * count);
 }
 
 }  // namespace tacto::analysis

@@ -10,20 +10,30 @@
 namespace tacto::analysis {
 
 struct StudyTrial {
-  std::string code;  ///< of the stretched stimulus
+  std::string code;  ///< of the stretched stimulus, or of the comparison
   int repetition = 0;
+  int block = 1;
+  bool real = false;  ///< a sample on the bench, instead of playback
 
   std::string name() const { return code + "." + std::to_string(repetition); }
   bool standard_comes_first() const { return repetition % 2 == 1; }
 };
 
-/// All trials of a participant, sorted by the SHA-256 of SEED/PARTICIPANT/BLOCK/CODE.REPETITION. There is one
-/// block, 1.
+/// All trials of a participant. Those of each block are sorted by the SHA-256 of
+/// SEED/PARTICIPANT/BLOCK/CODE.REPETITION. two_interval has one block, 1; the blocks of an identification are
+/// its conditions, in the order of row `order` of their Williams square, and each has its first most_trials
+/// trials.
 std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
-                                       const std::string& participant);
+                                       const std::string& participant, int order);
 
-/// The stretches of a protocol, with the standard's 0, in the order of their codes K1, K2 ...: sorted by the
-/// SHA-256 of SEED/code/STRETCH, with the stretch as in 0.3.
-std::vector<double> stretches_by_code(const schema::Protocol& protocol);
+/// The stimuli of a protocol, in the order of their codes K1, K2 ...: sorted by the SHA-256 of
+/// SEED/code/STRETCH, with the stretch as in 0.3, or of SEED/code/NAME. Without their sums.
+std::vector<schema::CodedStimulus> stimuli_by_code(const schema::Protocol& protocol);
+
+/// A row of the Williams square of `count` conditions, from row 1: every condition is at each place equally
+/// often, and follows each other one equally often. `count` rows if that is even, else twice as many
+/// (Williams 1949, Aust. J. Sci. Res. A 2, 149).
+std::vector<std::size_t> williams_row(std::size_t count, int row);
+int williams_rows(std::size_t count);
 
 }  // namespace tacto::analysis

@@ -28,13 +28,23 @@ Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
   if (const auto* judged = std::get_if<schema::DeliveryJudged>(&entry)) {
     const auto attempt = open_attempt(judged->attempt);
     TACTO_TRY(attempt);
-    if ((*attempt)->judged) return does_not_follow(fmt::format("attempt {}", judged->attempt));
+    if ((*attempt)->judged || (*attempt)->trial.real)
+      return does_not_follow(fmt::format("attempt {}", judged->attempt));
     (*attempt)->judged = *judged;
   }
+  if (const auto* placed = std::get_if<schema::SamplePlaced>(&entry)) {
+    const auto attempt = open_attempt(placed->attempt);
+    TACTO_TRY(attempt);
+    if ((*attempt)->placed || !(*attempt)->trial.real || placed->label != (*attempt)->trial.code)
+      return does_not_follow(fmt::format("sample {} of attempt {}", placed->label, placed->attempt));
+    (*attempt)->placed = *placed;
+  }
+  if (const auto* over = std::get_if<schema::BlockOver>(&entry)) return end_block(over->block);
   if (const auto* answered = std::get_if<schema::AttemptAnswered>(&entry)) {
     const auto attempt = open_attempt(answered->attempt);
     TACTO_TRY(attempt);
-    if (!(*attempt)->judged) return does_not_follow(fmt::format("attempt {}", answered->attempt));
+    if (!(*attempt)->judged && !(*attempt)->placed)
+      return does_not_follow(fmt::format("attempt {}", answered->attempt));
     (*attempt)->answered = *answered;
     close();
   }
@@ -51,6 +61,11 @@ std::size_t TrialQueue::counted() const {
   return static_cast<std::size_t>(std::ranges::count_if(attempts_, &Attempt::counts));
 }
 
+std::size_t TrialQueue::placed() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(attempts_, [](const Attempt& each) { return each.placed.has_value(); }));
+}
+
 std::size_t TrialQueue::answers() const {
   return static_cast<std::size_t>(
       std::ranges::count_if(attempts_, [](const Attempt& each) { return each.answered.has_value(); }));
@@ -58,9 +73,11 @@ std::size_t TrialQueue::answers() const {
 
 Result<void> TrialQueue::begin(const schema::AttemptBegun& begun) {
   const int number = static_cast<int>(attempts_.size()) + 1;
-  if (open_ || begun.attempt != number || queue_.empty() || queue_.front().name() != begun.trial)
+  if (open_ || begun.attempt != number || queue_.empty() || queue_.front().name() != begun.trial ||
+      queue_.front().block != begun.block)
     return does_not_follow(fmt::format("attempt {} at trial {}", begun.attempt, begun.trial));
-  attempts_.push_back({begun, queue_.front(), {}, {}});
+  if (!attempts_.empty() && attempts_.back().trial.block != begun.block) tried_.clear();
+  attempts_.push_back({begun, queue_.front(), {}, {}, {}});
   ++tried_[begun.trial];
   queue_.pop_front();
   open_ = true;
@@ -74,8 +91,18 @@ Result<Attempt*> TrialQueue::open_attempt(int number) {
 
 void TrialQueue::close() {
   const Attempt& attempt = attempts_.back();
-  if (!attempt.counts() && tried_[attempt.begun.trial] < most_attempts_) queue_.push_back(attempt.trial);
+  if (!attempt.counts() && tried_[attempt.begun.trial] < most_attempts_)
+    queue_.insert(std::ranges::find_if(
+                      queue_, [&](const StudyTrial& each) { return each.block > attempt.trial.block; }),
+                  attempt.trial);
   open_ = false;
+}
+
+Result<void> TrialQueue::end_block(int block) {
+  if (open_ || queue_.empty() || queue_.front().block != block)
+    return does_not_follow(fmt::format("the end of block {}", block));
+  while (!queue_.empty() && queue_.front().block == block) queue_.pop_front(), --trials_;
+  return {};
 }
 
 }  // namespace tacto::analysis

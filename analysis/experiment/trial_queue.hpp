@@ -17,14 +17,16 @@ struct Attempt {
   schema::AttemptBegun begun;
   StudyTrial trial;
   std::optional<schema::DeliveryJudged> judged;
+  std::optional<schema::SamplePlaced> placed;
   std::optional<schema::AttemptAnswered> answered;
 
-  /// Delivered and answered.
-  bool counts() const { return judged && judged->delivered && answered; }
+  /// Delivered, or placed as a real sample; and answered.
+  bool counts() const { return answered && (placed || (judged && judged->delivered)); }
 };
 
-/// Trials in order; one that was not delivered, or has no answer because the run was interrupted, comes again
-/// at the end, up to `most_attempts` times in all.
+/// Trials in order, without the rest of a block whose time is over; one that was not delivered, or has no
+/// answer because the run was interrupted, comes again at the end of its block, up to `most_attempts` times
+/// in all.
 class TrialQueue {
  public:
   TrialQueue(std::vector<StudyTrial> order, int most_attempts);
@@ -41,14 +43,17 @@ class TrialQueue {
   std::size_t trials() const { return trials_; }
   std::size_t counted() const;
   std::size_t answers() const;
+  /// Attempts with a real sample in place.
+  std::size_t placed() const;
 
  private:
   schema::Result<void> begin(const schema::AttemptBegun& begun);
   schema::Result<Attempt*> open_attempt(int number);
   void close();
+  schema::Result<void> end_block(int block);
 
   std::deque<StudyTrial> queue_;
-  std::map<std::string, int> tried_;
+  std::map<std::string, int> tried_;  // of this block
   std::vector<Attempt> attempts_;
   std::size_t trials_;
   int most_attempts_;

@@ -18,10 +18,10 @@ Result<void> keep_and_take(TrialQueue& queue, const TrialSteps& steps, const sch
 Result<bool> run_trial(TrialQueue& queue, const TrialSteps& steps, const StudyTrial& trial) {
   const int number = static_cast<int>(queue.attempts().size()) + 1;
   TACTO_TRY(keep_and_take(queue, steps, steps.begin(trial, number)));
-  const auto judged = steps.play(queue.attempts().back());
-  TACTO_TRY(judged);
-  if (!*judged) return false;
-  TACTO_TRY(keep_and_take(queue, steps, **judged));
+  const auto presented = steps.present(queue.attempts().back());
+  TACTO_TRY(presented);
+  if (!*presented) return false;
+  TACTO_TRY(keep_and_take(queue, steps, **presented));
   const auto answered = steps.answer(queue.attempts().back());
   TACTO_TRY(answered);
   if (!*answered) return false;
@@ -33,6 +33,10 @@ Result<bool> run_trial(TrialQueue& queue, const TrialSteps& steps, const StudyTr
 
 Result<void> run_trials(TrialQueue& queue, const TrialSteps& steps) {
   while (const auto trial = queue.next()) {
+    if (steps.is_over(*trial)) {
+      TACTO_TRY(keep_and_take(queue, steps, schema::BlockOver{trial->block}));
+      continue;
+    }
     const auto goes_on = run_trial(queue, steps, *trial);
     TACTO_TRY(goes_on);
     if (!*goes_on) return {};
@@ -42,7 +46,8 @@ Result<void> run_trials(TrialQueue& queue, const TrialSteps& steps) {
 
 Result<TrialQueue> queue_of(const schema::Journal& journal, const schema::Protocol& protocol,
                             const schema::ProtocolKey& key) {
-  TrialQueue queue(ordered_trials(protocol, key, journal.plan.participant), protocol.most_attempts);
+  TrialQueue queue(ordered_trials(protocol, key, journal.plan.participant, journal.plan.order),
+                   protocol.most_attempts);
   for (const schema::JournalEntry& entry : journal.entries) TACTO_TRY(queue.take(entry));
   return queue;
 }

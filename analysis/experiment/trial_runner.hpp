@@ -16,11 +16,13 @@ struct TrialSteps {
   std::function<schema::Result<void>(const schema::JournalEntry&)> keep;
   /// The attempt that begins now, for the journal.
   std::function<schema::AttemptBegun(const StudyTrial&, int attempt)> begin;
-  /// Plays both intervals, and decides whether they were delivered. None: the participant or a signal ends
-  /// the run.
-  std::function<schema::Result<std::optional<schema::DeliveryJudged>>(const Attempt&)> play;
+  /// Plays the intervals, and decides whether they were delivered; or has a real sample placed. None: the
+  /// participant or a signal ends the run.
+  std::function<schema::Result<std::optional<schema::JournalEntry>>(const Attempt&)> present;
   /// The answer, also to what was not delivered. None: as above.
   std::function<schema::Result<std::optional<schema::AttemptAnswered>>(const Attempt&)> answer;
+  /// Whether the time of the trial's block is over before it begins.
+  std::function<bool(const StudyTrial&)> is_over;
 };
 
 /// Until all trials are done (then the last entry is `end`) or the run is ended. Each entry is kept, then

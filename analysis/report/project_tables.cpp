@@ -173,9 +173,12 @@ Result<void> add_corpus_plan(const std::string& path, ProjectFile& file) {
 Result<void> add_protocol(const std::string& path, ProjectFile& file) {
   const auto protocol = schema::read_protocol(path);
   TACTO_TRY(protocol);
+  const bool two_interval = protocol->task == schema::Task::two_interval;
   file.figures = {
       {"question", protocol->texts.question},
-      {"levels", fmt::format("{}, {} times each", protocol->levels.size(), protocol->repetitions)}};
+      {two_interval ? "levels" : "comparisons",
+       fmt::format("{}, {} times each", two_interval ? protocol->levels.size() : protocol->comparisons.size(),
+                   protocol->repetitions)}};
   return {};
 }
 

@@ -9,10 +9,16 @@ Result<cli::Report> describe_protocol(const std::string& path) {
   TACTO_TRY(protocol);
   warn_of_unknown(path, *protocol);
   cli::Report report = report_of(FileKind::protocol, path, "");
-  report.add("task", "two_interval").add("question", protocol->texts.question);
-  report.add("standard_period_m", protocol->standard.period_m)
-      .add("standard_amplitude_m", protocol->standard.amplitude_m);
-  report.add("levels", protocol->levels.size()).add("repetitions", protocol->repetitions);
+  report.add("task", word_of(protocol->task)).add("question", protocol->texts.question);
+  if (protocol->task == Task::two_interval)
+    report.add("standard_period_m", protocol->standard.period_m)
+        .add("standard_amplitude_m", protocol->standard.amplitude_m)
+        .add("levels", protocol->levels.size());
+  else
+    report.add("standards", protocol->standards.size())
+        .add("comparisons", protocol->comparisons.size())
+        .add("conditions", protocol->conditions);
+  report.add("repetitions", protocol->repetitions);
   report.add("participants", protocol->participants).add("seed", protocol->seed);
   add_text(report, "notes", protocol->notes);
   return report;

@@ -3,7 +3,6 @@
 // before the next step, and has its number and its check.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,14 +22,23 @@ struct RunPlanned {
   std::string device;
   std::string observer;  ///< simulated; empty: a person
   std::string created, creator;
+  int order = 1;  ///< row of the square of block orders, from 1
 };
 
 /// An attempt at a trial begins: the first line of it.
 struct AttemptBegun {
-  int attempt = 0;                      ///< 1, 2 ... of the run
-  std::string trial;                    ///< CODE.REPETITION
-  std::array<std::string, 2> stimuli;   ///< codes, in the order of the intervals
-  std::array<std::string, 2> sessions;  ///< from the journal's folder
+  int attempt = 0;                    ///< 1, 2 ... of the run
+  std::string trial;                  ///< CODE.REPETITION
+  std::vector<std::string> stimuli;   ///< codes, in the order of the intervals
+  std::vector<std::string> sessions;  ///< from the journal's folder; none of a real sample
+  int block = 1;                      ///< of the trials
+  double block_s = 0;                 ///< time of the block so far, without interruptions
+};
+
+/// In place of a delivery: a real sample is on the bench. No session records it.
+struct SamplePlaced {
+  int attempt = 0;
+  std::string label;  ///< as the operator typed it: the code of the trial
 };
 
 /// What a session says of one interval.
@@ -58,9 +66,14 @@ struct DeliveryJudged {
 
 struct AttemptAnswered {
   int attempt = 0;
-  int interval = 0;     ///< 1 or 2
+  int choice = 0;       ///< of the protocol's choices, from 1
   std::string word;     ///< as the protocol names it
   double answer_s = 0;  ///< from the question to the key; 0 of an observer and of a file
+};
+
+/// The block's time is over: no further trial of it begins.
+struct BlockOver {
+  int block = 0;
 };
 
 /// The run continues after an interruption: an attempt without an answer is over.
@@ -72,8 +85,8 @@ struct RunEnded {
   std::string created;
 };
 
-using JournalEntry =
-    std::variant<RunPlanned, AttemptBegun, DeliveryJudged, AttemptAnswered, RunResumed, RunEnded>;
+using JournalEntry = std::variant<RunPlanned, AttemptBegun, DeliveryJudged, SamplePlaced, AttemptAnswered,
+                                  BlockOver, RunResumed, RunEnded>;
 
 /// The line of an entry, with its end: a JSON object whose last member `check` has the first 16 hexadecimal
 /// digits of the SHA-256 of the line without that member (and with the closing brace).

@@ -92,20 +92,26 @@ struct EntryWriter {
   void operator()(const RunPlanned& plan) const {
     body["event"] = "plan", body["kind"] = "trials", body["version"] = kFormatVersion;
     for (const auto& [name, member] : kPlanTexts) put_text(body, name, plan.*member);
+    body["order"] = plan.order;
   }
   void operator()(const AttemptBegun& begun) const {
     body["event"] = "begun", body["attempt"] = begun.attempt, body["trial"] = begun.trial;
     body["stimuli"] = begun.stimuli, body["sessions"] = begun.sessions;
+    body["block"] = begun.block, body["block_s"] = begun.block_s;
   }
   void operator()(const DeliveryJudged& judged) const {
     body["event"] = "delivered", body["attempt"] = judged.attempt, body["delivered"] = judged.delivered;
     body["why"] = judged.why, body["intervals"] = Json::array();
     for (const IntervalFacts& facts : judged.intervals) body["intervals"].push_back(facts_body(facts));
   }
+  void operator()(const SamplePlaced& placed) const {
+    body["event"] = "placed", body["attempt"] = placed.attempt, body["label"] = placed.label;
+  }
   void operator()(const AttemptAnswered& answered) const {
-    body["event"] = "answered", body["attempt"] = answered.attempt, body["interval"] = answered.interval;
+    body["event"] = "answered", body["attempt"] = answered.attempt, body["choice"] = answered.choice;
     body["word"] = answered.word, body["answer_s"] = answered.answer_s;
   }
+  void operator()(const BlockOver& over) const { body["event"] = "block_over", body["block"] = over.block; }
   void operator()(const RunResumed& resumed) const {
     body["event"] = "resumed", body["created"] = resumed.created;
   }
@@ -118,10 +124,12 @@ JournalEntry journal_entry_from(const Json& body) {
   if (event == "plan") {
     RunPlanned plan;
     for (const auto& [name, member] : kPlanTexts) plan.*member = text_or(body, name);
+    plan.order = body.at("order");
     return plan;
   }
   if (event == "begun")
-    return AttemptBegun{body.at("attempt"), body.at("trial"), body.at("stimuli"), body.at("sessions")};
+    return AttemptBegun{body.at("attempt"),  body.at("trial"), body.at("stimuli"),
+                        body.at("sessions"), body.at("block"), body.at("block_s")};
   if (event == "delivered") {
     DeliveryJudged judged{
         body.at("attempt"), body.at("delivered"), body.at("why").get<std::vector<std::string>>(), {}};
@@ -129,7 +137,9 @@ JournalEntry journal_entry_from(const Json& body) {
     return judged;
   }
   if (event == "answered")
-    return AttemptAnswered{body.at("attempt"), body.at("interval"), body.at("word"), body.at("answer_s")};
+    return AttemptAnswered{body.at("attempt"), body.at("choice"), body.at("word"), body.at("answer_s")};
+  if (event == "placed") return SamplePlaced{body.at("attempt"), body.at("label")};
+  if (event == "block_over") return BlockOver{body.at("block")};
   if (event == "resumed") return RunResumed{body.at("created")};
   if (event != "end") throw std::invalid_argument("event");
   return RunEnded{body.at("created")};

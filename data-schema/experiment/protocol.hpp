@@ -15,6 +15,17 @@ struct StandardStimulus {
   double period_m = 0, amplitude_m = 0, length_m = 0;
 };
 
+/// What a trial asks. two_interval: the standard and a stretched version of it are played, one after the
+/// other; which of them has the smaller period. identification: one of the comparisons is played, or lies on
+/// the bench as a real sample; which of the standards it is.
+enum class Task { two_interval, identification };
+
+/// "two_interval", "identification".
+const char* word_of(Task task);
+
+/// One condition of an identification: the comparisons are real samples, or played.
+inline constexpr const char *kRealCondition = "real", *kVirtualCondition = "virtual";
+
 /// How the finger is to move in each interval.
 struct ProtocolPace {
   double from_m = 0, to_m = 0;  ///< on the texture
@@ -39,20 +50,26 @@ struct AnswerWord {
 /// What the participant reads. The names of the keys are inserted by the runner.
 struct ProtocolTexts {
   std::string welcome, begin, interval, question, end;
+  std::string place;  ///< to the operator, before a real sample's label; in an identification only
 };
 
-/// Task two_interval: in each trial the standard and a stretched version of it are played, one after the
-/// other, and the participant says which of them has the smaller period.
+/// What the task does not have is empty.
 struct Protocol {
-  StandardStimulus standard;
+  Task task = Task::two_interval;
+  StandardStimulus standard;   ///< of two_interval, as the next two
   bool keep_slope = false;     ///< the amplitude is stretched alike
   std::vector<double> levels;  ///< stretch of the period: 0.3 is 30 % longer; ascending, never 0
-  int repetitions = 0;         ///< of each level; in the odd ones the standard comes first
-  std::string seed;            ///< of codes and order
-  double gain_m_per_n = 0;     ///< of playback
+  std::vector<std::string> standards, comparisons;  ///< names of textures; comparisons are standards
+  std::vector<std::string>
+      conditions;           ///< of an identification, a block each; their order is a row of a Williams square
+  int most_trials = 0;      ///< of one block
+  double longest_s = 0;     ///< of one block: then no further trial of it begins
+  int repetitions = 0;      ///< of each level or comparison (in each condition)
+  std::string seed;         ///< of codes and order
+  double gain_m_per_n = 0;  ///< of playback
   ProtocolPace pace;
   double lead_s = 0;  ///< from the participant's go-ahead to the beginning of an interval: above any load
-  AnswerWord first, second;  ///< the answers
+  std::vector<AnswerWord> choices;  ///< the answers: first and second interval; or a standard each, in order
   std::string begin_key;
   int most_attempts = 0;  ///< of one trial; then the run goes on without it
   int participants = 0;   ///< planned: before they are complete, the analysis needs --unblind
@@ -66,8 +83,9 @@ struct Protocol {
 };
 
 /// By stem, NAME.protocol.json or a JSON file with another name. Errors: not_found; malformed, with the
-/// place: also an unknown member (with the nearest known one), levels that do not rise or include 0, doubled
-/// keys or words, a path that leaves the texture, limits of speed that exclude the pace; unsupported_version.
+/// place: also an unknown member (with the nearest known one), one that the task lacks or does not have,
+/// levels that do not rise or include 0, a comparison that is no standard, doubled keys or words, a path that
+/// leaves the texture, limits of speed that exclude the pace; unsupported_version.
 Result<Protocol> read_protocol(const std::string& name);
 
 /// The text of the file. Errors: unsuitable, by the schema.
@@ -80,7 +98,8 @@ std::string key_path(const std::string& study);
 /// One stimulus as it is played.
 struct CodedStimulus {
   std::string code;    ///< "K3"
-  double stretch = 0;  ///< 0: the standard
+  double stretch = 0;  ///< of two_interval; 0: the standard
+  std::string name;    ///< of an identification
   std::string sha256;  ///< of its WAV
 };
 
@@ -89,7 +108,7 @@ struct ProtocolKey {
   std::string sha256;                  ///< of the file that was read
 };
 
-/// Errors: as read_protocol; malformed: a code or stretch twice.
+/// Errors: as read_protocol; malformed: a code, stretch or name twice, or neither stretch nor name.
 Result<ProtocolKey> read_protocol_key(const std::string& path);
 Result<std::string> protocol_key_text(const ProtocolKey& key);
 

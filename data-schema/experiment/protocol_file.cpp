@@ -40,30 +40,51 @@ struct ShownText {
   const char* name;
   std::string ProtocolTexts::*member;
 };
+constexpr const char* kTaskWords[] = {"two_interval", "identification"};
+// Members that one task has and the other one does not.
+constexpr const char* kTwoIntervalMembers[] = {"standard", "keep", "levels"};
+constexpr const char* kIdentificationMembers[] = {"standards", "comparisons", "conditions", "most_trials",
+                                                  "longest_s"};
 constexpr ShownText kShownTexts[] = {{"welcome", &ProtocolTexts::welcome},
                                      {"begin", &ProtocolTexts::begin},
                                      {"interval", &ProtocolTexts::interval},
                                      {"question", &ProtocolTexts::question},
                                      {"end", &ProtocolTexts::end}};
 
-AnswerWord answer_from(const Json& body) {
-  return {body["key"], body["word"]};
+Task task_of(const Json& body) {
+  return body["task"] == kTaskWords[0] ? Task::two_interval : Task::identification;
+}
+
+void take_two_interval(const Json& body, Protocol& protocol) {
+  const Json& standard = body["standard"];
+  protocol.standard = {standard["period_m"], standard["amplitude_m"], standard["length_m"]};
+  protocol.keep_slope = body["keep"] == "slope";
+  protocol.levels = body["levels"].get<std::vector<double>>();
+}
+
+void take_identification(const Json& body, Protocol& protocol) {
+  protocol.standards = body["standards"].get<std::vector<std::string>>();
+  protocol.comparisons = body["comparisons"].get<std::vector<std::string>>();
+  protocol.conditions = body["conditions"].get<std::vector<std::string>>();
+  protocol.most_trials = body["most_trials"];
+  protocol.longest_s = body["longest_s"];
 }
 
 Protocol protocol_from(const Document& document) {
   const Json& body = document.body;
   Protocol protocol;
-  const Json &standard = body["standard"], &pace = body["pace"], &answers = body["answers"];
-  protocol.standard = {standard["period_m"], standard["amplitude_m"], standard["length_m"]};
-  protocol.keep_slope = body["keep"] == "slope";
-  protocol.levels = body["levels"].get<std::vector<double>>();
+  const Json &pace = body["pace"], &answers = body["answers"];
+  protocol.task = task_of(body);
+  if (protocol.task == Task::two_interval)
+    take_two_interval(body, protocol);
+  else
+    take_identification(body, protocol);
   protocol.repetitions = body["repetitions"];
   protocol.seed = body["seed"];
   protocol.gain_m_per_n = body["gain_m_per_n"];
   protocol.pace = {pace["from_m"], pace["to_m"], pace["speed_mps"], pace["strokes"]};
   protocol.lead_s = body["lead_s"];
-  protocol.first = answer_from(answers["first"]);
-  protocol.second = answer_from(answers["second"]);
+  for (const Json& choice : answers["choices"]) protocol.choices.push_back({choice["key"], choice["word"]});
   protocol.begin_key = answers["begin_key"];
   protocol.most_attempts = body["most_attempts"];
   protocol.participants = body["participants"];
@@ -71,20 +92,36 @@ Protocol protocol_from(const Document& document) {
   for (const auto& [name, member] : kLimitCounts) protocol.delivered.*member = delivered[name];
   for (const auto& [name, member] : kLimitNumbers) protocol.delivered.*member = delivered[name];
   for (const auto& [name, member] : kShownTexts) protocol.texts.*member = texts[name];
+  protocol.texts.place = text_or(texts, "place");
   protocol.notes = text_or(body, "notes");
   keep_unknown(document, protocol);
   return protocol;
 }
 
-Json protocol_body(const Protocol& protocol) {
-  Json body = Json::object();
-  put_text(body, "version", protocol.newer_version);
-  body["task"] = "two_interval";
+void put_two_interval(Json& body, const Protocol& protocol) {
   body["standard"] = {{"period_m", protocol.standard.period_m},
                       {"amplitude_m", protocol.standard.amplitude_m},
                       {"length_m", protocol.standard.length_m}};
   body["keep"] = protocol.keep_slope ? "slope" : "amplitude";
   body["levels"] = protocol.levels;
+}
+
+void put_identification(Json& body, const Protocol& protocol) {
+  body["standards"] = protocol.standards;
+  body["comparisons"] = protocol.comparisons;
+  body["conditions"] = protocol.conditions;
+  body["most_trials"] = protocol.most_trials;
+  body["longest_s"] = protocol.longest_s;
+}
+
+Json protocol_body(const Protocol& protocol) {
+  Json body = Json::object();
+  put_text(body, "version", protocol.newer_version);
+  body["task"] = word_of(protocol.task);
+  if (protocol.task == Task::two_interval)
+    put_two_interval(body, protocol);
+  else
+    put_identification(body, protocol);
   body["repetitions"] = protocol.repetitions;
   body["seed"] = protocol.seed;
   body["gain_m_per_n"] = protocol.gain_m_per_n;
@@ -93,9 +130,9 @@ Json protocol_body(const Protocol& protocol) {
                   {"speed_mps", protocol.pace.speed_mps},
                   {"strokes", protocol.pace.strokes}};
   body["lead_s"] = protocol.lead_s;
-  body["answers"] = {{"first", {{"key", protocol.first.key}, {"word", protocol.first.word}}},
-                     {"second", {{"key", protocol.second.key}, {"word", protocol.second.word}}},
-                     {"begin_key", protocol.begin_key}};
+  body["answers"] = {{"choices", Json::array()}, {"begin_key", protocol.begin_key}};
+  for (const auto& [key, word] : protocol.choices)
+    body["answers"]["choices"].push_back({{"key", key}, {"word", word}});
   body["most_attempts"] = protocol.most_attempts;
   body["participants"] = protocol.participants;
   body["delivered"] = Json::object();
@@ -103,6 +140,7 @@ Json protocol_body(const Protocol& protocol) {
   for (const auto& [name, member] : kLimitNumbers) body["delivered"][name] = protocol.delivered.*member;
   body["texts"] = Json::object();
   for (const auto& [name, member] : kShownTexts) body["texts"][name] = protocol.texts.*member;
+  put_text(body["texts"], "place", protocol.texts.place);
   put_text(body, "notes", protocol.notes);
   return body;
 }
@@ -124,14 +162,51 @@ Result<void> check_levels(const Protocol& protocol, const std::string& path) {
 }
 
 Result<void> check_answers(const Protocol& protocol, const std::string& path) {
-  const std::set<std::string> keys = {protocol.first.key, protocol.second.key, protocol.begin_key};
-  if (keys.size() < 3)
-    return malformed_at(path, "answers", "one key has two meanings",
-                        "give first, second and begin_key different keys");
-  if (protocol.first.word == protocol.second.word)
-    return malformed_at(path, "answers/second/word", "both answers have the same word",
-                        "give them different words");
+  std::set<std::string> keys = {protocol.begin_key}, words;
+  for (const auto& [key, word] : protocol.choices) {
+    if (!keys.insert(key).second)
+      return malformed_at(path, "answers", "one key has two meanings",
+                          "give each choice and begin_key a different key");
+    if (!words.insert(word).second)
+      return malformed_at(path, fmt::format("answers/choices/{}/word", words.size()).c_str(),
+                          "two answers have the same word", "give them different words");
+  }
+  const std::size_t expected = protocol.task == Task::two_interval ? 2 : protocol.standards.size();
+  if (protocol.choices.size() == expected) return {};
+  return malformed_at(path, "answers/choices",
+                      fmt::format("has {} answers, the task {}", protocol.choices.size(), expected),
+                      "give one for each interval, or for each standard");
+}
+
+Result<void> check_names(const Protocol& protocol, const std::string& path) {
+  std::set<std::string> standards;
+  for (const std::string& name : protocol.standards)
+    if (!standards.insert(name).second)
+      return malformed_at(path, "standards", name + " occurs twice", "name each texture once");
+  for (std::size_t i = 0; i < protocol.comparisons.size(); ++i)
+    if (standards.erase(protocol.comparisons[i]) == 0)
+      return malformed_at(path, fmt::format("comparisons/{}", i).c_str(),
+                          protocol.comparisons[i] + " is no standard, or occurs twice",
+                          "name each once, and only standards");
   return {};
+}
+
+template <std::size_t kCount>
+Result<void> check_has(const Json& body, const char* const (&members)[kCount], bool expected,
+                       const std::string& path) {
+  for (const char* name : members)
+    if (body.contains(name) != expected)
+      return malformed_at(path, name,
+                          fmt::format("a protocol of the task {} {}", body["task"].get<std::string>(),
+                                      expected ? "needs this member" : "does not have this member"),
+                          expected ? "add it" : "remove it");
+  return {};
+}
+
+Result<void> check_members_of_task(const Json& body, const std::string& path) {
+  const bool two_interval = task_of(body) == Task::two_interval;
+  TACTO_TRY(check_has(body, kTwoIntervalMembers, two_interval, path));
+  return check_has(body, kIdentificationMembers, !two_interval, path);
 }
 
 Result<void> check_pace(const Protocol& protocol, const std::string& path) {
@@ -139,7 +214,7 @@ Result<void> check_pace(const Protocol& protocol, const std::string& path) {
   if (!(pace.to_m - pace.from_m >= 5e-3))
     return malformed_at(path, "pace/to_m", "a stroke from from_m to to_m is shorter than 5 mm",
                         "give a longer path: shorter movements are not strokes");
-  if (pace.to_m > protocol.standard.length_m)
+  if (protocol.task == Task::two_interval && pace.to_m > protocol.standard.length_m)
     return malformed_at(
         path, "pace/to_m",
         fmt::format("the path ends at {:g} m, the texture at {:g} m", pace.to_m, protocol.standard.length_m),
@@ -154,6 +229,7 @@ Result<void> check_pace(const Protocol& protocol, const std::string& path) {
 
 Result<void> check_protocol(const Protocol& protocol, const std::string& path) {
   TACTO_TRY(check_levels(protocol, path));
+  TACTO_TRY(check_names(protocol, path));
   TACTO_TRY(check_answers(protocol, path));
   return check_pace(protocol, path);
 }
@@ -171,6 +247,10 @@ Result<Document> open_known(const std::string& path, std::string_view kind) {
 
 }  // namespace
 
+const char* word_of(Task task) {
+  return kTaskWords[static_cast<int>(task)];
+}
+
 std::string protocol_path(const std::string& study) {
   return stem_of_study(study) + ".protocol.json";
 }
@@ -183,6 +263,7 @@ Result<Protocol> read_protocol(const std::string& name) {
   const std::string path = name.ends_with(".json") && is_file(name) ? name : protocol_path(name);
   const auto document = open_known(path, kProtocolKind);
   TACTO_TRY(document);
+  TACTO_TRY(check_members_of_task(document->body, path));
   Protocol protocol = protocol_from(*document);
   TACTO_TRY(check_protocol(protocol, path));
   const auto sum = sha256_of_file(path);
@@ -201,13 +282,16 @@ Result<ProtocolKey> read_protocol_key(const std::string& path) {
   TACTO_TRY(document);
   ProtocolKey key;
   std::set<std::string> codes;
-  std::set<double> stretches;
+  std::set<std::pair<double, std::string>> meanings;
   for (const Json& body : document->body["stimuli"]) {
-    const CodedStimulus& stimulus =
-        key.stimuli.emplace_back(CodedStimulus{body["code"], body["stretch"], body["sha256"]});
-    if (!codes.insert(stimulus.code).second || !stretches.insert(stimulus.stretch).second)
-      return fail(ErrorKind::malformed, "its code or its stretch occurs twice",
-                  fmt::format("{}#/stimuli/{}", path, key.stimuli.size() - 1), "each has one code");
+    const CodedStimulus& stimulus = key.stimuli.emplace_back(
+        CodedStimulus{body["code"], body.value("stretch", 0.0), text_or(body, "name"), body["sha256"]});
+    const std::string where = fmt::format("{}#/stimuli/{}", path, key.stimuli.size() - 1);
+    if (body.contains("stretch") == body.contains("name"))
+      return fail(ErrorKind::malformed, "has both stretch and name, or neither", where, "give one of them");
+    if (!codes.insert(stimulus.code).second || !meanings.emplace(stimulus.stretch, stimulus.name).second)
+      return fail(ErrorKind::malformed, "its code, or its stretch or name, occurs twice", where,
+                  "each has one code");
   }
   const auto sum = sha256_of_file(path);
   TACTO_TRY(sum);
@@ -217,8 +301,13 @@ Result<ProtocolKey> read_protocol_key(const std::string& path) {
 
 Result<std::string> protocol_key_text(const ProtocolKey& key) {
   Json body = {{"stimuli", Json::array()}};
-  for (const CodedStimulus& each : key.stimuli)
-    body["stimuli"].push_back({{"code", each.code}, {"stretch", each.stretch}, {"sha256", each.sha256}});
+  for (const CodedStimulus& each : key.stimuli) {
+    Json& stimulus = body["stimuli"].emplace_back(Json{{"code", each.code}, {"sha256", each.sha256}});
+    if (each.name.empty())
+      stimulus["stretch"] = each.stretch;
+    else
+      stimulus["name"] = each.name;
+  }
   return document_text(kKeyKind, body, {});
 }
 

@@ -2,6 +2,7 @@
 // The run of an experiment without a device: order, journal cut at each byte, decisions, observer, period.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include "analysis/experiment/observer.hpp"
 #include "analysis/experiment/spatial_period.hpp"
 #include "analysis/experiment/study.hpp"
+#include "analysis/experiment/template_observer.hpp"
 #include "analysis/experiment/trial_runner.hpp"
 #include "data-schema/files/files.hpp"
 
@@ -30,18 +32,31 @@ schema::Protocol twenty_trials() {
 }
 
 schema::ProtocolKey key_of(const schema::Protocol& protocol) {
-  schema::ProtocolKey key;
-  for (const double stretch : stretches_by_code(protocol))
-    key.stimuli.push_back({"K" + std::to_string(key.stimuli.size() + 1), stretch, "sum"});
-  return key;
+  return {stimuli_by_code(protocol), ""};
+}
+
+// Identification of five names: three comparisons, in a real and in a virtual block of five trials each.
+schema::Protocol ten_trials() {
+  schema::Protocol protocol = twenty_trials();
+  protocol.task = schema::Task::identification;
+  protocol.levels.clear();
+  protocol.standards = {"A", "B", "C", "D", "E"}, protocol.comparisons = {"C", "D", "E"};
+  protocol.conditions = {"real", "virtual"};
+  protocol.most_trials = 5, protocol.longest_s = 900;
+  return protocol;
 }
 
 // A run whose journal is a text: every seventh attempt is not delivered.
 class TextRun {
  public:
+  explicit TextRun(schema::Protocol protocol = twenty_trials()) : protocol_(std::move(protocol)) {}
+
+  // The time of block 1 is over after so many attempts.
+  int attempts_in_time = 1000;
+
   // Begins a run, or resumes what is whole in `journal`. Errors: of parse_journal.
   Result<void> go_on(const std::string& journal) {
-    if (journal.empty()) return run_from(schema::RunPlanned{"lab", "P01", "", "", "none", "", "", ""});
+    if (journal.empty()) return run_from(schema::RunPlanned{"lab", "P01", "", "", "none", "", "", "", 1});
     const auto parsed = schema::parse_journal(journal, "journal");
     if (!parsed) return schema::forward_error(parsed);
     text_ = journal.substr(0, parsed->sound_bytes);
@@ -67,9 +82,13 @@ class TextRun {
     TrialSteps steps;
     steps.keep = [this](const schema::JournalEntry& entry) { return keep(entry); };
     steps.begin = [](const StudyTrial& trial, int attempt) {
-      return schema::AttemptBegun{attempt, trial.name(), {"K1", trial.code}, {"a", "b"}};
+      return schema::AttemptBegun{attempt, trial.name(), {"K1", trial.code}, {"a", "b"}, trial.block, 0};
     };
-    steps.play = [](const Attempt& attempt) -> Result<std::optional<schema::DeliveryJudged>> {
+    steps.is_over = [this](const StudyTrial& trial) {
+      return trial.block == 1 && static_cast<int>(queue_.attempts().size()) >= attempts_in_time;
+    };
+    steps.present = [](const Attempt& attempt) -> Result<std::optional<schema::JournalEntry>> {
+      if (attempt.trial.real) return schema::SamplePlaced{attempt.begun.attempt, attempt.trial.code};
       const bool delivered = attempt.begun.attempt % 7 != 0;
       return schema::DeliveryJudged{attempt.begun.attempt, delivered, {}, {}};
     };
@@ -79,9 +98,9 @@ class TextRun {
     return run_trials(queue_, steps);
   }
 
-  const schema::Protocol protocol_ = twenty_trials();
+  const schema::Protocol protocol_;
   const schema::ProtocolKey key_ = key_of(protocol_);
-  TrialQueue queue_{ordered_trials(protocol_, key_, "P01"), protocol_.most_attempts};
+  TrialQueue queue_{ordered_trials(protocol_, key_, "P01", 1), protocol_.most_attempts};
   std::string text_;
   std::size_t lines_ = 0;
 };
@@ -89,7 +108,7 @@ class TextRun {
 std::map<std::string, int> counted_trials(const TrialQueue& queue) {
   std::map<std::string, int> counted;
   for (const Attempt& attempt : queue.attempts())
-    if (attempt.counts()) ++counted[attempt.begun.trial];
+    if (attempt.counts()) ++counted[std::to_string(attempt.trial.block) + "/" + attempt.begun.trial];
   return counted;
 }
 
@@ -138,6 +157,84 @@ TEST(ExperimentRun, AJournalCutAtEachByteIsResumedWithEachAnswerOnce) {
   }
 }
 
+// The same with two blocks: real samples, then playback, of which what was not delivered comes again.
+TEST(ExperimentRun, AJournalOfTwoBlocksCutAtEachByteIsResumed) {
+  for (const int in_time : {1000, 3}) {
+    TextRun whole(ten_trials());
+    whole.attempts_in_time = in_time;
+    ASSERT_TRUE(whole.go_on(""));
+    const std::string& text = whole.text();
+    const std::size_t trials = in_time == 3 ? 8 : 10;
+    ASSERT_EQ(whole.queue().trials(), trials);
+    ASSERT_EQ(whole.queue().counted(), trials);
+    ASSERT_EQ(whole.queue().placed(), trials - 5);
+    ASSERT_EQ(whole.queue().attempts().size(), trials + 1);  // attempt 7 is played, and not delivered
+    ASSERT_EQ(lines_with(text, R"("event":"block_over")"), in_time == 3 ? 1u : 0u);
+    for (std::size_t bytes = text.find('\n') + 1; bytes <= text.size(); ++bytes) {
+      TextRun resumed(ten_trials());
+      resumed.attempts_in_time = in_time;
+      const auto went_on = resumed.go_on(text.substr(0, bytes));
+      ASSERT_TRUE(went_on) << bytes << ": " << schema::message(went_on.error());
+      const std::size_t whole_lines = text.rfind('\n', bytes - 1) + 1;
+      ASSERT_EQ(resumed.text().substr(0, whole_lines), text.substr(0, whole_lines)) << bytes;
+      ASSERT_TRUE(resumed.queue().has_ended()) << bytes;
+      const auto counted = counted_trials(resumed.queue());
+      // An interrupted real sample comes again at its block's end, where the time may be over.
+      ASSERT_LE(counted.size(), trials) << bytes;
+      ASSERT_GE(counted.size(), in_time == 3 ? trials - 1 : trials) << bytes;
+      for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
+    }
+  }
+}
+
+TEST(ExperimentRun, BlocksAreOrderedByAWilliamsSquare) {
+  for (std::size_t count = 1; count <= 7; ++count) {
+    std::map<std::pair<std::size_t, std::size_t>, int> at_place, after;
+    for (int row = 1; row <= williams_rows(count); ++row) {
+      const std::vector<std::size_t> order = williams_row(count, row);
+      ASSERT_EQ(std::set<std::size_t>(order.begin(), order.end()).size(), count) << count << " " << row;
+      for (std::size_t i = 0; i < count; ++i) {
+        ++at_place[{i, order[i]}];
+        if (i > 0) ++after[{order[i - 1], order[i]}];
+      }
+    }
+    const int times = count % 2 == 0 ? 1 : 2;
+    ASSERT_EQ(at_place.size(), count * count);
+    ASSERT_EQ(after.size(), count * (count - 1));
+    for (const auto& [place, number] : at_place) EXPECT_EQ(number, times) << count;
+    for (const auto& [pair, number] : after) EXPECT_EQ(number, times) << count;
+  }
+  const schema::Protocol protocol = ten_trials();
+  for (const int row : {1, 2}) {
+    const auto trials = ordered_trials(protocol, key_of(protocol), "P01", row);
+    ASSERT_EQ(trials.size(), 10u);
+    EXPECT_EQ(trials.front().real, row == 1);
+    EXPECT_EQ(trials.back().real, row == 2);
+  }
+}
+
+// Three sinusoids of 10 um, an octave apart: the RMS is in the band of each, to the window's resolution, and
+// the levels do not depend on speed along the path. The other bands have the floor of 0.1 um, -20 dB, or the
+// skirt of the window below it.
+TEST(ExperimentRun, BandLevelsAreThoseOfASinusoidAtUnevenSpeed) {
+  for (const double frequency_per_m : {500.0, 1000.0, 2000.0}) {
+    std::vector<double> position_m, displacement_m;
+    for (int i = 0; i <= 2000; ++i) {
+      const double part = i / 2000.0;
+      position_m.push_back(0.002 + 0.04 * (part - std::sin(2 * std::numbers::pi * part) / 8));
+      displacement_m.push_back(1e-5 *
+                               std::sin(2 * std::numbers::pi * (frequency_per_m * position_m.back() + 0.1)));
+    }
+    const auto levels_db = band_levels_db(position_m, displacement_m, 0.05);
+    ASSERT_EQ(levels_db.size(), 15u);  // third octaves from 0.3 /mm to 9.6 /mm
+    double square = 0;
+    for (const double level_db : levels_db) square += std::pow(10, level_db / 10);
+    EXPECT_NEAR(square - 15 * 0.01, 50, 0.5) << frequency_per_m;  // 7.07 um
+    const auto largest = std::ranges::max_element(levels_db) - levels_db.begin();
+    EXPECT_EQ(largest, std::floor(3 * std::log2(frequency_per_m / 300))) << frequency_per_m;
+  }
+}
+
 TEST(ExperimentRun, AChangedLineInTheMiddleIsRefusedWithItsNumber) {
   TextRun whole;
   ASSERT_TRUE(whole.go_on(""));
@@ -171,7 +268,7 @@ TEST(ExperimentRun, AnEntryThatDoesNotFollowIsRefused) {
 
 TEST(ExperimentRun, HalfOfTheTrialsBeginWithTheStandard) {
   const schema::Protocol protocol = stretch_protocol("1");
-  const auto trials = ordered_trials(protocol, key_of(protocol), "P01");
+  const auto trials = ordered_trials(protocol, key_of(protocol), "P01", 1);
   EXPECT_EQ(trials.size(), 80u);
   std::map<std::string, int> first;
   std::set<std::string> names;
@@ -240,8 +337,9 @@ TEST(ExperimentRun, TheObserverHasItsWeberFractionAndLapses) {
 }
 
 TEST(ExperimentRun, AnObserverThatIsNoneIsRefused) {
-  for (const char* text :
-       {"", "weber", "weber=25", "weber=0%", "lapse=2%", "weber=25%,lapse=200%", "webber=25%"}) {
+  for (const char* text : {"", "weber", "weber=25", "weber=0%", "lapse=2%", "weber=25%,lapse=200%",
+                           "webber=25%", "template,weber=25%", "template,noise=-1dB", "template,noise=3",
+                           "weber=25%,template", "weber=25%,noise=3dB", "templates"}) {
     const auto refused = parse_observer(text);
     ASSERT_FALSE(refused) << text;
     EXPECT_EQ(refused.error().kind, ErrorKind::usage) << text;

@@ -162,7 +162,7 @@ def answers_from_a_file():
     assert partly["complete"] is False and partly["delivered_and_answered"] == 3
     pathlib.Path("answers.txt").write_text("first\nj\nsecond\n" + "f\n" * 5)
     assert tacto.run_json("experiment", "resume", "stretch-P03", *command)["complete"] is True
-    answers = [entry["interval"] for entry in journal("stretch-P03") if entry["event"] == "answered"]
+    answers = [entry["choice"] for entry in journal("stretch-P03") if entry["event"] == "answered"]
     assert answers == [1, 2, 2, 1, 1, 1, 1, 1]
     pathlib.Path("answers.txt").write_text("first\nmaybe\n")
     assert "line 2" in tacto.run("experiment", "run", "stretch", *command, "--participant", "P04", code=4)[1]

@@ -35,8 +35,7 @@ class ProtocolFile : public testing::Test {
     "standard": {"period_m": 0.00176, "amplitude_m": 1.28e-5, "length_m": 0.06},
     "repetitions": 2, "seed": "1", "gain_m_per_n": 0.001, "lead_s": 0.5, "most_attempts": 3, "participants": 8,
     "pace": {"from_m": 0.01, "to_m": 0.05, "speed_mps": 0.06, "strokes": 2},
-    "answers": {"first": {"key": "f", "word": "first"}, "second": {"key": "j", "word": "second"},
-                "begin_key": " "},
+    "answers": {"choices": [{"key": "f", "word": "first"}, {"key": "j", "word": "second"}], "begin_key": " "},
     "delivered": {"lost_ticks": 0, "fault_ticks": 0, "late_ticks": 0, "blind_ticks": 0,
                   "removed_by_limits_db": -40, "error_db": -20, "slowest_mps": 0.045, "fastest_mps": 0.085},
     "texts": {"welcome": "w", "begin": "b", "interval": "i", "question": "q", "end": "e"}})");
@@ -60,10 +59,12 @@ TEST_F(ProtocolFile, EachFaultHasItsPlace) {
   expect_fault("/levels", {0.5, 0.5}, "/levels/1");
   expect_fault("/levels", {-0.5, 0.0, 0.5}, "/levels/1");
   expect_fault("/levels", {0.5}, "/levels");
-  expect_fault("/answers/second/key", "f", "/answers");
+  expect_fault("/answers/choices/1/key", "f", "/answers");
   expect_fault("/answers/begin_key", "j", "/answers");
-  expect_fault("/answers/second/word", "first", "/answers/second/word");
-  expect_fault("/answers/first/key", "ff", "/answers/first/key");
+  expect_fault("/answers/choices/1/word", "first", "/answers/choices/1/word");
+  expect_fault("/answers/choices/0/key", "ff", "/answers/choices/0/key");
+  expect_fault("/answers/choices/2", {{"key", "k"}, {"word", "third"}}, "/answers/choices");
+  expect_fault("/standards", {"A", "B"}, "/standards");
   expect_fault("/pace/to_m", 0.014, "/pace/to_m");
   expect_fault("/pace/to_m", 0.07, "/pace/to_m");
   expect_fault("/pace/speed_mps", 0.1, "/pace/speed_mps");
@@ -79,12 +80,49 @@ TEST_F(ProtocolFile, EachFaultHasItsPlace) {
   EXPECT_EQ(newer.error().kind, ErrorKind::unsupported_version);
 }
 
+// The task identification in place of the other one; `change` is merged into it, null removes a member.
+nlohmann::json identification(nlohmann::json body, const nlohmann::json& change) {
+  for (const char* member : {"standard", "keep", "levels"}) body.erase(member);
+  body.merge_patch(nlohmann::json::parse(R"({
+    "task": "identification", "standards": ["A", "B"], "comparisons": ["B"], "conditions": ["virtual", "real"],
+    "most_trials": 100, "longest_s": 900.0})"));
+  body["texts"]["place"] = "p";
+  body.merge_patch(change);
+  return body;
+}
+
+TEST_F(ProtocolFile, AnIdentificationReadsBackAndEachFaultHasItsPlace) {
+  const auto read = [&](const nlohmann::json& change) {
+    PendingFiles pending;
+    EXPECT_TRUE(pending.write(folder_ / "odd.protocol.json", identification(body_, change).dump()));
+    EXPECT_TRUE(pending.commit());
+    return read_protocol(folder_ / "odd");
+  };
+  const auto protocol = read(nlohmann::json::object());
+  ASSERT_TRUE(protocol) << message(protocol.error());
+  EXPECT_EQ(nlohmann::json::parse(protocol_text(*protocol).value()),
+            identification(body_, nlohmann::json::object()));
+  for (const auto& [change, place] : {std::pair{R"({"standards": ["A", "A"]})", "/standards"},
+                                      {R"({"comparisons": ["C"]})", "/comparisons/0"},
+                                      {R"({"comparisons": ["B", "B"]})", "/comparisons/1"},
+                                      {R"({"standards": ["A", "B", "C"]})", "/answers/choices"},
+                                      {R"({"conditions": ["real", "real"]})", "/conditions"},
+                                      {R"({"longest_s": null})", "/longest_s"},
+                                      {R"({"levels": [0.5, 0.7]})", "/levels"}}) {
+    const auto refused = read(nlohmann::json::parse(change));
+    ASSERT_FALSE(refused) << change;
+    EXPECT_EQ(refused.error().kind, ErrorKind::malformed) << change;
+    EXPECT_TRUE(refused.error().where.ends_with(std::string("odd.protocol.json#") + place))
+        << refused.error().where;
+  }
+}
+
 TEST_F(ProtocolFile, AKeyWithACodeTwiceIsRefused) {
   const std::string sum(64, 'a');
   PendingFiles pending;
   for (const auto& [name, code, stretch] :
        {std::tuple{"good", "K2", 0.5}, std::tuple{"code", "K1", 0.5}, std::tuple{"stretch", "K2", 0.0}}) {
-    const auto text = protocol_key_text({{{"K1", 0.0, sum}, {code, stretch, sum}}, ""});
+    const auto text = protocol_key_text({{{"K1", 0.0, "", sum}, {code, stretch, "", sum}}, ""});
     ASSERT_TRUE(text) << message(text.error());
     ASSERT_TRUE(pending.write(folder_ / (std::string(name) + ".key.json"), *text));
   }
