@@ -138,6 +138,10 @@ SpaceVector normal_or(SpaceVector normal, SpaceVector way) noexcept {
   return (-1 / size) * way;
 }
 
+float size_of(float value) noexcept {
+  return value < 0 ? -value : value;
+}
+
 // Of the device, along a direction.
 float most_force_n(const ForceSetup& setup, SpaceVector normal) noexcept {
   float most_n = setup.peak_n;
@@ -146,7 +150,7 @@ float most_force_n(const ForceSetup& setup, SpaceVector normal) noexcept {
     const float share = axis.along == AxisAlong::x   ? normal.x
                         : axis.along == AxisAlong::y ? normal.y
                                                      : normal.z;
-    const float size = share < 0 ? -share : share;
+    const float size = size_of(share);
     if (axis.peak_n < most_n * size) most_n = axis.peak_n / size;
   }
   return most_n;
@@ -272,7 +276,7 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
     const PieceTable& table = piece_of(scene, i);
     const SpaceVector from = difference(place, origin_of(table), step_m);
     const PieceSurface at = surface_at(kind_of(scene, i), table, beyond ? SpaceVector{} : from);
-    WallTouch touch{0, beyond ? kFarthestInSpace_m : at.distance_m, 0, 0, 1 / setup.rate_hz};
+    WallTouch touch{0, beyond ? kFarthestInSpace_m : at.distance_m, 0, 0, 0, 1 / setup.rate_hz};
     SpaceVector normal = at.normal;
     for (uint32_t j = 0; j < holding.count; ++j)
       if (holding.piece[j] == i) touch.depth_m = holding.depth_m[j], normal = holding.normal[j];
@@ -284,6 +288,8 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
     }
     touch.speed_mps = dot(hand.speed_mps, normal);
     touch.most_force_n = most_force_n(setup, normal);
+    touch.grain_m =
+        size_of(normal.x) * step_m[0] + size_of(normal.y) * step_m[1] + size_of(normal.z) * step_m[2];
     float* const number = live + scene.layers[i].first_number;
     auto& state = *reinterpret_cast<WallState*>(number + changeable_numbers_of(kind_of(scene, i)));
     sum = sum + wall_force(number, state, touch) * normal;

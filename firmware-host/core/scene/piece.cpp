@@ -7,6 +7,7 @@ namespace tacto::core {
 namespace {
 
 constexpr float kNoEntry = 2;
+constexpr float kLeastArm = 1e-3F;  // of the radius: nearer to a centre the direction is one of rounding
 
 SpaceVector direction_of(const PieceTable& table) noexcept {
   return {table.form[kPieceDirection], table.form[kPieceDirection + 1], table.form[kPieceDirection + 2]};
@@ -158,7 +159,7 @@ bool nearest_on(SceneLayerKind kind, const PieceTable& table, SpaceVector hand, 
   }
   const SpaceVector arm = arm_of(kind, table, hand);
   const float radius_m = length(arm);
-  if (!(radius_m > 0)) return false;
+  if (!(radius_m > kLeastArm * table.form[kPieceSize])) return false;
   nearest = hand + ((table.form[kPieceSize] - radius_m) / radius_m) * arm;
   return true;
 }
@@ -172,7 +173,8 @@ float wall_force(const float* number, WallState& state, const WallTouch& touch) 
   if (state.touched == 0) state.impulse_ns = number[kPieceArrestMass] * inwards_mps;
   state.touched = 1;
   if (inwards_mps == 0) state.impulse_ns = 0;
-  const float grown_n = state.integral_n + touch.tick_s * (number[kPieceIntegral] * touch.depth_m -
+  const float deep_m = touch.depth_m > kIntegralRest * touch.grain_m ? touch.depth_m : 0,
+              grown_n = state.integral_n + touch.tick_s * (number[kPieceIntegral] * deep_m -
                                                            number[kPieceIntegralLeak] * state.integral_n),
               bound_n = number[kPieceIntegralBound];
   state.integral_n = grown_n < 0 ? 0 : grown_n > bound_n ? bound_n : grown_n;

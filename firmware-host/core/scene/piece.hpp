@@ -88,13 +88,18 @@ struct WallTouch {
   float outside_m = 0;     ///< of the hand outside, if there is no contact
   float speed_mps = 0;     ///< of the hand along the normal, outwards
   float most_force_n = 0;  ///< of the device along the normal
+  float grain_m = 0;       ///< of a count of the encoders along the normal
   float tick_s = 0;
 };
 
+/// In counts: up to this depth the integral does not grow. The place is known to half a count; without this a
+/// hand that rests on the surface would be pushed out of it.
+inline constexpr float kIntegralRest = 1.5F;
+
 /// One tick of a wall, outwards and never below 0: K depth - B speed + integral, and the impulse m v at the
 /// beginning of a contact, of which each tick gives what the device's peak force leaves, until it is spent or
-/// the hand stops. The integral grows by its number x depth x tick, up to its bound, and leaks. Safe in the
-/// tick.
+/// the hand stops. The integral grows by its number x depth x tick beyond kIntegralRest, up to its bound, and
+/// leaks. Safe in the tick.
 float wall_force(const float* number, WallState& state, const WallTouch& touch) noexcept;
 
 }  // namespace tacto::core

@@ -145,16 +145,18 @@ double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, 
   if (!wall.touched) wall.impulse_ns = piece.arrest_mass_kg * std::max(0.0, -speed_mps);
   wall.touched = true;
   if (speed_mps >= 0) wall.impulse_ns = 0;
-  wall.integral_n += tick_s_ * piece.integral_n_per_m_s * held.depth_m -
-                     tick_s_ * piece.integral_leak_per_s * wall.integral_n;
-  wall.integral_n = std::clamp(wall.integral_n, 0.0, piece.integral_bound_n);
-  const double own_n = std::max(
-      0.0, piece.stiffness_n_per_m * held.depth_m - piece.damping_n_s_per_m * speed_mps + wall.integral_n);
-  double most_n = device_.peak_force_n;
+  double most_n = device_.peak_force_n, grain_m = 0;
   for (const schema::DeviceAxis& axis : device_.axes) {
     const double share = std::abs(held.normal[axis.name == "x" ? 0 : axis.name == "y" ? 1 : 2]);
     if (share > 0) most_n = std::min(most_n, axis.peak_force_n / share);
+    grain_m += share * axis.encoder_step_m;
   }
+  const double deep_m = held.depth_m > double{core::kIntegralRest} * grain_m ? held.depth_m : 0;
+  wall.integral_n +=
+      tick_s_ * (piece.integral_n_per_m_s * deep_m - piece.integral_leak_per_s * wall.integral_n);
+  wall.integral_n = std::clamp(wall.integral_n, 0.0, piece.integral_bound_n);
+  const double own_n = std::max(
+      0.0, piece.stiffness_n_per_m * held.depth_m - piece.damping_n_s_per_m * speed_mps + wall.integral_n);
   const double given_n = std::clamp(most_n - own_n, 0.0, wall.impulse_ns / tick_s_);
   wall.impulse_ns -= given_n * tick_s_;
   return own_n + given_n;
