@@ -48,8 +48,8 @@ Result<void> add_scene(const std::string& path, ProjectFile& file) {
     });
   for (const schema::Patch& patch : scene->patches) add_patch(patch, file);
   for (const schema::Piece& piece : scene->pieces)
-    file.figures.push_back({piece.name, fmt::format("{}, {}", to_string(piece.shape),
-                                                    for_people(piece.stiffness_n_per_m, Dimension::stiffness))});
+    file.figures.push_back(
+        {piece.name, fmt::format("{}, {:.4g} N/m", to_string(piece.shape), piece.stiffness_n_per_m)});
   return {};
 }
 
