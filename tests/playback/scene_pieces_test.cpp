@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <span>
@@ -423,6 +424,17 @@ TEST(ScenePiecesTest, GrowthIsOneAtTheLimitOfASpring) {
   EXPECT_LE(wall_growth(wall, arm, 1000, std::nullopt), 1);
   wall.stiffness_n_per_m = limit * (1 + 1e-4);
   EXPECT_GT(wall_growth(wall, arm, 1000, std::nullopt), 1);
+}
+
+// What an emulated board reads of a place that is no number is the least count; the firmware answers such a
+// jump with a fault (firmware_scene_test), and the pieces do not hold the hand there.
+TEST(ScenePiecesTest, AHandWhosePlaceIsNoNumberIsHeldByNothingAtOnce) {
+  PiecesOnArm arm(scene_of({plane_at(0, 0, 0, {0, 0, 1})}), *schema::read_device("arm"));
+  for (int i = 0; i < 10; ++i) EXPECT_NEAR(arm.at({0, 0, -0.002})[2], 4, 1e-5);
+  const Space3 lost = {0, 0, std::nan("")};
+  EXPECT_EQ(arm.counts_at(lost)[2], std::numeric_limits<std::int32_t>::min());
+  EXPECT_EQ(arm.at(lost)[2], 0);
+  EXPECT_EQ(arm.at({0, 0, 0.01})[2], 0);
 }
 
 TEST(ScenePiecesTest, TheForceNeverPulls) {
