@@ -13,6 +13,7 @@
 #include "data-schema/command/output_options.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/prepare/scene/acting_load.hpp"
+#include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/stability/free_limit.hpp"
 
@@ -134,6 +135,44 @@ Result<void> add_adaptive(schema::Scene& scene, const std::string& file, const D
   return {};
 }
 
+// Pieces in space, each by itself: the wall's motion from tick to tick.
+Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& scene, const std::string& file,
+                             const DesignRequest& request) {
+  if (request.judged != Holder::nothing && request.judged != Holder::hand)
+    return schema::fail(ErrorKind::unsuitable, "pieces are judged by eigenvalues alone", file,
+                        "leave --lumped, --speed and --hand any out");
+  if (o.simulate || o.adversary_paths > 0 || o.hold_stable || o.z_width || !o.outputs.empty())
+    return schema::fail(ErrorKind::unsuitable, "pieces are listed only", file,
+                        "leave --simulate, --adversary, --hold-stable, --z-width and --output out");
+  if (!(request.device.axes.front().mass_kg > 0))
+    return schema::fail(
+        ErrorKind::unsuitable,
+        fmt::format("the device '{}' does not state its mass and friction", request.device.name), o.device,
+        "give them in its file");
+  std::vector<Report> rows;
+  bool unstable = false;
+  for (const schema::Piece& piece : scene.pieces) {
+    const double growth = playback::wall_growth(piece, request.device, request.rate_hz, request.hand);
+    unstable = unstable || growth > 1;
+    Report row;
+    row.add("piece", piece.name).add("verdict", growth > 1 ? "unstable" : "stable");
+    row.add("stiffness_n_per_m", piece.stiffness_n_per_m).add("damping_n_s_per_m", piece.damping_n_s_per_m);
+    row.add("limit_n_per_m", playback::stiffness_limit_of(request.device, request.rate_hz, request.hand,
+                                                          piece.damping_n_s_per_m, true));
+    row.add("growth_per_tick", growth);
+    rows.push_back(std::move(row));
+  }
+  Report report;
+  report.add("scene", file).add("device", request.device.name);
+  report.add("hand", request.hand ? request.hand->name : "nothing holds the device");
+  report.add("rate_hz", request.rate_hz).add("pieces", std::move(rows));
+  report.add("assumed",
+             "each piece alone, touched along an axis of the device; pieces that hold a hand together "
+             "in a corner act along different directions");
+  if (unstable) report.ends_with(ErrorKind::unstable);
+  return report;
+}
+
 Result<Report> run_design(const DesignVerbOptions& o) {
   Design design;
   const std::vector<OutputKind> kinds = {
@@ -146,6 +185,7 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   auto scene = schema::read_scene(file);
   TACTO_TRY(scene);
   warn_of_newer(file, *scene);
+  if (!scene->pieces.empty()) return design_pieces(o, *scene, file, *request);
   const double limit = playback::stiffness_limit_of(request->device, request->rate_hz, request->hand);
   TACTO_TRY(playback::set_filters(*scene, limit, file));
   TACTO_TRY(playback::read_reliefs(*scene, file, request->rate_hz));
@@ -199,7 +239,7 @@ Result<Report> table_of_c() {
 cli::Action declare_design(CLI::App& app) {
   auto options = std::make_shared<DesignVerbOptions>();
   DesignVerbOptions& o = *options;
-  app.add_option("SCENE", o.scene, "Scene with force patches: stem or file name");
+  app.add_option("SCENE", o.scene, "Scene with force patches, or with pieces in space: stem or file name");
   app.add_option("--device", o.device,
                  fmt::format("The force device that plays it, a preset ({}) or NAME.device.json",
                              fmt::join(schema::device_preset_names(), ", ")));

@@ -47,6 +47,9 @@ Result<void> add_scene(const std::string& path, ProjectFile& file) {
                                         for_people(texture.gain_m_per_n, Dimension::compliance))});
     });
   for (const schema::Patch& patch : scene->patches) add_patch(patch, file);
+  for (const schema::Piece& piece : scene->pieces)
+    file.figures.push_back(
+        {piece.name, fmt::format("{}, {:.4g} N/m", to_string(piece.shape), piece.stiffness_n_per_m)});
   return {};
 }
 

@@ -553,6 +553,7 @@ Result<ScenePicture> read_scene_picture(const std::string& scene, const std::str
   auto read = schema::read_scene(file);
   TACTO_TRY(read);
   picture.scene = std::move(*read);
+  TACTO_TRY(schema::check_only_plane(picture.scene, file));
   picture.name = picture.scene.name.empty() ? scene : picture.scene.name;
   if (picture.scene.patches.empty())
     return schema::fail(schema::ErrorKind::unsuitable, "this scene has no force patches: it is of a tray",

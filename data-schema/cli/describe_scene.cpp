@@ -73,6 +73,30 @@ void add_patches(cli::Report& report, const Scene& scene) {
   if (auto sliders = slider_rows(scene); !sliders.empty()) report.add("sliders", std::move(sliders));
 }
 
+cli::Report row_of(const Piece& piece) {
+  cli::Report row;
+  row.add("piece", piece.name).add("shape", to_string(piece.shape));
+  row.add("x_m", piece.x_m).add("y_m", piece.y_m).add("z_m", piece.z_m);
+  const auto add_above_0 = [&](const char* key, double value) {
+    if (value > 0) row.add(key, value);
+  };
+  add_above_0("radius_m", piece.radius_m);
+  add_above_0("thickness_m", piece.thickness_m);
+  row.add("stiffness_n_per_m", piece.stiffness_n_per_m);
+  add_above_0("damping_n_s_per_m", piece.damping_n_s_per_m);
+  add_above_0("arrest_mass_kg", piece.arrest_mass_kg);
+  add_above_0("integral_bound_n", piece.integral_bound_n);
+  return row;
+}
+
+void add_pieces(cli::Report& report, const Scene& scene) {
+  if (scene.pieces.empty()) return;
+  std::vector<cli::Report> rows;
+  for (const Piece& piece : scene.pieces) rows.push_back(row_of(piece));
+  report.add("contact", to_string(scene.contact)).add("pieces", std::move(rows));
+  if (scene.point_radius_m > 0) report.add("radius_m", scene.point_radius_m);
+}
+
 }  // namespace
 
 Result<cli::Report> describe_scene(const std::string& path) {
@@ -86,6 +110,7 @@ Result<cli::Report> describe_scene(const std::string& path) {
     rows.push_back(layer.visit([](const TextureLayer& texture) { return row_of(texture); }));
   if (!rows.empty()) report.add("layers", std::move(rows));
   add_patches(report, *scene);
+  add_pieces(report, *scene);
   cli::add_choices(report, scene->playback);
   add_text(report, "notes", scene->notes);
   return report;

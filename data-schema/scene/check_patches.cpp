@@ -103,7 +103,18 @@ Result<void> check_patches(const Scene& scene, const std::string& where) {
   return {};
 }
 
+Result<void> check_only_plane(const Scene& scene, const std::string& where) {
+  if (scene.pieces.empty()) return {};
+  return fail(ErrorKind::unsuitable, "this command does not know pieces in space yet", where + "#/pieces",
+              "play, render, explain, replay, design and info do; name a scene with patches here");
+}
+
 Result<void> check_only_tray(const Scene& scene, const std::string& where) {
+  if (!scene.pieces.empty())
+    return fail(ErrorKind::unsuitable, "this scene has pieces in space, which a tray cannot play",
+                where + "#/pieces",
+                "name a force device: `render` and `explain` have --device, `play` has -d "
+                "sim:planar,device=arm");
   if (scene.patches.empty()) return {};
   return fail(ErrorKind::unsuitable, "this scene has force patches, which a tray cannot play",
               where + "#/patches",

@@ -9,6 +9,7 @@
 #include "data-schema/base/error.hpp"
 #include "data-schema/base/one_of.hpp"
 #include "data-schema/scene/patch.hpp"
+#include "data-schema/scene/piece.hpp"
 #include "data-schema/scene/playback_choices.hpp"
 
 namespace tacto::schema {
@@ -36,6 +37,9 @@ inline constexpr std::size_t kMostLayers = 256;
 struct Scene {
   std::vector<Layer> layers;   ///< of a tray; their target displacements add up
   std::vector<Patch> patches;  ///< of a force device; a scene has layers, patches, or both
+  std::vector<Piece> pieces = {};  ///< in space, of a force device; not beside patches
+  double point_radius_m = 0;       ///< of the sphere that touches the pieces; radius_m in the file
+  PieceContact contact = PieceContact::ghost;
   std::string name, notes;
   std::string created, creator;
   PlaybackChoices playback;
@@ -68,7 +72,14 @@ Result<void> write_scene(const std::string& stem, const Scene& scene);
 /// sliders, masses of bodies, friction. Errors: unsuitable, by JSON pointer.
 Result<void> check_patches(const Scene& scene, const std::string& where);
 
-/// For commands that play a tray. Errors: unsuitable, if the scene has force patches.
+/// The same of pieces: different names, members of their shapes, quadrics that are neither empty nor the
+/// whole space. Errors: unsuitable, by JSON pointer.
+Result<void> check_pieces(const Scene& scene, const std::string& where);
+
+/// For commands that play patches in a plane. Errors: unsuitable, if the scene has pieces.
+Result<void> check_only_plane(const Scene& scene, const std::string& where);
+
+/// For commands that play a tray. Errors: unsuitable, if the scene has force patches or pieces.
 Result<void> check_only_tray(const Scene& scene, const std::string& where);
 
 /// NAME.scene.json of a stem or file name.

@@ -10,6 +10,7 @@
 #include "data-schema/json/json_schema.hpp"
 #include "data-schema/json/known_members.hpp"
 #include "data-schema/scene/patch_json.hpp"
+#include "data-schema/scene/piece_json.hpp"
 #include "data-schema/scene/playback_choices_json.hpp"
 #include "data-schema/scene/scene.hpp"
 
@@ -96,6 +97,13 @@ Result<void> read_patches(const Document& document, const std::string& where, Sc
   return {};
 }
 
+void read_pieces(const Document& document, Scene& scene) {
+  if (!document.body.contains("pieces")) return;
+  for (const Json& body : document.body["pieces"]) scene.pieces.push_back(piece_from(body));
+  scene.point_radius_m = number_or(document.body, "radius_m", 0);
+  scene.contact = contact_from(document.body);
+}
+
 // Layers, patches and choices keep their own.
 std::string unknown_beside_parts(Json body) {
   for (const char* part : {"layers", "patches", "playback"}) body.erase(part);
@@ -107,8 +115,10 @@ Result<Scene> scene_from(const Document& document, const std::string& where) {
   TACTO_TRY(read_layers(document, where, scene));
   TACTO_TRY(read_patches(document, where, scene));
   TACTO_TRY(check_document_known(document, kSceneKind, where));
+  read_pieces(document, scene);
   TACTO_TRY(check_ends(scene, where));
   TACTO_TRY(check_patches(scene, where));
+  TACTO_TRY(check_pieces(scene, where));
   scene.name = text_or(document.body, "name");
   scene.notes = text_or(document.body, "notes");
   scene.created = text_or(document.body, "created");
@@ -127,9 +137,14 @@ Json scene_body(const Scene& scene) {
   put_text(body, "created", scene.created);
   put_text(body, "creator", scene.creator);
   if (Json playback = playback_choices_body(scene.playback); !playback.empty()) body["playback"] = playback;
-  if (!scene.layers.empty() || scene.patches.empty()) body["layers"] = Json::array();
+  if (!scene.layers.empty() || (scene.patches.empty() && scene.pieces.empty()))
+    body["layers"] = Json::array();
   for (const Layer& layer : scene.layers) body["layers"].push_back(layer_body(layer));
   for (const Patch& patch : scene.patches) body["patches"].push_back(patch_body(patch));
+  if (scene.pieces.empty()) return body;
+  body["contact"] = to_string(scene.contact);
+  if (scene.point_radius_m > 0) body["radius_m"] = scene.point_radius_m;
+  for (const Piece& piece : scene.pieces) body["pieces"].push_back(piece_body(piece));
   return body;
 }
 
@@ -158,6 +173,7 @@ Result<std::string> scene_json(const Scene& scene, const std::string& where) {
   auto text = document_text(kSceneKind, scene_body(scene), scene.extra_json);
   TACTO_TRY(text);
   TACTO_TRY(check_patches(scene, where));
+  TACTO_TRY(check_pieces(scene, where));
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -19,6 +20,7 @@
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/scene/acting_load.hpp"
 #include "playback/prepare/scene/body_motion.hpp"
+#include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/plane_render.hpp"
 
@@ -89,7 +91,7 @@ bool is_force_table(std::string_view beginning) {
 std::vector<const PlaneAxisRun*> axes_with_force(const PlaneRendering& rendering) {
   std::vector<const PlaneAxisRun*> axes;
   for (const PlaneAxisRun& axis : rendering.axes)
-    if (axis.name != "z") axes.push_back(&axis);
+    if (axis.name != "z" || rendering.in_space) axes.push_back(&axis);
   return axes;
 }
 
@@ -145,9 +147,10 @@ Report report_of(const ForceRendering& asked, const schema::Device& device, cons
   return report.add("largest_rounding_n", r.largest_rounding_n).add("delay_s", device.delay_s);
 }
 
-// The time of a tick on this computer, with the hand in motion around the centre of a patch: the shortest
-// mean of several runs.
-double tick_cost_s(const core::SceneView& scene, const core::ForceSetup& setup, const schema::Patch& patch) {
+// The time of a tick on this computer, with the hand in motion around a place: the shortest mean of several
+// runs.
+double tick_cost_s(const core::SceneView& scene, const core::ForceSetup& setup,
+                   const std::array<double, 3>& place_m) {
   core::SceneKernel kernel;
   std::vector<float> live(scene.live_words());
   kernel.set(scene, setup, live.data());
@@ -158,7 +161,7 @@ double tick_cost_s(const core::SceneView& scene, const core::ForceSetup& setup, 
       std::int32_t counts[core::kMostAxes] = {};
       for (std::uint32_t i = 0; i < setup.axis_count; ++i) {
         const core::ForceAxis& axis = setup.axes[i];
-        const double centre_m = axis.along == core::AxisAlong::x ? patch.x_m : patch.y_m;
+        const double centre_m = place_m[static_cast<std::size_t>(axis.along)];
         counts[i] = static_cast<std::int32_t>(centre_m / double{axis.metres_per_count}) + tick;
       }
       kernel.tick(counts, true);
@@ -167,6 +170,15 @@ double tick_cost_s(const core::SceneView& scene, const core::ForceSetup& setup, 
     shortest_s = std::min(shortest_s, took.count() / kCostTicks);
   }
   return shortest_s;
+}
+
+double tick_cost_s(const core::SceneView& scene, const core::ForceSetup& setup, const schema::Patch& patch) {
+  return tick_cost_s(scene, setup, {patch.x_m, patch.y_m, 0});
+}
+
+// In the solid at the place of the piece, which the hand reaches from outside in the first tick.
+double tick_cost_s(const core::SceneView& scene, const core::ForceSetup& setup, const schema::Piece& piece) {
+  return tick_cost_s(scene, setup, {piece.x_m, piece.y_m, piece.z_m});
 }
 
 // The scene of this layer alone.
@@ -252,6 +264,37 @@ std::vector<Report> rows_of_layers(const SceneOnDevice& on) {
   return rows;
 }
 
+Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece) {
+  schema::Scene one;
+  one.pieces = {piece};
+  one.point_radius_m = on.scene.point_radius_m;
+  one.contact = on.scene.contact;
+  const auto alone = prepare_pieces(one, {}, on.device, double{on.setup.rate_hz}, std::nullopt);
+  TACTO_TRY(alone);
+  Report row;
+  row.add("piece", piece.name).add("shape", to_string(piece.shape));
+  row.add("bytes", alone->bytes() - sizeof(core::SceneHeader) - sizeof(core::ScenePatch));
+  row.add("alone_tick_s", tick_cost_s(alone->view(), on.setup, piece));
+  row.add("stiffness_n_per_m", piece.stiffness_n_per_m);
+  if (piece.damping_n_s_per_m > 0) row.add("damping_n_s_per_m", piece.damping_n_s_per_m);
+  if (piece.stiffness_n_per_m > 0)
+    row.add("force_limit_at_displacement_m", on.device.peak_force_n / piece.stiffness_n_per_m);
+  if (piece.arrest_mass_kg > 0)
+    row.add("arrest_in_one_tick_to_mps",
+            on.device.peak_force_n / (piece.arrest_mass_kg * double{on.setup.rate_hz}));
+  return row;
+}
+
+Result<std::vector<Report>> rows_of_pieces(const SceneOnDevice& on) {
+  std::vector<Report> rows;
+  for (const schema::Piece& piece : on.scene.pieces) {
+    auto row = row_of_piece(on, piece);
+    TACTO_TRY(row);
+    rows.push_back(std::move(*row));
+  }
+  return rows;
+}
+
 void add_fit(Report& report, const PreparedScene& scene, std::optional<std::size_t> room, double tick_s,
              double rate_hz) {
   const std::size_t bytes = scene.bytes();
@@ -329,7 +372,7 @@ Result<Report> render_forces(const ForceRendering& asked) {
   TACTO_TRY(hand);
   const auto on = scene_on_device(asked.scene, asked.device, asked.rate_hz, *hand, asked.hold_stable);
   TACTO_TRY(on);
-  const auto paths = read_axis_paths(asked.path, plane_axes_of(on->device));
+  const auto paths = read_axis_paths(asked.path, path_axes_of(on->device, asked.path));
   TACTO_TRY(paths);
   const auto rendering = render_plane(on->scene, on->device, asked.rate_hz, *paths, *hand);
   TACTO_TRY(rendering);
@@ -352,12 +395,19 @@ Result<Report> explain_forces(const std::string& scene, const std::string& devic
   double tick_s = 0;
   for (const schema::Patch& patch : on->scene.patches)
     tick_s = std::max(tick_s, tick_cost_s(view, on->setup, patch));
+  for (const schema::Piece& piece : on->scene.pieces)
+    tick_s = std::max(tick_s, tick_cost_s(view, on->setup, piece));
+  const auto pieces = rows_of_pieces(*on);
+  TACTO_TRY(pieces);
   const double rate = double{on->setup.rate_hz};
   Report report;
   report.add("scene", schema::scene_path(scene)).add("device", on->device.name);
   report.add("hand", *hand ? (*hand)->name : "nothing holds the device").add("rate_hz", rate);
   add_fit(report, on->scene, device_bytes, tick_s, rate);
-  report.add("layers", rows_of_layers(*on));
+  if (pieces->empty())
+    report.add("layers", rows_of_layers(*on));
+  else
+    report.add("contact", to_string(on->scene.contact)).add("pieces", *pieces);
   report.add("block_bytes", on->scene.bytes())
       .add("live_bytes", view.live_words() * sizeof(float))
       .add("kernel_bytes", sizeof(core::SceneKernel))

@@ -269,7 +269,7 @@ bool plays_forces(const std::string& what, const std::string& device_uri) {
   if (device_uri.starts_with(firmware_host::kPlanarScheme)) return true;
   if (!names_a_scene(what)) return false;
   const auto scene = schema::read_scene(what);
-  return scene && !scene->patches.empty();
+  return scene && (!scene->patches.empty() || !scene->pieces.empty());
 }
 
 Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std::function<bool()>& stop_asked,

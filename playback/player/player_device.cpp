@@ -76,15 +76,16 @@ class Script {
   std::shared_ptr<const Knots> knots_;
 };
 
-// Of each axis of the device; an axis z stays at 0.
+// Of each axis of the device; an axis z without a path stays at 0.
 firmware_host::PlaneScript plane_script(const schema::Device& device, const std::vector<FingerPath>& paths,
                                         bool repeated) {
   std::vector<std::optional<Script>> ways;
   const bool closed = std::ranges::all_of(paths, ends_where_it_began);
   auto path = paths.begin();
   for (const schema::DeviceAxis& axis : device.axes)
-    ways.push_back(axis.name == "z" ? std::nullopt
-                                    : std::optional(Script(FingerScript{*path++, repeated}, closed)));
+    ways.push_back(axis.name == "z" && paths.size() < device.axes.size()
+                       ? std::nullopt
+                       : std::optional(Script(FingerScript{*path++, repeated}, closed)));
   return [ways](double time_s) {
     std::vector<double> places_m;
     for (const auto& way : ways) places_m.push_back(way ? (*way)(time_s) : 0);
@@ -190,7 +191,7 @@ Result<ForceDevice> open_force_device(const std::string& uri, const std::string&
   firmware_host::PlanarBoard& board = static_cast<firmware_host::PlanarDevice&>(*player->device).board();
   ForceDevice opened{std::move(*player), board.device(), board.hand()};
   if (path.empty()) return opened;
-  const auto paths = read_axis_paths(path, plane_axes_of(opened.about));
+  const auto paths = read_axis_paths(path, path_axes_of(opened.about, path));
   TACTO_TRY(paths);
   TACTO_TRY(check_travel(opened.about, *paths, path));
   board.set_script(plane_script(opened.about, *paths, repeated));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data-schema/files/files.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "firmware-host/sim/planar/planar_body.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
@@ -98,11 +99,22 @@ std::vector<std::string> plane_axes_of(const Device& device) {
   return names;
 }
 
+std::vector<std::string> path_axes_of(const Device& device, const std::string& file) {
+  std::vector<std::string> names = plane_axes_of(device);
+  const auto text = schema::read_file(file);
+  if (!text || names.size() == device.axes.size()) return names;
+  const std::string header = "," + text->substr(0, text->find('\n'));
+  if (header.find(",z_") == std::string::npos) return names;
+  names.clear();
+  for (const DeviceAxis& axis : device.axes) names.push_back(axis.name);
+  return names;
+}
+
 Result<void> check_travel(const Device& device, const std::vector<FingerPath>& paths,
                           const std::string& where) {
   auto path = paths.begin();
   for (const DeviceAxis& axis : device.axes) {
-    if (axis.name == "z") continue;
+    if (axis.name == "z" && paths.size() < device.axes.size()) continue;
     const auto& places_m = path->position_m;
     const auto out = std::ranges::find_if(
         places_m, [&](double place) { return place < axis.travel_from_m || place > axis.travel_to_m; });
@@ -124,6 +136,7 @@ Result<PlaneRendering> render_plane(const PreparedScene& scene, const Device& de
   TACTO_TRY(setup);
   TACTO_TRY(check_travel(device, paths, "path"));
   PlaneRendering rendering;
+  rendering.in_space = !scene.pieces.empty();
   rendering.rate_hz = rate_hz.value_or(device.rates_hz.back());
   const double ticks = std::floor(paths.front().duration_s() * rendering.rate_hz + 1e-6) + 1;
   if (ticks > kMostTicks)
@@ -135,8 +148,8 @@ Result<PlaneRendering> render_plane(const PreparedScene& scene, const Device& de
   std::vector<std::vector<double>> path_m;
   auto path = paths.begin();
   for (const DeviceAxis& axis : device.axes) {
-    path_m.push_back(
-        places_along(axis.name == "z" ? nullptr : &*path++, rendering.rate_hz, rendering.time_s.size()));
+    path_m.push_back(places_along(axis.name == "z" && paths.size() < device.axes.size() ? nullptr : &*path++,
+                                  rendering.rate_hz, rendering.time_s.size()));
     rendering.axes.push_back({axis.name, {}, {}, {}, {}});
   }
   run_kernel(rendering, scene, *setup, device, Motion(device, hand, rendering.rate_hz, std::move(path_m)));

@@ -25,6 +25,7 @@ struct PlaneAxisRun {
 
 struct PlaneRendering {
   double rate_hz = 0;
+  bool in_space = false;       ///< of pieces: the axis z has a force, too
   std::vector<double> time_s;  ///< of the path, at each tick
   std::vector<PlaneAxisRun> axes;
   LimitCounts limits;
@@ -35,6 +36,9 @@ struct PlaneRendering {
 /// The names of the device's axes in the plane: those of which the path has a column.
 std::vector<std::string> plane_axes_of(const schema::Device& device);
 
+/// The same, and of an axis z if the table `file` has a column of it: without one the axis stays at 0.
+std::vector<std::string> path_axes_of(const schema::Device& device, const std::string& file);
+
 /// A path never overshoots its knots. `where` names it. Errors: unsuitable, with axis and knot, if the path
 /// of an axis leaves its travel.
 schema::Result<void> check_travel(const schema::Device& device, const std::vector<FingerPath>& paths,
@@ -42,7 +46,7 @@ schema::Result<void> check_travel(const schema::Device& device, const std::vecto
 
 /// Each tick reads the counts (place / encoder step, rounded to the nearest) and gives the force, from the
 /// first tick on without a ramp. Without a hand the axes move along `paths` (one per axis of
-/// plane_axes_of()), whatever the force. With a hand, `paths` are the places to which the person moves it,
+/// path_axes_of()), whatever the force. With a hand, `paths` are the places to which the person moves it,
 /// linear between ticks, and the axes move by firmware_host::PlanarBody. Errors: by force_setup_of();
 /// unsuitable, if a path leaves the travel, or has over 2^26 ticks.
 schema::Result<PlaneRendering> render_plane(const PreparedScene& scene, const schema::Device& device,

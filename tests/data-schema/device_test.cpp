@@ -52,7 +52,7 @@ class DeviceFile : public testing::Test {
 };
 
 TEST_F(DeviceFile, ThePresetHasThePapersFrictionAndSaysWhatIsOurs) {
-  EXPECT_EQ(device_preset_names(), (std::vector<std::string_view>{"sandpaper-1990"}));
+  EXPECT_EQ(device_preset_names(), (std::vector<std::string_view>{"arm", "sandpaper-1990"}));
   ASSERT_EQ(preset_.axes.size(), 2U);
   EXPECT_EQ(preset_.axes[0].name, "x");
   EXPECT_EQ(preset_.axes[1].name, "y");
@@ -182,7 +182,7 @@ TEST_F(DeviceFile, NotFoundNamesThePresets) {
   const auto missing = read_device(folder_ / "none");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().kind, ErrorKind::not_found);
-  EXPECT_EQ(missing.error().remedy, "the presets are sandpaper-1990; a file is NAME.device.json");
+  EXPECT_EQ(missing.error().remedy, "the presets are arm, sandpaper-1990; a file is NAME.device.json");
 }
 
 TEST_F(DeviceFile, NeitherNanNorAnImplausibleNumberIsWritten) {

@@ -145,7 +145,15 @@ DEVICES = {
 
 
 SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP, BODY, LASSO, MOVER, FIELD, FORCE_MAP = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
+PLANE, SPHERE, CYLINDER, QUADRIC = 16, 17, 18, 19
 AT_REST = (0,) * 9
+
+
+def piece(kind, origin, form, wall=(2000, 4, 0.15, 5000, 2, 0.5)):
+    """A layer of a scene in space: the numbers of its wall with a state of zeros, and its table."""
+    return kind, (*wall, 0, 0, 0), struct.pack("<3i3f10f", *origin, 1e-6, 0, -2e-6, *form, *(0,) * (10 - len(form)))
+
+
 SCENES = {
     "spring": scene((3, -2, 5, 0), [(0, 0, 1, 0, 0.1, 0.1, 0, [(SPRING, (100, 0, 0))])]),
     "ice_on_soup": scene((90, 1, -70, 40), [(0, 0, 0.6, 0.8, 0.01, 0.01, 0, [(DAMPER, (0.1,))]),
@@ -166,6 +174,10 @@ SCENES = {
                                     (0, 0, 1, 0, 1000, 1000, 1, [(FIELD, (1e15, -10), field_table(1e17, 0.25, ((2**31 - 1, -2**31, 1e10, 7e19, 1, 1), (0, 0, 0, 1, 1, -1))))])]),
     "force_map": scene((3, -2, 50, 7), [(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(FORCE_MAP, (2,), force_table(1000, ((2**25, -2**24, 1e3, 6, 4), (2**24, -2**23, 500, 3, 2))))]),
                                         (0, 0, 1, 0, 1000, 1000, 1, [(FORCE_MAP, (-1000,), force_table(0, ((2**40, 7, 1e8, 2, 1),)))])]),
+    "pieces": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [piece(PLANE, (0, 0, 90), (0, 0.6, 0.8, 0.001)), piece(SPHERE, (40, 9, 0), (0, 0, 1, 0.002)),
+                                                                  piece(CYLINDER, (-90, 1, 7), (0.6, 0, 0.8, 0.001)), piece(QUADRIC, (5, 1, 300), (1e6, 1e5, 1e6, 0, 10, 0, 0, 1, 0, -1))])]),
+    "hard_pieces": scene((2**31 - 1, -70, 2**20, 40), [(0, 0, 1, 0, 1000, 1000, 1, [piece(QUADRIC, (0, 0, 0), (1e9, -1e9, 1e9, 1e9, -1e9, 0, 1e9, 0, 0, -1e9), (1e6, 1e4, 100, 1e7, 1000, 1000)),
+                                                                                   piece(PLANE, (2**31 - 1, 0, -2**31), (1, 0, 0, 20), (1e6, 1e4, 100, 1e7, 1000, 1000))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,))])]),
 }
 

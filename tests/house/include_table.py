@@ -117,7 +117,7 @@ MAY_INCLUDE = {
         "data-schema/{device height scene texture} firmware-host/core/scene playback/{model prepare prepare/relief "
         "stability}",
     "playback/render":
-        "data-schema/{base device recording scene texture transducer} firmware-host/{core/kernel core/scene sim/planar} "
+        "data-schema/{base device files recording scene texture transducer} firmware-host/{core/kernel core/scene sim/planar} "
         "playback/{choose model prepare prepare/scene render/reference} spatial/{dsp/filter features}",
     "playback/render/reference":
         "data-schema/{base device} firmware-host/core/{kernel scene} playback/{model prepare prepare/relief prepare/scene} "

@@ -516,6 +516,7 @@ Result<SceneTrade> trade_scene(const schema::Scene& scene, const std::string& wh
                                const SceneTradeRequest& request,
                                const std::function<void(double)>& progress) {
   const DesignRequest& design = request.design;
+  TACTO_TRY(schema::check_only_plane(scene, where));
   TACTO_TRY(check_path(request));
   const auto setup = playback::force_setup_of(design.device, design.rate_hz);
   TACTO_TRY(setup);

@@ -26,6 +26,9 @@ constexpr float kMostFieldScale = 1e15F, kMostUnits_per_m = 1e17F, kMostUnits = 
 constexpr float kMostSquaredSigma = 0x1p66F, kLeastCore = 0.24F, kMostCore = 1.45F;
 constexpr float kMostAtomForce = 1;  // N per unit
 
+constexpr float kMostPiece_kg = 100, kMostIntegral = 1e7F, kMostLeak_per_s = 1000;
+constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
+
 bool is_direction(float cosine, float sine) noexcept {
   return within(cosine * cosine + sine * sine, 1 - kUnitRounding, 1 + kUnitRounding);
 }
@@ -63,6 +66,16 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
     case SceneLayerKind::field:
       return within(number[kFieldScale], 0, kMostFieldScale) &&
              within(number[kFieldZ], -kFarthest_m, kFarthest_m);
+    case SceneLayerKind::plane:
+    case SceneLayerKind::sphere:
+    case SceneLayerKind::cylinder:
+    case SceneLayerKind::quadric:
+      return within(number[kPieceStiffness], 0, kStiffest_n_per_m) &&
+             within(number[kPieceDamping], 0, kMostDamping_n_s_per_m) &&
+             within(number[kPieceArrestMass], 0, kMostPiece_kg) &&
+             within(number[kPieceIntegral], 0, kMostIntegral) &&
+             within(number[kPieceIntegralBound], 0, kMostKappa_n) &&
+             within(number[kPieceIntegralLeak], 0, kMostLeak_per_s);
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
       break;
@@ -177,6 +190,28 @@ SceneFault check_field(const SceneView& view, const SceneLayer& layer, uint32_t 
              : SceneFault::value;
 }
 
+bool sound(const PieceTable& table, SceneLayerKind kind) noexcept {
+  for (const float rest_m : table.rest_m)
+    if (!within(rest_m, -kFarthestRest_m, kFarthestRest_m)) return false;
+  const float most = kind == SceneLayerKind::quadric ? kMostCoefficient : kLargestPiece_m;
+  for (const float number : table.form)
+    if (!within(number, -most, most)) return false;
+  if (kind == SceneLayerKind::quadric) return true;
+  const float* const n = table.form + kPieceDirection;
+  const float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+  return within(square, 1 - kUnitRounding, 1 + kUnitRounding) &&
+         within(table.form[kPieceSize], 0, kLargestPiece_m);
+}
+
+SceneFault check_piece(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                       uint32_t& words) noexcept {
+  words = sizeof(PieceTable) / sizeof(uint32_t);
+  if (words > room) return SceneFault::structure;
+  return sound(table_of<PieceTable>(view, layer), static_cast<SceneLayerKind>(layer.kind))
+             ? SceneFault::none
+             : SceneFault::value;
+}
+
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,
                        uint32_t& words) noexcept {
   switch (static_cast<SceneLayerKind>(layer.kind)) {
@@ -195,6 +230,11 @@ SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t 
       return check_plain<MoverTable>(view, layer, room, words);
     case SceneLayerKind::field:
       return check_field(view, layer, room, words);
+    case SceneLayerKind::plane:
+    case SceneLayerKind::sphere:
+    case SceneLayerKind::cylinder:
+    case SceneLayerKind::quadric:
+      return check_piece(view, layer, room, words);
     case SceneLayerKind::spring:
     case SceneLayerKind::damper:
       break;
@@ -216,11 +256,14 @@ SceneFault check_patches(const SceneView& view) noexcept {
 
 SceneFault check_layers(SceneView& view) noexcept {
   uint32_t numbers = 0, tables = 0, bodies = 0;
+  view.in_space = view.layer_count > 0 && is_piece(static_cast<SceneLayerKind>(view.layers[0].kind));
+  if (view.in_space && (view.patch_count != 1 || view.layer_count > kMostPieces))
+    return SceneFault::structure;
   for (uint32_t i = 0; i < view.layer_count; ++i) {
     const SceneLayer& layer = view.layers[i];
-    if (layer.first_number != numbers || layer.table != tables || layer.kind >= kSceneLayerKinds)
-      return SceneFault::structure;
+    if (layer.first_number != numbers || layer.table != tables) return SceneFault::structure;
     const auto kind = static_cast<SceneLayerKind>(layer.kind);
+    if (!is_known(kind) || is_piece(kind) != view.in_space) return SceneFault::structure;
     numbers += numbers_of(kind);
     if (has_body(kind)) ++bodies;
     if (numbers > view.number_count || bodies > kMostSceneBodies) return SceneFault::structure;
@@ -245,7 +288,7 @@ bool number_fits(const SceneView& view, uint32_t layer, uint32_t number, float v
   const auto kind = static_cast<SceneLayerKind>(view.layers[layer].kind);
   const uint32_t count = changeable_numbers_of(kind);
   if (number >= count) return false;
-  float numbers[kMostLayerNumbers + 1];  // a body has four
+  float numbers[kPieceNumbers];  // no kind has more
   for (uint32_t i = 0; i < count; ++i) numbers[i] = view.numbers[view.layers[layer].first_number + i];
   numbers[number] = value;
   return sound(kind, numbers);
@@ -282,6 +325,7 @@ SceneFault read_scene_block(const void* block, uint32_t bytes, SceneView& view) 
                  header.layers,
                  header.numbers,
                  header.table_words,
+                 false,
                  false};
   if (const SceneFault fault = check_patches(read); fault != SceneFault::none) return fault;
   if (const SceneFault fault = check_layers(read); fault != SceneFault::none) return fault;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene of force patches as one block of plain data: prepared on the computer, checked, and read in place.
+// A scene of force patches, or of pieces in space, as one block of plain data: prepared on the computer,
+// checked, and read in place.
 #pragma once
 
 #include <stdint.h>
@@ -15,6 +16,7 @@ inline constexpr uint16_t kSceneVersion = 1;
 inline constexpr uint32_t kMostSceneLayers = 256;
 inline constexpr uint32_t kMostLayerNumbers = 3;  ///< but of bodies and lassos
 inline constexpr uint32_t kMostSceneBodies = 16;  ///< bodies and lassos
+inline constexpr uint32_t kMostPieces = 32;
 inline constexpr uint32_t kPatchWords = 3;  ///< of a patch in the kernel's memory: its place and its order
 
 /// The kinds of layers that the kernel has. A number is never reused.
@@ -28,9 +30,21 @@ enum class SceneLayerKind : uint16_t {
   lasso = 6,
   mover = 7,
   field = 8,
-  force_map = 9
+  force_map = 9,
+  plane = 16,
+  sphere = 17,
+  cylinder = 18,
+  quadric = 19
 };
-inline constexpr uint16_t kSceneLayerKinds = 10;
+
+/// Whether a layer is a piece: a solid in space. In a block either all layers are pieces or none is.
+constexpr bool is_piece(SceneLayerKind kind) noexcept {
+  return kind >= SceneLayerKind::plane && kind <= SceneLayerKind::quadric;
+}
+
+constexpr bool is_known(SceneLayerKind kind) noexcept {
+  return kind <= SceneLayerKind::force_map || is_piece(kind);
+}
 
 /// The places of a layer's numbers, from its first one.
 enum SpringNumber : uint32_t { kSpringStiffness = 0, kSpringCentreX = 1, kSpringCentreY = 2 };
@@ -47,6 +61,17 @@ enum LassoNumber : uint32_t { kLassoStiffness = 0, kLassoLength = 1 };
 enum MoverNumber : uint32_t { kMoverDamping = 0, kMoverSpeed = 1 };
 /// Behind these numbers of a body and a lasso: its state (BodyState), 0 in a block.
 inline constexpr uint32_t kBodyStateWords = 9;
+enum PieceNumber : uint32_t {
+  kPieceStiffness = 0,
+  kPieceDamping = 1,
+  kPieceArrestMass = 2,
+  kPieceIntegral = 3,
+  kPieceIntegralBound = 4,
+  kPieceIntegralLeak = 5,
+  kPieceNumbers = 6
+};
+/// Behind these numbers of a piece: its state (WallState), 0 in a block.
+inline constexpr uint32_t kWallStateWords = 3;
 enum FieldNumber : uint32_t { kFieldScale = 0, kFieldZ = 1 };
 enum ForceMapNumber : uint32_t { kForceMapGain = 0 };
 
@@ -66,6 +91,11 @@ constexpr uint32_t changeable_numbers_of(SceneLayerKind kind) noexcept {
       return 1;
     case SceneLayerKind::body:
       return 4;
+    case SceneLayerKind::plane:
+    case SceneLayerKind::sphere:
+    case SceneLayerKind::cylinder:
+    case SceneLayerKind::quadric:
+      return kPieceNumbers;
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
     case SceneLayerKind::lasso:
@@ -78,7 +108,9 @@ constexpr uint32_t changeable_numbers_of(SceneLayerKind kind) noexcept {
 
 /// How many numbers a layer of a kind has in a block.
 constexpr uint32_t numbers_of(SceneLayerKind kind) noexcept {
-  return changeable_numbers_of(kind) + (has_body(kind) ? kBodyStateWords : 0);
+  return changeable_numbers_of(kind) + (has_body(kind)   ? kBodyStateWords
+                                        : is_piece(kind) ? kWallStateWords
+                                                         : 0);
 }
 
 /// The block is, in this order and little-endian: this header, the patches, the layers, the numbers, the
@@ -217,6 +249,19 @@ struct MoverTable {
 };
 static_assert(sizeof(MoverTable) == 8);
 
+/// The places in the form of a piece: of a quadric its ten coefficients, of the others a unit vector and a
+/// size (of a plane its normal and the thickness of the plate, 0 without an end; of a cylinder its axis and
+/// radius; of a sphere the radius). With the radius of the point that touches.
+enum PieceForm : uint32_t { kPieceDirection = 0, kPieceSize = 3, kPieceFormWords = 10 };
+
+/// A solid in space. Its origin is at whole counts of the axes x, y and z, and a rest.
+struct PieceTable {
+  int32_t origin[3] = {};
+  float rest_m[3] = {};
+  float form[kPieceFormWords] = {};
+};
+static_assert(sizeof(PieceTable) == 64);
+
 /// A block that was read; it points into its memory.
 struct SceneView {
   const ScenePatch* patches = nullptr;
@@ -225,6 +270,7 @@ struct SceneView {
   const uint32_t* tables = nullptr;
   uint32_t patch_count = 0, layer_count = 0, number_count = 0, table_words = 0;
   bool needs_speed = false;  ///< it has a layer whose force depends on the speed
+  bool in_space = false;     ///< its layers are pieces, all of one patch; that adds: contact `add`
 
   /// Of 4 bytes, of the memory that a kernel needs beside the block.
   uint32_t live_words() const noexcept { return number_count + patch_count * kPatchWords; }

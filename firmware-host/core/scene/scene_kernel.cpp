@@ -26,13 +26,13 @@ void SceneKernel::set(const SceneView& scene, const ForceSetup& setup, float* li
   moving_ = false;
   tick_ = last_tick_ = 1;
   setup_ = setup;
-  step_m_[0] = step_m_[1] = 0;
-  for (uint32_t i = 0; i < setup.axis_count; ++i) {
-    const auto along = static_cast<uint32_t>(setup.axes[i].along);
-    if (along < 2) step_m_[along] = setup.axes[i].metres_per_count;
-  }
+  for (float& step_m : step_m_) step_m = 0;
+  for (uint32_t i = 0; i < setup.axis_count; ++i)
+    step_m_[static_cast<uint32_t>(setup.axes[i].along)] = setup.axes[i].metres_per_count;
   for (uint32_t i = 0; i < 2; ++i)
     if (step_m_[i] == 0) step_m_[i] = step_m_[1 - i];
+  if (step_m_[2] == 0) step_m_[2] = step_m_[0];
+  ghost_.rest();
   for (EdgeSpeed& speed : speeds_) speed.rest();
   envelope_.set(setup.onset_s * setup.rate_hz, setup.release_s * setup.rate_hz);
   limiter_.set(setup);
@@ -305,6 +305,11 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) noe
       case SceneLayerKind::field:
         force = field_force(layer, hand);
         break;
+      case SceneLayerKind::plane:
+      case SceneLayerKind::sphere:
+      case SceneLayerKind::cylinder:
+      case SceneLayerKind::quadric:
+        break;  // in space: GhostPoint
     }
     sum.x += force.x;
     sum.y += force.y;
@@ -329,11 +334,7 @@ PlaneVector SceneKernel::force(const Hand& hand) noexcept {
   return sum;
 }
 
-ForceOutput SceneKernel::tick(const int32_t* counts, bool raise) noexcept {
-  advance_ramps();
-  advance_moves();
-  last_tick_ = tick_;
-  tick_ = tick_ < 0x1p24F ? tick_ + 1 : 2;
+SpaceVector SceneKernel::force_in_plane(const int32_t* counts) noexcept {
   Hand hand;
   float speed_mps[2] = {};
   for (uint32_t i = 0; i < setup_.axis_count; ++i) {
@@ -345,14 +346,33 @@ ForceOutput SceneKernel::tick(const int32_t* counts, bool raise) noexcept {
   }
   hand.speed_mps = hand.along_mps = {speed_mps[0], speed_mps[1]};
   const PlaneVector sum = force(hand);
-  ForceOutput output;
-  output.sound = is_finite(sum.x) && is_finite(sum.y);
-  const float weight = envelope_.step(raise && output.sound);
-  for (uint32_t i = 0; i < setup_.axis_count && output.sound; ++i) {
-    const AxisAlong along = setup_.axes[i].along;
-    if (along != AxisAlong::z) output.unlimited_n[i] = weight * (along == AxisAlong::x ? sum.x : sum.y);
-    output.force_n[i] = output.unlimited_n[i];
+  return {sum.x, sum.y, 0};
+}
+
+SpaceVector SceneKernel::force_in_space(const int32_t* counts) noexcept {
+  SpaceHand hand;
+  float speed_mps[3] = {};
+  for (uint32_t i = 0; i < setup_.axis_count; ++i) {
+    const auto along = static_cast<uint32_t>(setup_.axes[i].along);
+    hand.counts[along] = counts[i];
+    speed_mps[along] = speeds_[along].track(counts[i]) * (step_m_[along] * setup_.rate_hz);
   }
+  hand.speed_mps = {speed_mps[0], speed_mps[1], speed_mps[2]};
+  return ghost_.force(scene_, live_, hand, step_m_, setup_);
+}
+
+ForceOutput SceneKernel::tick(const int32_t* counts, bool raise) noexcept {
+  advance_ramps();
+  advance_moves();
+  last_tick_ = tick_;
+  tick_ = tick_ < 0x1p24F ? tick_ + 1 : 2;
+  const SpaceVector sum = scene_.in_space ? force_in_space(counts) : force_in_plane(counts);
+  ForceOutput output;
+  output.sound = is_finite(sum.x) && is_finite(sum.y) && is_finite(sum.z);
+  const float weight = envelope_.step(raise && output.sound);
+  const float along[3] = {sum.x, sum.y, sum.z};
+  for (uint32_t i = 0; i < setup_.axis_count && output.sound; ++i)
+    output.force_n[i] = output.unlimited_n[i] = weight * along[static_cast<uint32_t>(setup_.axes[i].along)];
   limiter_.limit(output.force_n, output.flags);
   return output;
 }

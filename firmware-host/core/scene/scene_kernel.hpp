@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tick of a scene in a plane: from the counts of the axes to the forces on the hand.
+// The tick of a scene in a plane or in space: from the counts of the axes to the forces on the hand.
 #pragma once
 
 #include "firmware-host/core/kernel/envelope.hpp"
 #include "firmware-host/core/scene/edge_speed.hpp"
 #include "firmware-host/core/scene/force_limiter.hpp"
+#include "firmware-host/core/scene/ghost_point.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
 
 namespace tacto::core {
@@ -34,7 +35,8 @@ struct ForceOutput {
 /// it. Of a surface, frequencies above half the rate at this speed are not played (held_by_rate(); of an
 /// octave of noise up to kNoiseCycles; of a height or force map one of its levels or two, mixed; the last
 /// level of a force map at all higher speeds, because its mean is a force). Without the axis x
-/// or y the hand stays at 0 along it; an axis z gets no force. Single precision, no contraction, of libm only
+/// or y the hand stays at 0 along it; an axis z gets no force. In a scene of pieces in space the force is that of GhostPoint, along all
+/// axes; move() and raise() of its patch do nothing. Single precision, no contraction, of libm only
 /// the square root: the same bits on host and device. Against double precision (ExactScene) at places up to
 /// 0.1 m: within 3e-7 of the sum of the absolute forces of all layers. No function allocates, locks, throws
 /// or makes system calls; a tick costs at most one step per patch and layer.
@@ -70,6 +72,8 @@ class SceneKernel {
     PlaneVector speed_mps, along_mps;  // of the hand; relative to the patch
   };
   PlaneVector force(const Hand& hand) noexcept;
+  SpaceVector force_in_plane(const int32_t* counts) noexcept;
+  SpaceVector force_in_space(const int32_t* counts) noexcept;
   PlaneVector force_in(const ScenePatch& patch, const Hand& hand) noexcept;
   Hand hand_on(uint32_t patch, const Hand& hand) const noexcept;
   PlaneVector groove_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
@@ -112,9 +116,10 @@ class SceneKernel {
   uint32_t next_ramp_ = 0, next_move_ = 0;
   bool moving_ = false;
   ForceSetup setup_;
-  float step_m_[2] = {};            // of a count along x and y
+  float step_m_[3] = {};            // of a count along x, y and z
   float tick_ = 1, last_tick_ = 1;  // whole numbers above 1 from the first tick on
-  EdgeSpeed speeds_[2];
+  EdgeSpeed speeds_[3];
+  GhostPoint ghost_;
   Envelope envelope_;
   ForceLimiter limiter_;
 };

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tacto::firmware_host {
 
 std::int32_t encoder_count(const schema::DeviceAxis& axis, double place_m) {
+  if (!std::isfinite(place_m)) return std::numeric_limits<std::int32_t>::min();
   return static_cast<std::int32_t>(std::lround(place_m / axis.encoder_step_m));
 }
 

@@ -44,7 +44,8 @@ class PlanarBody {
   std::deque<std::vector<double>> forces_n_;  // of the last ticks, the newest first
 };
 
-/// The nearest count of an encoder.
+/// The nearest count of an encoder; of a place that is no number the least one: a jump, which the firmware
+/// answers with a fault.
 std::int32_t encoder_count(const schema::DeviceAxis& axis, double place_m);
 
 }  // namespace tacto::firmware_host

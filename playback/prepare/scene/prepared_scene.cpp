@@ -20,6 +20,7 @@
 #include "playback/prepare/scene/body_motion.hpp"
 #include "playback/prepare/scene/field_section.hpp"
 #include "playback/prepare/scene/field_stiffness.hpp"
+#include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/stable_scene.hpp"
 #include "playback/prepare/texture_check.hpp"
 #include "playback/stability/free_limit.hpp"
@@ -328,6 +329,16 @@ Words block_of(const std::vector<schema::Patch>& from, const PlaneSteps& steps, 
 
 }  // namespace
 
+PlaneSteps steps_of(const schema::Device& device, double rate_hz) {
+  PlaneSteps steps{0, 0, 1 / rate_hz, 0};
+  for (const schema::DeviceAxis& axis : device.axes)
+    (axis.name == "x" ? steps.x_m : axis.name == "y" ? steps.y_m : steps.z_m) = axis.encoder_step_m;
+  if (!(steps.x_m > 0)) steps.x_m = steps.y_m;
+  if (!(steps.y_m > 0)) steps.y_m = steps.x_m;
+  if (!(steps.z_m > 0)) steps.z_m = steps.x_m;
+  return steps;
+}
+
 core::SceneView PreparedScene::view() const {
   core::SceneView view;
   core::read_scene_block(words.data(), static_cast<std::uint32_t>(bytes()), view);
@@ -431,11 +442,12 @@ double length_across(const schema::Patch& patch, double direction_deg) {
 }
 
 double stiffness_limit_of(const schema::Device& device, double rate_hz,
-                          const std::optional<schema::Hand>& hand, double virtual_damping_n_s_per_m) {
+                          const std::optional<schema::Hand>& hand, double virtual_damping_n_s_per_m,
+                          bool in_space) {
   double limit = INFINITY;
   const TickTiming timing{1 / rate_hz, device.delay_s * rate_hz};
   for (const schema::DeviceAxis& axis : device.axes) {
-    if (axis.name == "z") continue;
+    if (axis.name == "z" && !in_space) continue;
     const schema::Hand held = hand.value_or(schema::Hand());
     limit = std::min(limit, hand || virtual_damping_n_s_per_m > 0
                                 ? hand_stiffness_limit(axis, held, timing, virtual_damping_n_s_per_m)
@@ -466,19 +478,14 @@ Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::
 Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& where,
                                     const schema::Device& device, double rate_hz,
                                     const std::optional<schema::Hand>& hand) {
+  if (!scene.pieces.empty()) return prepare_pieces(scene, where, device, rate_hz, hand);
   if (scene.patches.empty())
-    return fail(ErrorKind::unsuitable, "this scene has no force patches", where,
+    return fail(ErrorKind::unsuitable, "this scene has neither force patches nor pieces", where,
                 "a scene of a tray is played with --transducer");
   TACTO_TRY(check_bodies(scene, where, rate_hz));
   PreparedScene base;
   base.stiffness_limit_n_per_m = stiffness_limit_of(device, rate_hz, hand);
-  base.steps = {0, 0, 1 / rate_hz};
-  for (const schema::DeviceAxis& axis : device.axes) {
-    if (axis.name == "x") base.steps.x_m = axis.encoder_step_m;
-    if (axis.name == "y") base.steps.y_m = axis.encoder_step_m;
-  }
-  if (!(base.steps.x_m > 0)) base.steps.x_m = base.steps.y_m;
-  if (!(base.steps.y_m > 0)) base.steps.y_m = base.steps.x_m;
+  base.steps = steps_of(device, rate_hz);
   TACTO_TRY(set_filters(scene, base.stiffness_limit_n_per_m, where));
   auto reliefs = read_reliefs(scene, where, rate_hz);
   TACTO_TRY(reliefs);

@@ -21,11 +21,14 @@
 namespace tacto::playback {
 
 /// Displacement of one encoder count, of the axes x and y; of an axis that the device does not have that of
-/// the other one, as in core::SceneKernel; and the period of a tick.
+/// the other one, of z that of x, as in core::SceneKernel; and the period of a tick.
 struct PlaneSteps {
   double x_m = 1, y_m = 1;
   double tick_s = 1;
+  double z_m = 1;
 };
+
+PlaneSteps steps_of(const schema::Device& device, double rate_hz);
 
 /// A hand that is faster is a jump of the encoder.
 inline constexpr double kFastestHandMps = 10;
@@ -49,6 +52,10 @@ struct PreparedScene {
   PlaneSteps steps;
   double stiffness_limit_n_per_m = 0;  ///< stiffness_limit_of()
   Reliefs reliefs = {};
+  /// In place of patches, in the order of the block.
+  std::vector<schema::Piece> pieces = {};
+  double point_radius_m = 0;
+  schema::PieceContact contact = schema::PieceContact::ghost;
 
   std::size_t bytes() const { return words.size() * sizeof(std::uint32_t); }
   /// Points into this object.
@@ -68,9 +75,10 @@ std::vector<std::string_view> numbers_in_block(const schema::ForceLayer& layer);
 
 /// The largest stiffness that is stable at this rate along both axes, with this damper of the scene: of the
 /// free device, or of the device with the mass, damping and stiffness of a hand. Coulomb friction is left
-/// out.
+/// out. Along z, too, for pieces in space.
 double stiffness_limit_of(const schema::Device& device, double rate_hz,
-                          const std::optional<schema::Hand>& hand, double virtual_damping_n_s_per_m = 0);
+                          const std::optional<schema::Hand>& hand, double virtual_damping_n_s_per_m = 0,
+                          bool in_space = false);
 
 /// Sets the filters that the file leaves to the program (filter_m: auto) for that limit. `where` is the
 /// scene's file. Errors: unsuitable: the limit is 0, by JSON pointer.
@@ -86,10 +94,11 @@ schema::Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& wh
 /// Of a patch along a direction in it: the length of its shadow.
 double length_across(const schema::Patch& patch, double direction_deg);
 
-/// Builds what the scene names and nothing else. Equal orders: the later patch is above. `where` is the
-/// scene's file. Preconditions: a scene as read_scene() gives it; the device has this rate, and an axis x or
-/// y. Errors: unsuitable, if it has no patches; by JSON pointer, for bodies (check_bodies()), and for the
-/// filter of grooves on a device without viscous friction; as read_reliefs and add_adaptive_damping.
+/// Builds what the scene names and nothing else; of pieces by prepare_pieces(). Equal orders: the later patch
+/// is above. `where` is the scene's file. Preconditions: a scene as read_scene() gives it; the device has
+/// this rate, and an axis x or y. Errors: unsuitable, if it has neither patches nor pieces; by JSON pointer,
+/// for bodies (check_bodies()), and for the filter of grooves on a device without viscous friction; as
+/// read_reliefs and add_adaptive_damping.
 schema::Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& where,
                                             const schema::Device& device, double rate_hz,
                                             const std::optional<schema::Hand>& hand = std::nullopt);

@@ -12,6 +12,7 @@
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
 #include "playback/prepare/scene/acting_load.hpp"
+#include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/stable_scene.hpp"
 
 namespace tacto::playback {
@@ -328,6 +329,7 @@ std::string note_of_travel(const schema::Patch& patch, const Device& device) {
 std::vector<std::string> limits_of_device(const PreparedScene& scene, const Device& device,
                                           const core::ForceSetup& setup,
                                           const std::optional<schema::Hand>& hand) {
+  if (!scene.pieces.empty()) return limits_of_pieces(scene, device, double{setup.rate_hz}, hand);
   std::vector<std::string> notes;
   for (const char* name : {"x", "y"})
     if (axis_named(device, name) == nullptr)

@@ -25,11 +25,12 @@ double local_stiffness_n_per_m(const schema::ForceLayer& layer);
 /// A warning with the share of a patch's area that is outside the device's travel; empty if none is.
 std::string note_of_travel(const schema::Patch& patch, const schema::Device& device);
 
-/// Warnings, one line each: an axis x or y that the device does not have; patches beyond its travel, with the
-/// share of their area; patches whose force on a hand at rest exceeds a peak force, with the share of the
-/// places in which it does; patches larger than their height map or texture; where layers that act together
-/// are beyond stiffness_limit_of(), that of them which is the farthest. Shares are those of a grid of 101 x
-/// 101 places. Precondition: the scene was prepared for this device and hand; `setup` by force_setup_of().
+/// Warnings, one line each, of pieces by limits_of_pieces(); of patches: an axis x or y that the device does
+/// not have; patches beyond its travel, with the share of their area; patches whose force on a hand at rest
+/// exceeds a peak force, with the share of the places in which it does; patches larger than their height map
+/// or texture; where layers that act together are beyond stiffness_limit_of(), that of them which is the
+/// farthest. Shares are those of a grid of 101 x 101 places. Precondition: the scene was prepared for this
+/// device and hand; `setup` by force_setup_of().
 std::vector<std::string> limits_of_device(const PreparedScene& scene, const schema::Device& device,
                                           const core::ForceSetup& setup,
                                           const std::optional<schema::Hand>& hand = std::nullopt);

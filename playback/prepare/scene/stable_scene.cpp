@@ -287,6 +287,9 @@ Result<std::vector<HeldLayer>> hold_stable(std::vector<schema::Patch>& patches, 
 
 Result<std::vector<HeldLayer>> hold_stable(PreparedScene& scene, const Device& device, double rate_hz,
                                            const std::optional<Hand>& hand) {
+  if (!scene.pieces.empty())
+    return fail(ErrorKind::unsuitable, "--hold-stable does not scale pieces yet", {},
+                "choose their stiffness by 'tactograph design'");
   std::vector<schema::Patch> patches(scene.patches.rbegin(), scene.patches.rend());
   auto held = hold_stable(patches, device, rate_hz, hand);
   if (!held || held->empty()) return held;

@@ -72,7 +72,7 @@ schema::Result<std::vector<HeldLayer>> hold_stable(std::vector<schema::Patch>& p
                                                    const schema::Device& device, double rate_hz,
                                                    const std::optional<schema::Hand>& hand);
 
-/// The same for a scene that was prepared.
+/// The same for a scene that was prepared. Errors: also unsuitable: pieces.
 schema::Result<std::vector<HeldLayer>> hold_stable(PreparedScene& scene, const schema::Device& device,
                                                    double rate_hz, const std::optional<schema::Hand>& hand);
 

@@ -237,6 +237,7 @@ ExactScene::ExactScene(const PreparedScene& scene, const schema::Device& device,
       view_(scene.view()),
       device_(device),
       rate_hz_(rate_hz),
+      ghost_(scene, device, rate_hz),
       rms_{device.continuous_force_n, 0, device.continuous_force_n},
       last_n_(device.axes.size()) {
   for (const schema::DeviceAxis& axis : device.axes)
@@ -395,8 +396,28 @@ std::vector<double> ExactScene::limited(std::vector<double> force_n) {
   return last_n_;
 }
 
+std::vector<double> ExactScene::tick_in_space(const std::vector<std::int32_t>& counts) {
+  SpaceMetres place_m = {}, speed_mps = {};
+  std::vector<std::size_t> along;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const schema::DeviceAxis& axis = device_.axes[i];
+    along.push_back(axis.name == "x" ? 0 : axis.name == "y" ? 1 : 2);
+    place_m[along[i]] = counts[i] * axis.encoder_step_m;
+    speed_mps[along[i]] = track(speeds_[along[i]], counts[i]) * axis.encoder_step_m * rate_hz_;
+  }
+  const SpaceMetres sum = ghost_.force(place_m, speed_mps);
+  std::vector<double> force_n;
+  for (const std::size_t i : along) force_n.push_back(sum[i]);
+  return force_n;
+}
+
 ExactScene::Output ExactScene::tick(const std::vector<std::int32_t>& counts) {
   ++tick_;
+  if (!scene_.pieces.empty()) {
+    Output output{tick_in_space(counts), {}};
+    output.force_n = limited(output.unlimited_n);
+    return output;
+  }
   Vector place_m, speed_mps;
   core::PlaneVector single_m;
   for (std::size_t i = 0; i < counts.size(); ++i) {

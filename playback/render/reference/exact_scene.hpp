@@ -10,6 +10,7 @@
 
 #include "data-schema/device/device.hpp"
 #include "playback/prepare/scene/prepared_scene.hpp"
+#include "playback/render/reference/exact_ghost.hpp"
 
 namespace tacto::playback {
 
@@ -48,6 +49,7 @@ class ExactScene {
     int way = 0;
     double per_tick = 0;
   };
+  std::vector<double> tick_in_space(const std::vector<std::int32_t>& counts);
   double track(Speed& speed, std::int64_t count);
   Vector groove_force(const schema::GroovesLayer& grooves, double angle_rad, Vector from_centre,
                       Vector speed) const;
@@ -80,7 +82,8 @@ class ExactScene {
   const schema::Device& device_;
   double rate_hz_;
   std::int64_t tick_ = 0;
-  std::array<Speed, 2> speeds_;
+  std::array<Speed, 3> speeds_;
+  ExactGhost ghost_;
   Bodies bodies_;
   std::vector<Rms> axis_rms_;
   Rms rms_;

@@ -5,6 +5,7 @@
 #include "firmware-host/core/wire/crc32c.hpp"
 #include "tests/firmware-host/cortex_m4/board.hpp"
 #include "tests/firmware-host/kernel_workload.hpp"
+#include "tests/firmware-host/pieces_workload.hpp"
 
 namespace tacto::cortex_m4 {
 namespace {
@@ -26,6 +27,7 @@ tests::KernelWorkload workload;
 tests::TextureWorkload texture;
 
 tests::SceneWorkload scene;
+tests::PiecesWorkload pieces;
 
 template <class Workload>
 uint32_t count_ticks(Workload& ticked, const char* fingerprint_name, const char* counts_name,
@@ -51,8 +53,9 @@ bool count_kernel() {
   const uint32_t levels =
       count_ticks(texture, "texture_fingerprint", "texture_counts", "texture_most_counts");
   const uint32_t patches = count_ticks(scene, "scene_fingerprint", "scene_counts", "scene_most_counts");
+  const uint32_t solids = count_ticks(pieces, "pieces_fingerprint", "pieces_counts", "pieces_most_counts");
   return sections == tests::kWorkloadFingerprint && levels == tests::kTextureFingerprint &&
-         patches == tests::kSceneFingerprint;
+         patches == tests::kSceneFingerprint && solids == tests::kPiecesFingerprint;
 }
 
 // During a change of texture both are read; its first tick also starts the change.

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the schema cannot check of pieces.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+#include "data-schema/scene/scene.hpp"
+
+namespace tacto::schema {
+namespace {
+
+// Eigenvalues of a symmetric matrix of four rows, by Jacobi's rotations.
+std::array<double, 4> eigenvalues_of(std::array<std::array<double, 4>, 4> a) {
+  constexpr int kSweeps = 30;  // five are usual
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (std::size_t p = 0; p < 4; ++p)
+      for (std::size_t q = p + 1; q < 4; ++q) {
+        if (a[p][q] == 0) continue;
+        const double angle = 0.5 * std::atan2(2 * a[p][q], a[q][q] - a[p][p]), c = std::cos(angle),
+                     s = std::sin(angle);
+        for (std::size_t k = 0; k < 4; ++k) {
+          const double left = a[k][p], right = a[k][q];
+          a[k][p] = c * left - s * right, a[k][q] = s * left + c * right;
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+          const double up = a[p][k], down = a[q][k];
+          a[p][k] = c * up - s * down, a[q][k] = s * up + c * down;
+        }
+      }
+  return {a[0][0], a[1][1], a[2][2], a[3][3]};
+}
+
+// Of the terms as a form of x, y, z and 1: a point below 0 exists if and only if it has an eigenvalue below 0
+// (a direction of the form without a share of 1 is the limit of points), and so above 0.
+Result<void> check_quadric(const Piece& piece, const std::string& where) {
+  const auto& c = piece.coefficients;
+  const std::array<double, 4> all = eigenvalues_of({{{c[0], c[3] / 2, c[5] / 2, c[6] / 2},
+                                                     {c[3] / 2, c[1], c[4] / 2, c[7] / 2},
+                                                     {c[5] / 2, c[4] / 2, c[2], c[8] / 2},
+                                                     {c[6] / 2, c[7] / 2, c[8] / 2, c[9]}}});
+  const auto [least, most] = std::ranges::minmax(all);
+  const double rounding = 1e-12 * std::max(-least, most);
+  if (least < -rounding && most > rounding) return {};
+  const bool no_solid = least >= -rounding;
+  return fail(
+      ErrorKind::unsuitable,
+      no_solid ? "the quadric is empty: the sum of its terms is below 0 at no place"
+               : "the quadric fills the whole space: the sum of its terms is above 0 at no place",
+      where + "/coefficients",
+      "a solid is where the sum is below 0: the unit sphere is [1, 1, 1, 0, 0, 0, 0, 0, 0, -1], in metres");
+}
+
+Result<void> check_members(const Piece& piece, const std::string& where) {
+  const bool round = piece.shape == PieceShape::sphere || piece.shape == PieceShape::cylinder;
+  const auto refused = [&](const char* member, const char* shapes) {
+    return fail(ErrorKind::unsuitable, fmt::format("a {} has no {}", to_string(piece.shape), member),
+                fmt::format("{}/{}", where, member), fmt::format("it belongs to: {}", shapes));
+  };
+  if (piece.radius_m != 0 && !round) return refused("radius_m", "sphere, cylinder");
+  if (piece.thickness_m != 0 && piece.shape != PieceShape::plane) return refused("thickness_m", "plane");
+  const auto& d = piece.direction;
+  if (!(std::hypot(d[0], d[1], d[2]) > 1e-9))
+    return fail(ErrorKind::unsuitable, "a direction of length 0", where + "/direction",
+                "give a vector of any length, as in [0, 0, 1]");
+  if (piece.integral_n_per_m_s > 0 && !(piece.integral_bound_n > 0))
+    return fail(ErrorKind::unsuitable, "an integral without a bound grows without an end",
+                where + "/integral_n_per_m_s", "give integral_bound_n, the largest force of the integral");
+  return piece.shape == PieceShape::quadric ? check_quadric(piece, where) : Result<void>();
+}
+
+}  // namespace
+
+Result<void> check_pieces(const Scene& scene, const std::string& where) {
+  if (scene.pieces.empty()) return {};
+  if (!scene.patches.empty())
+    return fail(ErrorKind::unsuitable, "a scene has patches in a plane, or pieces in space, but not both",
+                where + "#/pieces", "make two scenes of it");
+  std::unordered_set<std::string> names;
+  for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
+    const Piece& piece = scene.pieces[i];
+    const std::string at = fmt::format("{}#/pieces/{}", where, i);
+    if (!names.insert(piece.name).second)
+      return fail(ErrorKind::unsuitable, fmt::format("two pieces are named '{}'", piece.name), at + "/name",
+                  "give each piece its own name");
+    TACTO_TRY(check_members(piece, at));
+    if (scene.point_radius_m > 0 && piece.shape == PieceShape::quadric)
+      return fail(ErrorKind::unsuitable, "a point with a radius does not touch quadrics yet",
+                  where + "#/radius_m",
+                  "leave radius_m out, or make the quadric larger by the radius; planes, spheres and "
+                  "cylinders are exact");
+  }
+  return {};
+}
+
+}  // namespace tacto::schema

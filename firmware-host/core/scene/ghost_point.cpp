@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware-host/core/scene/ghost_point.hpp"
+
+#include "firmware-host/core/kernel/finite.hpp"
+
+namespace tacto::core {
+namespace {
+
+constexpr float kTouch_m = 1e-7F;     // nearer, a piece is touched
+constexpr float kSettled_m = 1e-9F;   // a shorter way is none
+constexpr float kRounding_m = 2e-8F;  // of a plane's place: 24 bits of 0.3 m
+constexpr float kSameSide = 0.8F;     // cosine of the largest turn of the normal in one step
+constexpr float kLeaves_m = 1e-6F;    // over a surface, beyond what rounding is
+constexpr float kDeepest = 0.1F;      // of a step along a surface that bends towards it
+
+SceneLayerKind kind_of(const SceneView& scene, uint32_t piece) noexcept {
+  return static_cast<SceneLayerKind>(scene.layers[piece].kind);
+}
+
+const PieceTable& piece_of(const SceneView& scene, uint32_t piece) noexcept {
+  return table_of<PieceTable>(scene, scene.layers[piece]);
+}
+
+SpacePlace origin_of(const PieceTable& table) noexcept {
+  return {{table.origin[0], table.origin[1], table.origin[2]},
+          {table.rest_m[0], table.rest_m[1], table.rest_m[2]}};
+}
+
+// A plane that a point has to stay above: normal u >= -distance, for its way u.
+struct Plane {
+  uint32_t piece = 0;
+  float distance_m = 0;
+  SpaceVector normal;
+};
+
+struct Planes {
+  Plane at[kMostTouched];
+  uint32_t count = 0;
+
+  bool has(uint32_t piece) const noexcept {
+    for (uint32_t i = 0; i < count; ++i)
+      if (at[i].piece == piece) return true;
+    return false;
+  }
+  // The nearest ones stay.
+  void add(const Plane& plane) noexcept {
+    uint32_t place = count;
+    if (count < kMostTouched) {
+      ++count;
+    } else {
+      place = 0;
+      for (uint32_t i = 1; i < count; ++i)
+        if (at[i].distance_m > at[place].distance_m) place = i;
+      if (!(plane.distance_m < at[place].distance_m)) return;
+    }
+    at[place] = plane;
+  }
+};
+
+// A way that planes allow, and what each of them adds to the straight one.
+struct Goal {
+  SpaceVector way;
+  uint32_t count = 0;
+  uint32_t plane[kMostHolding] = {};
+  float push_m[kMostHolding] = {};
+};
+
+bool allowed(const Planes& planes, SpaceVector way) noexcept {
+  for (uint32_t i = 0; i < planes.count; ++i) {
+    const Plane& plane = planes.at[i];
+    if (dot(plane.normal, way) < -plane.distance_m - kRounding_m) return false;
+  }
+  return true;
+}
+
+// way = straight + sum of push normal, on all planes of the set: the pushes by Cramer's rule. False if the
+// normals depend on each other, if a plane would pull, or if another plane forbids the way.
+bool held_by(const Planes& planes, const uint32_t* set, uint32_t count, SpaceVector straight,
+             Goal& goal) noexcept {
+  constexpr float kLeastVolume = 1e-6F;
+  float lack[kMostHolding] = {}, g01 = 0, g02 = 0, g12 = 0;
+  SpaceVector n[kMostHolding];
+  for (uint32_t i = 0; i < count; ++i) {
+    n[i] = planes.at[set[i]].normal;
+    lack[i] = -planes.at[set[i]].distance_m - dot(n[i], straight);
+  }
+  Goal found{straight, count, {}, {}};
+  float* const push = found.push_m;
+  if (count > 1) g01 = dot(n[0], n[1]);
+  if (count > 2) g02 = dot(n[0], n[2]), g12 = dot(n[1], n[2]);
+  if (count == 1) {
+    push[0] = lack[0];
+  } else if (count == 2) {
+    const float volume = 1 - g01 * g01;
+    if (!(volume > kLeastVolume)) return false;
+    push[0] = (lack[0] - g01 * lack[1]) / volume;
+    push[1] = (lack[1] - g01 * lack[0]) / volume;
+  } else {
+    const float c0 = 1 - g12 * g12, c1 = g02 * g12 - g01, c2 = g01 * g12 - g02;
+    const float volume = c0 + g01 * c1 + g02 * c2;
+    if (!(volume > kLeastVolume)) return false;
+    push[0] = (c0 * lack[0] + c1 * lack[1] + c2 * lack[2]) / volume;
+    push[1] = (c1 * lack[0] + (1 - g02 * g02) * lack[1] + (g01 * g02 - g12) * lack[2]) / volume;
+    push[2] = (c2 * lack[0] + (g01 * g02 - g12) * lack[1] + (1 - g01 * g01) * lack[2]) / volume;
+  }
+  for (uint32_t i = 0; i < count; ++i) {
+    if (!(push[i] >= 0)) return false;
+    found.plane[i] = set[i];
+    found.way = found.way + push[i] * n[i];
+  }
+  if (!allowed(planes, found.way)) return false;
+  goal = found;
+  return true;
+}
+
+// None of the sets fits by rounding alone: then it stays.
+Goal nearest_allowed(const Planes& planes, SpaceVector straight) noexcept {
+  Goal goal;
+  if (allowed(planes, straight)) return {straight, 0, {}, {}};
+  const uint32_t n = planes.count;
+  for (uint32_t i = 0; i < n; ++i)
+    if (const uint32_t set[] = {i}; held_by(planes, set, 1, straight, goal)) return goal;
+  for (uint32_t i = 0; i < n; ++i)
+    for (uint32_t j = i + 1; j < n; ++j)
+      if (const uint32_t set[] = {i, j}; held_by(planes, set, 2, straight, goal)) return goal;
+  for (uint32_t i = 0; i < n; ++i)
+    for (uint32_t j = i + 1; j < n; ++j)
+      for (uint32_t k = j + 1; k < n; ++k)
+        if (const uint32_t set[] = {i, j, k}; held_by(planes, set, 3, straight, goal)) return goal;
+  return goal;
+}
+
+// The tip of a cone holds a ghost as a plane across its way would.
+SpaceVector normal_or(SpaceVector normal, SpaceVector way) noexcept {
+  if (dot(normal, normal) > 0) return normal;
+  const float size = length(way);
+  if (!(size > 0)) return {0, 0, 1};
+  return (-1 / size) * way;
+}
+
+float size_of(float value) noexcept {
+  return value < 0 ? -value : value;
+}
+
+// Of the device, along a direction.
+float most_force_n(const ForceSetup& setup, SpaceVector normal) noexcept {
+  float most_n = setup.peak_n;
+  for (uint32_t i = 0; i < setup.axis_count; ++i) {
+    const ForceAxis& axis = setup.axes[i];
+    const float share = axis.along == AxisAlong::x   ? normal.x
+                        : axis.along == AxisAlong::y ? normal.y
+                                                     : normal.z;
+    const float size = size_of(share);
+    if (axis.peak_n < most_n * size) most_n = axis.peak_n / size;
+  }
+  return most_n;
+}
+
+}  // namespace
+
+void GhostPoint::move(SpaceVector way, const float (&step_m)[3]) noexcept {
+  SpaceVector rest = ghost_.rest_m + way;
+  float* const along[3] = {&rest.x, &rest.y, &rest.z};
+  for (int i = 0; i < 3; ++i) {
+    const float whole = *along[i] / step_m[i];
+    if (!within(whole, -1e9F, 1e9F)) continue;
+    const auto counts = static_cast<int32_t>(whole < 0 ? whole - 0.5F : whole + 0.5F);
+    ghost_.counts[i] =
+        static_cast<int32_t>(static_cast<uint32_t>(ghost_.counts[i]) + static_cast<uint32_t>(counts));
+    *along[i] -= static_cast<float>(counts) * step_m[i];
+  }
+  ghost_.rest_m = rest;
+}
+
+// On one curved piece: to the place nearest to the hand, if that is near and nothing is between.
+bool GhostPoint::settle_on(const SceneView& scene, const SpacePlace& hand, const float (&step_m)[3],
+                           uint32_t touched, Holding& holding) noexcept {
+  const uint32_t piece = holding.piece[0];
+  const SceneLayerKind kind = kind_of(scene, piece);
+  if (kind == SceneLayerKind::plane) return false;
+  const PieceTable& table = piece_of(scene, piece);
+  const SpacePlace origin = origin_of(table);
+  const SpaceVector at = difference(ghost_, origin, step_m), to = difference(hand, origin, step_m);
+  SpaceVector nearest;
+  if (!nearest_on(kind, table, to, at, nearest)) return false;
+  const SpaceVector normal = surface_at(kind, table, nearest).normal,
+                    before = surface_at(kind, table, at).normal, pull = nearest - to, way = nearest - at;
+  if (!(dot(normal, before) >= kSameSide) || !(dot(pull, normal) > 0)) return false;
+  if (!(length(pull) <= length(at - to) + kTouch_m)) return false;
+  for (uint32_t i = 0; i < scene.layer_count; ++i) {
+    if (i == piece) continue;
+    const PieceTable& other = piece_of(scene, i);
+    const SpaceVector from = difference(ghost_, origin_of(other), step_m);
+    if (surface_at(kind_of(scene, i), other, from + way).distance_m < -kRounding_m) return false;
+    if ((touched >> i & 1) == 0 && entry_of(kind_of(scene, i), other, from, way) <= 1) return false;
+  }
+  move(way, step_m);
+  holding.normal[0] = normal;
+  holding.depth_m[0] = length(pull);
+  return true;
+}
+
+GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace& hand,
+                                       const float (&step_m)[3]) noexcept {
+  Holding holding;
+  uint32_t touched = 0;
+  static_assert(kMostPieces <= 32);
+  for (int pass = 0; pass < kGhostPasses; ++pass) {
+    const SpaceVector straight = difference(hand, ghost_, step_m);
+    Planes planes;
+    for (uint32_t i = 0; i < scene.layer_count; ++i) {
+      const PieceTable& table = piece_of(scene, i);
+      const PieceSurface at =
+          surface_at(kind_of(scene, i), table, difference(ghost_, origin_of(table), step_m));
+      if (at.distance_m <= kTouch_m) touched |= UINT32_C(1) << i;
+      if (touched >> i & 1) planes.add({i, at.distance_m, normal_or(at.normal, straight)});
+    }
+    const Goal goal = nearest_allowed(planes, straight);
+    holding.count = goal.count;
+    for (uint32_t i = 0; i < goal.count; ++i) {
+      const Plane& plane = planes.at[goal.plane[i]];
+      holding.piece[i] = plane.piece;
+      holding.normal[i] = plane.normal;
+      holding.depth_m[i] = goal.push_m[i];
+    }
+    if (goal.count == 1 && settle_on(scene, hand, step_m, touched, holding)) break;
+    SpaceVector way = goal.way;
+    // A surface that bends towards the ghost: a shorter step, so that it stays near.
+    for (int halved = 0; halved < 4; ++halved) {
+      float deepest_m = 0;
+      for (uint32_t i = 0; i < planes.count; ++i) {
+        const uint32_t piece = planes.at[i].piece;
+        const PieceTable& table = piece_of(scene, piece);
+        const float distance_m =
+            surface_at(kind_of(scene, piece), table, difference(ghost_, origin_of(table), step_m) + way)
+                .distance_m;
+        deepest_m = distance_m < deepest_m ? distance_m : deepest_m;
+      }
+      if (-deepest_m <= kTouch_m + kDeepest * length(way)) break;
+      way = 0.5F * way;
+    }
+    float part = 1;
+    uint32_t met = scene.layer_count;
+    for (uint32_t i = 0; i < scene.layer_count; ++i) {
+      const PieceTable& table = piece_of(scene, i);
+      const SpaceVector from = difference(ghost_, origin_of(table), step_m);
+      const bool touches = planes.has(i);
+      if (touches && kind_of(scene, i) != SceneLayerKind::quadric) continue;
+      const float entry =
+          touches ? return_to(table, from, way, kLeaves_m) : entry_of(kind_of(scene, i), table, from, way);
+      if (entry <= part) part = entry, met = i;
+    }
+    if (met < scene.layer_count) touched |= UINT32_C(1) << met;
+    move(part * way, step_m);
+    if (met == scene.layer_count && length(way) <= kSettled_m) break;
+  }
+  return holding;
+}
+
+SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHand& hand,
+                              const float (&step_m)[3], const ForceSetup& setup) noexcept {
+  const SpacePlace place{{hand.counts[0], hand.counts[1], hand.counts[2]}, {}};
+  const auto far = [&](const SpacePlace& a, const SpacePlace& b) {
+    return !(length(difference(a, b, step_m)) <= kFarthestInSpace_m);
+  };
+  bool beyond = false;
+  for (uint32_t i = 0; i < scene.layer_count; ++i)
+    beyond = beyond || far(place, origin_of(piece_of(scene, i)));
+  if (!placed_ || beyond || far(place, ghost_)) ghost_ = place;
+  placed_ = true;
+  const bool adds = scene.patches[0].adds != 0;
+  Holding holding;
+  if (!beyond && !adds) holding = follow(scene, place, step_m);
+  SpaceVector sum;
+  for (uint32_t i = 0; i < scene.layer_count; ++i) {
+    const PieceTable& table = piece_of(scene, i);
+    const SpaceVector from = difference(place, origin_of(table), step_m);
+    const PieceSurface at = surface_at(kind_of(scene, i), table, beyond ? SpaceVector{} : from);
+    WallTouch touch{0, beyond ? kFarthestInSpace_m : at.distance_m, 0, 0, 0, 1 / setup.rate_hz};
+    SpaceVector normal = at.normal;
+    for (uint32_t j = 0; j < holding.count; ++j)
+      if (holding.piece[j] == i) touch.depth_m = holding.depth_m[j], normal = holding.normal[j];
+    if (adds && !beyond && at.distance_m < 0) {
+      SpaceVector nearest;
+      const bool found = nearest_on(kind_of(scene, i), table, from, from - at.distance_m * normal, nearest);
+      touch.depth_m = found ? length(nearest - from) : -at.distance_m;
+      if (found && touch.depth_m > 0) normal = (1 / touch.depth_m) * (nearest - from);
+    }
+    touch.speed_mps = dot(hand.speed_mps, normal);
+    touch.most_force_n = most_force_n(setup, normal);
+    touch.grain_m =
+        size_of(normal.x) * step_m[0] + size_of(normal.y) * step_m[1] + size_of(normal.z) * step_m[2];
+    float* const number = live + scene.layers[i].first_number;
+    auto& state = *reinterpret_cast<WallState*>(number + changeable_numbers_of(kind_of(scene, i)));
+    sum = sum + wall_force(number, state, touch) * normal;
+  }
+  return sum;
+}
+
+}  // namespace tacto::core

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ghost point: a point without a mass that stays outside of all pieces and is as near to the hand as they
+// let it (Zilles and Salisbury 1995; Ruspini, Kolarov and Khatib 1997).
+#pragma once
+
+#include "firmware-host/core/scene/force_limiter.hpp"
+#include "firmware-host/core/scene/piece.hpp"
+
+namespace tacto::core {
+
+inline constexpr int kGhostPasses = 12;           ///< of a tick, at most
+inline constexpr uint32_t kMostTouched = 6;       ///< pieces that hold the ghost or may hold it: the nearest
+inline constexpr uint32_t kMostHolding = 3;       ///< planes that hold it
+inline constexpr float kFarthestInSpace_m = 100;  ///< beyond, a hand touches nothing
+
+/// A hand in space at one tick. A missing axis stays at 0.
+struct SpaceHand {
+  int32_t counts[3] = {};
+  SpaceVector speed_mps;
+};
+
+/// A pass: the planes of the pieces that the ghost touches, at most kMostTouched of them, leave a room; the
+/// goal is its place nearest to the hand, held by kMostHolding of the planes at most (the first of their sets
+/// that fits). The ghost moves there in a straight line, and stops where it would enter another piece. On one
+/// curved piece it goes to the place of the surface nearest to the hand at once (nearest_on()), if that is
+/// less than about 37 degrees of the normal away and nothing is between. So it passes through no surface:
+/// what it touches it leaves outwards only, and what it does not touch is met in closed form. Rounding leaves
+/// it at most 1e-7 m inside of a piece; there it is moved out.
+/// The force is the sum over the holding planes of wall_force() along the normal, the depth of each its share
+/// of the way from hand to ghost (the multiplier of its plane): of equal stiffness K together K (ghost -
+/// hand). `contact: add`: each piece by itself, from its nearest face.
+class GhostPoint {
+ public:
+  /// Without a place: the next hand is the ghost.
+  void rest() noexcept { placed_ = false; }
+  /// Force of the pieces of `scene` (SceneView::in_space) on the hand. `live`: its numbers. Safe in the tick:
+  /// at most kGhostPasses times one step per piece.
+  SpaceVector force(const SceneView& scene, float* live, const SpaceHand& hand, const float (&step_m)[3],
+                    const ForceSetup& setup) noexcept;
+  const SpacePlace& place() const noexcept { return ghost_; }
+
+ private:
+  struct Holding {
+    uint32_t count = 0;
+    uint32_t piece[kMostHolding] = {};
+    SpaceVector normal[kMostHolding];
+    float depth_m[kMostHolding] = {};
+  };
+  Holding follow(const SceneView& scene, const SpacePlace& hand, const float (&step_m)[3]) noexcept;
+  bool settle_on(const SceneView& scene, const SpacePlace& hand, const float (&step_m)[3], uint32_t touched,
+                 Holding& holding) noexcept;
+  void move(SpaceVector way, const float (&step_m)[3]) noexcept;
+
+  SpacePlace ghost_;
+  bool placed_ = false;
+};
+
+}  // namespace tacto::core

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware-host/core/scene/piece.hpp"
+
+#include "firmware-host/core/kernel/finite.hpp"
+
+namespace tacto::core {
+namespace {
+
+constexpr float kNoEntry = 2;
+constexpr float kLeastArm = 1e-3F;  // of the radius: nearer to a centre the direction is one of rounding
+
+SpaceVector direction_of(const PieceTable& table) noexcept {
+  return {table.form[kPieceDirection], table.form[kPieceDirection + 1], table.form[kPieceDirection + 2]};
+}
+
+// From the axis of a cylinder, or the centre of a sphere.
+SpaceVector arm_of(SceneLayerKind kind, const PieceTable& table, SpaceVector place) noexcept {
+  if (kind == SceneLayerKind::sphere) return place;
+  const SpaceVector axis = direction_of(table);
+  return place - dot(axis, place) * axis;
+}
+
+// The terms of the second order, times v; the sum of all terms; half its gradient.
+SpaceVector second_order(const float* q, SpaceVector v) noexcept {
+  return {q[0] * v.x + 0.5F * (q[3] * v.y + q[5] * v.z), q[1] * v.y + 0.5F * (q[3] * v.x + q[4] * v.z),
+          q[2] * v.z + 0.5F * (q[5] * v.x + q[4] * v.y)};
+}
+
+SpaceVector first_order(const float* q) noexcept {
+  return {q[6], q[7], q[8]};
+}
+
+float value_of(const float* q, SpaceVector p) noexcept {
+  return dot(second_order(q, p) + first_order(q), p) + q[9];
+}
+
+SpaceVector gradient_of(const float* q, SpaceVector p) noexcept {
+  return 2 * second_order(q, p) + first_order(q);
+}
+
+// The first root of c + 2 b s + a s^2 from above, for c >= 0.
+float first_root(float a, float b, float c) noexcept {
+  const float square = b * b - a * c;
+  if (!(square >= 0)) return kNoEntry;
+  const float below = __builtin_sqrtf(square) - b;
+  return below > 0 && c < kNoEntry * below ? c / below : kNoEntry;
+}
+
+struct Symmetric {
+  float xx, yy, zz, xy, yz, xz;
+};
+
+// The adjugate times v.
+SpaceVector adjugate_times(const Symmetric& m, SpaceVector v) noexcept {
+  const float xx = m.yy * m.zz - m.yz * m.yz, yy = m.xx * m.zz - m.xz * m.xz, zz = m.xx * m.yy - m.xy * m.xy;
+  const float xy = m.xz * m.yz - m.xy * m.zz, xz = m.xy * m.yz - m.xz * m.yy, yz = m.xy * m.xz - m.xx * m.yz;
+  return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
+}
+
+float determinant(const Symmetric& m) noexcept {
+  return m.xx * (m.yy * m.zz - m.yz * m.yz) - m.xy * (m.xy * m.zz - m.xz * m.yz) +
+         m.xz * (m.xy * m.yz - m.xz * m.yy);
+}
+
+// A step with lambda and p together: (1 + 2 lambda A) dp + grad q dlambda = -(p - hand + lambda grad q),
+// grad q dp = -q.
+bool nearest_on_quadric(const float* q, SpaceVector hand, SpaceVector start, SpaceVector& nearest) noexcept {
+  SpaceVector p = start;
+  SpaceVector slope = gradient_of(q, p);
+  float lambda = dot(hand - p, slope) / dot(slope, slope);
+  for (int i = 0; i < kQuadricSteps; ++i) {
+    const Symmetric m{1 + 2 * lambda * q[0], 1 + 2 * lambda * q[1], 1 + 2 * lambda * q[2],
+                      lambda * q[3],         lambda * q[4],         lambda * q[5]};
+    const float size = determinant(m);
+    const SpaceVector rest = (hand - p) - lambda * slope;
+    const SpaceVector by_rest = adjugate_times(m, rest), by_slope = adjugate_times(m, slope);
+    const float step = (dot(slope, by_rest) + size * value_of(q, p)) / dot(slope, by_slope);
+    p = p + (1 / size) * (by_rest - step * by_slope);
+    lambda += step;
+    slope = gradient_of(q, p);
+  }
+  nearest = p;
+  // Along the normal, on the surface: within a ten-thousandth of the way.
+  const float squared = dot(slope, slope), value = value_of(q, p);
+  const SpaceVector way = hand - p, beside = way - (dot(way, slope) / squared) * slope;
+  constexpr float kLeast_m = 1e-8F, kShare = 1e-4F;
+  const float bound = kLeast_m + kShare * length(way);
+  return is_finite(dot(p, p)) && value * value <= bound * bound * squared &&
+         dot(beside, beside) <= bound * bound;
+}
+
+}  // namespace
+
+PieceSurface surface_at(SceneLayerKind kind, const PieceTable& table, SpaceVector place) noexcept {
+  if (kind == SceneLayerKind::plane) {
+    const SpaceVector normal = direction_of(table);
+    const float above_m = dot(normal, place), thickness_m = table.form[kPieceSize];
+    if (thickness_m > 0 && above_m < -0.5F * thickness_m) return {-thickness_m - above_m, -1 * normal};
+    return {above_m, normal};
+  }
+  if (kind == SceneLayerKind::quadric) {
+    const float* const q = table.form;
+    const SpaceVector slope = gradient_of(q, place);
+    const float size = length(slope), value = value_of(q, place);
+    if (!(size > 1e-6F)) return {value, {}};
+    return {value / size, (1 / size) * slope};
+  }
+  const SpaceVector arm = arm_of(kind, table, place);
+  const float radius_m = length(arm);
+  if (!(radius_m > 0)) return {-table.form[kPieceSize], direction_of(table)};
+  return {radius_m - table.form[kPieceSize], (1 / radius_m) * arm};
+}
+
+float entry_of(SceneLayerKind kind, const PieceTable& table, SpaceVector place, SpaceVector way) noexcept {
+  if (kind == SceneLayerKind::plane) {
+    const SpaceVector normal = direction_of(table);
+    const float above_m = dot(normal, place), rise_m = dot(normal, way), thickness_m = table.form[kPieceSize];
+    if (above_m >= 0) return above_m + rise_m < 0 ? above_m / -rise_m : kNoEntry;
+    const float below_m = -thickness_m - above_m;
+    if (!(thickness_m > 0) || below_m < 0) return 0;
+    return rise_m > below_m ? below_m / rise_m : kNoEntry;
+  }
+  float a, b, c;
+  if (kind == SceneLayerKind::quadric) {
+    const float* const q = table.form;
+    a = dot(second_order(q, way), way);
+    b = 0.5F * dot(gradient_of(q, place), way);
+    c = value_of(q, place);
+  } else {
+    const SpaceVector arm = arm_of(kind, table, place), turn = arm_of(kind, table, way);
+    const float radius_m = table.form[kPieceSize];
+    a = dot(turn, turn);
+    b = dot(arm, turn);
+    c = dot(arm, arm) - radius_m * radius_m;
+  }
+  return c < 0 ? 0 : first_root(a, b, c);
+}
+
+// The height over the surface is at most b^2 / -a / |grad q|.
+float return_to(const PieceTable& quadric, SpaceVector place, SpaceVector way, float height_m) noexcept {
+  const float* const q = quadric.form;
+  const SpaceVector slope = gradient_of(q, place);
+  const float a = dot(second_order(q, way), way), b = 0.5F * dot(slope, way), c = value_of(q, place);
+  if (!(a < 0) || !(b > 0) || !(b * b > -a * height_m * length(slope))) return kNoEntry;
+  const float square = b * b - a * c;
+  if (!(square >= 0)) return kNoEntry;
+  const float end = b + __builtin_sqrtf(square);
+  return end < kNoEntry * -a ? end / -a : kNoEntry;
+}
+
+bool nearest_on(SceneLayerKind kind, const PieceTable& table, SpaceVector hand, SpaceVector start,
+                SpaceVector& nearest) noexcept {
+  if (kind == SceneLayerKind::quadric) return nearest_on_quadric(table.form, hand, start, nearest);
+  if (kind == SceneLayerKind::plane) {
+    const PieceSurface at = surface_at(kind, table, start);
+    const SpaceVector normal = at.normal;
+    nearest = hand - (dot(normal, hand - start) + at.distance_m) * normal;
+    return true;
+  }
+  const SpaceVector arm = arm_of(kind, table, hand);
+  const float radius_m = length(arm);
+  if (!(radius_m > kLeastArm * table.form[kPieceSize])) return false;
+  nearest = hand + ((table.form[kPieceSize] - radius_m) / radius_m) * arm;
+  return true;
+}
+
+float wall_force(const float* number, WallState& state, const WallTouch& touch) noexcept {
+  if (!(touch.depth_m > 0)) {
+    if (touch.outside_m > kLetGo_m) state = {};
+    return 0;
+  }
+  const float inwards_mps = touch.speed_mps < 0 ? -touch.speed_mps : 0;
+  if (state.touched == 0) state.impulse_ns = number[kPieceArrestMass] * inwards_mps;
+  state.touched = 1;
+  if (inwards_mps == 0) state.impulse_ns = 0;
+  const float deep_m = touch.depth_m > kIntegralRest * touch.grain_m ? touch.depth_m : 0,
+              grown_n = state.integral_n + touch.tick_s * (number[kPieceIntegral] * deep_m -
+                                                           number[kPieceIntegralLeak] * state.integral_n),
+              bound_n = number[kPieceIntegralBound];
+  state.integral_n = grown_n < 0 ? 0 : grown_n > bound_n ? bound_n : grown_n;
+  float force_n =
+      number[kPieceStiffness] * touch.depth_m - number[kPieceDamping] * touch.speed_mps + state.integral_n;
+  force_n = force_n > 0 ? force_n : 0;
+  const float asked_n = state.impulse_ns / touch.tick_s, left_n = touch.most_force_n - force_n;
+  const float given_n = asked_n < left_n ? asked_n : left_n;
+  if (!(given_n > 0)) return force_n;
+  state.impulse_ns -= given_n * touch.tick_s;
+  return force_n + given_n;
+}
+
+}  // namespace tacto::core

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/prepare/scene/piece_block.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace tacto::playback {
+
+using core::SceneLayerKind;
+using schema::ErrorKind;
+using schema::fail;
+using schema::Piece;
+using schema::PieceShape;
+using schema::Result;
+
+namespace {
+
+constexpr double kMostPlaceCounts = 0x1p30;
+constexpr double kWholeSpace_m = 1000;  // half the side of the patch that holds the pieces
+
+template <class T>
+void append_words(std::vector<std::uint32_t>& words, const std::vector<T>& parts) {
+  static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
+  const std::size_t before = words.size();
+  words.resize(before + parts.size() * sizeof(T) / sizeof(std::uint32_t));
+  std::memcpy(words.data() + before, parts.data(), parts.size() * sizeof(T));
+}
+
+SceneLayerKind kind_of_piece(PieceShape shape) {
+  switch (shape) {
+    case PieceShape::plane:
+      return SceneLayerKind::plane;
+    case PieceShape::sphere:
+      return SceneLayerKind::sphere;
+    case PieceShape::cylinder:
+      return SceneLayerKind::cylinder;
+    case PieceShape::quadric:
+      break;
+  }
+  return SceneLayerKind::quadric;
+}
+
+// A plane and a plate are raised by the radius of the point; balls and cylinders get a larger radius.
+Result<core::PieceTable> table_of_piece(const Piece& piece, double point_radius_m, const PlaneSteps& steps,
+                                        const std::string& where) {
+  core::PieceTable table;
+  const auto& d = piece.direction;
+  const double size = std::hypot(d[0], d[1], d[2]);
+  const double n[3] = {d[0] / size, d[1] / size, d[2] / size};
+  const double raised_m = piece.shape == PieceShape::plane ? point_radius_m : 0;
+  const double place_m[3] = {piece.x_m + raised_m * n[0], piece.y_m + raised_m * n[1],
+                             piece.z_m + raised_m * n[2]};
+  const double step_m[3] = {steps.x_m, steps.y_m, steps.z_m};
+  for (int i = 0; i < 3; ++i) {
+    const double counts = std::round(place_m[i] / step_m[i]);
+    if (!(std::abs(counts) <= kMostPlaceCounts))
+      return fail(ErrorKind::unsuitable,
+                  fmt::format("a place of {:g} m is {:.3g} counts of the encoder", place_m[i], counts),
+                  where + "/place", fmt::format("at most {:g} counts are possible", kMostPlaceCounts));
+    table.origin[i] = static_cast<std::int32_t>(counts);
+    table.rest_m[i] = static_cast<float>(place_m[i] - counts * step_m[i]);
+  }
+  if (piece.shape == PieceShape::quadric) {
+    std::ranges::transform(piece.coefficients, table.form, [](double c) { return static_cast<float>(c); });
+    return table;
+  }
+  for (int i = 0; i < 3; ++i) table.form[core::kPieceDirection + i] = static_cast<float>(n[i]);
+  const double extent_m = piece.shape != PieceShape::plane ? piece.radius_m + point_radius_m
+                          : piece.thickness_m > 0          ? piece.thickness_m + 2 * point_radius_m
+                                                           : 0;
+  table.form[core::kPieceSize] = static_cast<float>(extent_m);
+  return table;
+}
+
+void append_numbers(const Piece& piece, std::vector<float>& numbers) {
+  for (const double number : {piece.stiffness_n_per_m, piece.damping_n_s_per_m, piece.arrest_mass_kg,
+                              piece.integral_n_per_m_s, piece.integral_bound_n, piece.integral_leak_per_s})
+    numbers.push_back(static_cast<float>(number));
+  numbers.insert(numbers.end(), core::kWallStateWords, 0.0F);
+}
+
+Result<void> check_wall(const Piece& piece, const schema::Device& device, double rate_hz,
+                        const std::optional<schema::Hand>& hand, const std::string& where) {
+  if (!(piece.integral_n_per_m_s > 0)) return {};
+  if (wall_growth(piece, device, rate_hz, hand) <= 1) return {};
+  return fail(ErrorKind::unsuitable,
+              fmt::format("the integral of piece '{}' makes its wall unstable on the device '{}': with {:g} "
+                          "N/m, {:g} N s/m and {:g} N/(m s) a motion grows from tick to tick (computed)",
+                          piece.name, device.name, piece.stiffness_n_per_m, piece.damping_n_s_per_m,
+                          piece.integral_n_per_m_s),
+              where + "/integral_n_per_m_s", "choose a smaller integral, more damping or less stiffness");
+}
+
+using Matrix = std::vector<std::vector<double>>;
+
+Matrix squared(const Matrix& m) {
+  Matrix product(m.size(), std::vector<double>(m.size()));
+  for (std::size_t i = 0; i < m.size(); ++i)
+    for (std::size_t j = 0; j < m.size(); ++j)
+      for (std::size_t k = 0; k < m.size(); ++k) product[i][j] += m[i][k] * m[k][j];
+  return product;
+}
+
+// By ||m^n||^(1/n), n = 2^40: what is not of the largest eigenvalue is gone.
+double largest_eigenvalue(Matrix m) {
+  double logarithm = 0, share = 1;
+  for (int i = 0; i < 40; ++i) {
+    double norm = 0;
+    for (const auto& row : m)
+      for (const double value : row) norm = std::max(norm, std::abs(value));
+    if (!(norm > 0)) return 0;
+    for (auto& row : m)
+      for (double& value : row) value /= norm;
+    logarithm += share * std::log(norm);
+    share /= 2;
+    m = squared(m);
+  }
+  return std::exp(logarithm);
+}
+
+// Of place, speed, integral and the forces that are on their way.
+Matrix wall_motion(const Piece& wall, const schema::DeviceAxis& axis, const schema::Hand& hand,
+                   double delay_s, double tick_s) {
+  const double m = axis.mass_kg + hand.mass_kg, b = axis.viscous_n_s_per_m + hand.damping_n_s_per_m;
+  const double z = b * tick_s / m, e = std::exp(-z);
+  const double place_by_speed = z > 1e-9 ? -std::expm1(-z) * m / b : tick_s;
+  const double place_by_force = z > 1e-4 ? (tick_s - place_by_speed) / b : tick_s * tick_s / (2 * m);
+  const auto late = static_cast<std::size_t>(std::ceil(delay_s / tick_s - 1e-9));
+  constexpr std::size_t kPlace = 0, kSpeed = 1, kIntegral = 2, kForces = 3;
+  Matrix motion(kForces + late, std::vector<double>(kForces + late));
+  std::vector<double> force(kForces + late), integral(kForces + late);
+  integral[kPlace] = wall.integral_n_per_m_s * tick_s;
+  integral[kIntegral] = 1 - wall.integral_leak_per_s * tick_s;
+  force[kPlace] = -wall.stiffness_n_per_m - integral[kPlace];
+  force[kSpeed] = -wall.damping_n_s_per_m;
+  force[kIntegral] = -integral[kIntegral];
+  std::vector<double> acting = force;
+  if (late > 0) {
+    acting.assign(acting.size(), 0);
+    acting[kForces + late - 1] = 1;
+    motion[kForces] = force;
+    for (std::size_t i = 1; i < late; ++i) motion[kForces + i][kForces + i - 1] = 1;
+  }
+  motion[kIntegral] = integral;
+  motion[kPlace][kPlace] = 1, motion[kPlace][kSpeed] = place_by_speed, motion[kSpeed][kSpeed] = e;
+  for (std::size_t i = 0; i < acting.size(); ++i) {
+    motion[kPlace][i] += place_by_force * acting[i];
+    motion[kSpeed][i] += place_by_speed / m * acting[i];
+  }
+  return motion;
+}
+
+}  // namespace
+
+double wall_growth(const Piece& piece, const schema::Device& device, double rate_hz,
+                   const std::optional<schema::Hand>& hand) {
+  double most = 0;
+  for (const schema::DeviceAxis& axis : device.axes)
+    if (axis.mass_kg > 0)
+      most = std::max(most, largest_eigenvalue(wall_motion(piece, axis, hand.value_or(schema::Hand()),
+                                                           device.delay_s, 1 / rate_hz)));
+  return most;
+}
+
+Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::string& where,
+                                     const schema::Device& device, double rate_hz,
+                                     const std::optional<schema::Hand>& hand) {
+  PreparedScene base;
+  base.pieces = scene.pieces;
+  base.point_radius_m = scene.point_radius_m;
+  base.contact = scene.contact;
+  base.steps = steps_of(device, rate_hz);
+  base.stiffness_limit_n_per_m = stiffness_limit_of(device, rate_hz, hand, 0, true);
+  core::ScenePatch space;
+  space.half_width_m = space.half_height_m = static_cast<float>(kWholeSpace_m);
+  space.layers = static_cast<std::uint16_t>(scene.pieces.size());
+  space.adds = scene.contact == schema::PieceContact::add ? 1 : 0;
+  std::vector<core::SceneLayer> layers;
+  std::vector<float> numbers;
+  std::vector<core::PieceTable> tables;
+  for (const Piece& piece : scene.pieces) {
+    const std::string at = fmt::format("{}#/pieces/{}", where, tables.size());
+    TACTO_TRY(check_wall(piece, device, rate_hz, hand, at));
+    layers.push_back(
+        {static_cast<std::uint16_t>(kind_of_piece(piece.shape)), static_cast<std::uint16_t>(numbers.size()),
+         static_cast<std::uint32_t>(tables.size() * sizeof(core::PieceTable) / sizeof(std::uint32_t))});
+    append_numbers(piece, numbers);
+    const auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
+    TACTO_TRY(table);
+    tables.push_back(*table);
+  }
+  core::SceneHeader header;
+  header.patches = 1;
+  header.layers = static_cast<std::uint16_t>(layers.size());
+  header.numbers = static_cast<std::uint16_t>(numbers.size());
+  header.table_words =
+      static_cast<std::uint32_t>(tables.size() * sizeof(core::PieceTable) / sizeof(std::uint32_t));
+  append_words(base.words, std::vector{header});
+  append_words(base.words, std::vector{space});
+  append_words(base.words, layers);
+  append_words(base.words, numbers);
+  append_words(base.words, tables);
+  header.check = core::scene_check(base.words.data(), static_cast<std::uint32_t>(base.bytes()));
+  std::memcpy(base.words.data(), &header, sizeof header);
+  return base;
+}
+
+std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const schema::Device& device,
+                                          double rate_hz, const std::optional<schema::Hand>& hand) {
+  std::vector<std::string> notes;
+  for (const char* name : {"x", "y", "z"})
+    if (std::ranges::find(device.axes, name, &schema::DeviceAxis::name) == device.axes.end())
+      notes.push_back(fmt::format(
+          "the device has no axis {0}: the hand stays at {0} = 0, and forces along {0} are left out", name));
+  if (!(device.axes.front().mass_kg > 0)) return notes;
+  for (const Piece& piece : scene.pieces) {
+    const double limit = stiffness_limit_of(device, rate_hz, hand, piece.damping_n_s_per_m, true);
+    if (piece.stiffness_n_per_m < limit) continue;
+    notes.push_back(
+        fmt::format("piece '{}' is unstable on this device with {}: its stiffness is {:.4g} N/m with {:.4g} "
+                    "N s/m, the limit is {:.4g} N/m (computed, without the Coulomb friction of the device)",
+                    piece.name, hand ? "hand " + hand->name : "nothing held", piece.stiffness_n_per_m,
+                    piece.damping_n_s_per_m, limit));
+  }
+  return notes;
+}
+
+}  // namespace tacto::playback

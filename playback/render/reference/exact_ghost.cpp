@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/render/reference/exact_ghost.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware-host/core/scene/piece.hpp"
+
+namespace tacto::playback {
+
+using schema::Piece;
+using schema::PieceShape;
+
+namespace {
+
+constexpr double kNear_m = 1e-9;    // nearer, a piece is touched
+constexpr int kPasses = 300;        // of a tick
+constexpr int kSweeps = 2000;       // of Hildreth's iteration
+constexpr int kEntrySamples = 128;  // of a way
+
+double inner(const SpaceMetres& a, const SpaceMetres& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+SpaceMetres sum_of(const SpaceMetres& a, double by, const SpaceMetres& b) {
+  return {a[0] + by * b[0], a[1] + by * b[1], a[2] + by * b[2]};
+}
+
+double size_of(const SpaceMetres& a) {
+  return std::sqrt(inner(a, a));
+}
+
+SpaceMetres unit_of(const std::array<double, 3>& a) {
+  return sum_of({}, 1 / size_of(a), a);
+}
+
+}  // namespace
+
+ExactGhost::ExactGhost(const PreparedScene& scene, const schema::Device& device, double rate_hz)
+    : scene_(scene), device_(device), tick_s_(1 / rate_hz), walls_(scene.pieces.size()) {}
+
+ExactGhost::Surface ExactGhost::surface_at(const Piece& piece, const SpaceMetres& place_m) const {
+  const SpaceMetres p = sum_of(place_m, -1, {piece.x_m, piece.y_m, piece.z_m});
+  const double radius_m = scene_.point_radius_m;
+  if (piece.shape == PieceShape::plane) {
+    const SpaceMetres n = unit_of(piece.direction);
+    const double above_m = inner(n, p), below_m = -piece.thickness_m - above_m;
+    if (piece.thickness_m > 0 && below_m > above_m) return {below_m - radius_m, sum_of({}, -1, n)};
+    return {above_m - radius_m, n};
+  }
+  if (piece.shape == PieceShape::quadric) {
+    const auto& c = piece.coefficients;
+    const auto [x, y, z] = p;
+    const double value = c[0] * x * x + c[1] * y * y + c[2] * z * z + c[3] * x * y + c[4] * y * z +
+                         c[5] * x * z + c[6] * x + c[7] * y + c[8] * z + c[9];
+    const SpaceMetres slope = {2 * c[0] * x + c[3] * y + c[5] * z + c[6],
+                               2 * c[1] * y + c[3] * x + c[4] * z + c[7],
+                               2 * c[2] * z + c[4] * y + c[5] * x + c[8]};
+    const double size = size_of(slope);
+    return size > 1e-12 ? Surface{value / size, sum_of({}, 1 / size, slope)} : Surface{value, {}};
+  }
+  SpaceMetres arm = p;
+  if (piece.shape == PieceShape::cylinder) {
+    const SpaceMetres axis = unit_of(piece.direction);
+    arm = sum_of(p, -inner(axis, p), axis);
+  }
+  const double size = size_of(arm);
+  return {size - piece.radius_m - radius_m, size > 0 ? sum_of({}, 1 / size, arm) : SpaceMetres{0, 0, 1}};
+}
+
+double ExactGhost::entry_of(const Piece& piece, const SpaceMetres& from_m, const SpaceMetres& way_m) const {
+  const auto inside = [&](double part) {
+    return surface_at(piece, sum_of(from_m, part, way_m)).distance_m < 0;
+  };
+  for (int i = 1; i <= kEntrySamples; ++i) {
+    if (!inside(static_cast<double>(i) / kEntrySamples)) continue;
+    double out = static_cast<double>(i - 1) / kEntrySamples, in = static_cast<double>(i) / kEntrySamples;
+    for (int halved = 0; halved < 60; ++halved) {
+      const double middle = (out + in) / 2;
+      (inside(middle) ? in : out) = middle;
+    }
+    return out;
+  }
+  return 2;
+}
+
+// Hildreth 1957: min |way - straight|^2, normal way >= -distance, one plane after the other.
+std::vector<ExactGhost::Held> ExactGhost::follow(const SpaceMetres& hand_m) {
+  const auto& pieces = scene_.pieces;
+  std::vector<Held> held(pieces.size());
+  std::vector<bool> touched(pieces.size());
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const SpaceMetres straight = sum_of(hand_m, -1, ghost_m_);
+    SpaceMetres way = straight;
+    std::vector<Surface> surfaces;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      surfaces.push_back(surface_at(pieces[i], ghost_m_));
+      held[i] = {surfaces[i].normal, 0};
+      touched[i] = touched[i] || surfaces[i].distance_m <= kNear_m;
+    }
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      double changed_m = 0;
+      for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (!touched[i]) continue;
+        const double lack_m = -surfaces[i].distance_m - inner(surfaces[i].normal, way);
+        const double change_m = std::max(-held[i].depth_m, lack_m);
+        held[i].depth_m += change_m;
+        way = sum_of(way, change_m, surfaces[i].normal);
+        changed_m = std::max(changed_m, std::abs(change_m));
+      }
+      if (changed_m < 1e-15) break;
+    }
+    double part = 1;
+    std::size_t met = pieces.size();
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (touched[i]) continue;
+      const double entry = entry_of(pieces[i], ghost_m_, way);
+      if (entry < part) part = entry, met = i;
+    }
+    if (met < pieces.size()) touched[met] = true;
+    ghost_m_ = sum_of(ghost_m_, part, way);
+    if (met == pieces.size() && size_of(way) < 1e-13) break;
+  }
+  return held;
+}
+
+ExactGhost::Held ExactGhost::nearest_face(const Piece& piece, const SpaceMetres& hand_m) const {
+  SpaceMetres at = hand_m;
+  Surface surface = surface_at(piece, at);
+  if (surface.distance_m >= 0) return {surface.normal, 0};
+  for (int i = 0; i < kPasses; ++i) {
+    const double depth_m = -surface.distance_m + inner(surface.normal, sum_of(at, -1, hand_m));
+    at = sum_of(hand_m, depth_m, surface.normal);
+    surface = surface_at(piece, at);
+  }
+  return {surface.normal, size_of(sum_of(at, -1, hand_m))};
+}
+
+double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, double outside_m,
+                              double speed_mps) const {
+  if (!(held.depth_m > 0)) {
+    if (outside_m > double{core::kLetGo_m}) wall = {};
+    return 0;
+  }
+  if (!wall.touched) wall.impulse_ns = piece.arrest_mass_kg * std::max(0.0, -speed_mps);
+  wall.touched = true;
+  if (speed_mps >= 0) wall.impulse_ns = 0;
+  double most_n = device_.peak_force_n, grain_m = 0;
+  for (const schema::DeviceAxis& axis : device_.axes) {
+    const double share = std::abs(held.normal[axis.name == "x" ? 0 : axis.name == "y" ? 1 : 2]);
+    if (share > 0) most_n = std::min(most_n, axis.peak_force_n / share);
+    grain_m += share * axis.encoder_step_m;
+  }
+  const double deep_m = held.depth_m > double{core::kIntegralRest} * grain_m ? held.depth_m : 0;
+  wall.integral_n +=
+      tick_s_ * (piece.integral_n_per_m_s * deep_m - piece.integral_leak_per_s * wall.integral_n);
+  wall.integral_n = std::clamp(wall.integral_n, 0.0, piece.integral_bound_n);
+  const double own_n = std::max(
+      0.0, piece.stiffness_n_per_m * held.depth_m - piece.damping_n_s_per_m * speed_mps + wall.integral_n);
+  const double given_n = std::clamp(most_n - own_n, 0.0, wall.impulse_ns / tick_s_);
+  wall.impulse_ns -= given_n * tick_s_;
+  return own_n + given_n;
+}
+
+SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {
+  if (!placed_) ghost_m_ = hand_m;
+  placed_ = true;
+  const bool adds = scene_.contact == schema::PieceContact::add;
+  std::vector<Held> held(scene_.pieces.size());
+  if (!adds) held = follow(hand_m);
+  SpaceMetres sum = {};
+  for (std::size_t i = 0; i < scene_.pieces.size(); ++i) {
+    const Piece& piece = scene_.pieces[i];
+    if (adds) held[i] = nearest_face(piece, hand_m);
+    const double force_n = wall_force(piece, walls_[i], held[i], surface_at(piece, hand_m).distance_m,
+                                      inner(held[i].normal, speed_mps));
+    sum = sum_of(sum, force_n, held[i].normal);
+  }
+  return sum;
+}
+
+}  // namespace tacto::playback

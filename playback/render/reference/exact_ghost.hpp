@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pieces in space and their ghost point in double precision: the reference for the kernel's.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "data-schema/device/device.hpp"
+#include "playback/prepare/scene/prepared_scene.hpp"
+
+namespace tacto::playback {
+
+using SpaceMetres = std::array<double, 3>;
+
+/// The contract of core::GhostPoint and core::wall_force, by other methods: the planes that hold the ghost by
+/// Hildreth's iteration over all that it touches, the entry into a piece by samples and bisection, curved
+/// surfaces by many small steps instead of a closed form. Slow; not for the tick.
+class ExactGhost {
+ public:
+  /// Keeps references to both.
+  ExactGhost(const PreparedScene& scene, const schema::Device& device, double rate_hz);
+
+  /// One tick: the force on a hand at this place, m, with this speed, m/s.
+  SpaceMetres force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps);
+  const SpaceMetres& ghost_m() const { return ghost_m_; }
+
+ private:
+  struct Wall {
+    double integral_n = 0, impulse_ns = 0;
+    bool touched = false;
+  };
+  struct Surface {
+    double distance_m = 0;
+    SpaceMetres normal = {};
+  };
+  struct Held {
+    SpaceMetres normal = {};
+    double depth_m = 0;
+  };
+  Surface surface_at(const schema::Piece& piece, const SpaceMetres& place_m) const;
+  double entry_of(const schema::Piece& piece, const SpaceMetres& from_m, const SpaceMetres& way_m) const;
+  std::vector<Held> follow(const SpaceMetres& hand_m);
+  Held nearest_face(const schema::Piece& piece, const SpaceMetres& hand_m) const;
+  double wall_force(const schema::Piece& piece, Wall& wall, const Held& held, double outside_m,
+                    double speed_mps) const;
+
+  const PreparedScene& scene_;
+  const schema::Device& device_;
+  double tick_s_;
+  bool placed_ = false;
+  SpaceMetres ghost_m_ = {};
+  std::vector<Wall> walls_;
+};
+
+}  // namespace tacto::playback

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene of pieces in space that is ticked on every target: its forces have to be the same to the bit.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware-host/core/scene/scene_kernel.hpp"
+#include "tests/firmware-host/kernel_workload.hpp"
+
+namespace tacto::tests {
+
+inline constexpr uint32_t kPiecesFingerprint = 317246980;
+
+/// A floor, a plate on edge, a ball, a pipe and an ellipsoid, and a hand that is pushed through them at up to
+/// 60 counts per tick; walls with dampers, arrest and integral; all limits are reached.
+class PiecesWorkload {
+ public:
+  PiecesWorkload() noexcept {
+    block_.header.patches = 1, block_.header.layers = kPieces;
+    block_.header.numbers = kPieces * kWords;
+    block_.header.table_words = kPieces * sizeof(core::PieceTable) / sizeof(uint32_t);
+    block_.patch = {0, 0, 1, 0, 1000, 1000, 0, kPieces, 0};
+    const uint16_t kinds[kPieces] = {16, 16, 17, 18, 19};
+    for (uint32_t i = 0; i < kPieces; ++i) {
+      block_.layers[i] = {kinds[i], static_cast<uint16_t>(i * kWords),
+                          i * static_cast<uint32_t>(sizeof(core::PieceTable) / sizeof(uint32_t))};
+      const float wall[6] = {2000, 4, 0.1F, 3000, 2, 0.5F};
+      for (uint32_t j = 0; j < 6; ++j) block_.numbers[i * kWords + j] = wall[j];
+    }
+    block_.tables[0] = {{0, 0, -2000}, {1e-6F, 0, -3e-6F}, {0.28F, 0, 0.96F}};
+    block_.tables[1] = {{1500, 0, 0}, {}, {1, 0, 0, 0.001F}};
+    block_.tables[2] = {{-1000, 500, 0}, {}, {0, 0, 1, 0.01F}};
+    block_.tables[3] = {{0, -2500, 500}, {}, {0.6F, 0, 0.8F, 0.008F}};
+    block_.tables[4] = {{300, 2000, 700}, {}, {1e4F, 2e4F, 4e4F, 1e3F, 0, 0, 0, 2, 0, -1}};
+    block_.header.check = core::scene_check(&block_, sizeof block_);
+    core::SceneView view;
+    core::read_scene_block(&block_, sizeof block_, view);
+    core::ForceSetup setup;
+    setup.axes[0] = {core::AxisAlong::x, 1e-5F, 10, 5};
+    setup.axes[1] = {core::AxisAlong::y, 1e-5F, 10, 5};
+    setup.axes[2] = {core::AxisAlong::z, 1e-5F, 10, 5};
+    setup.axis_count = 3;
+    setup.peak_n = 10, setup.continuous_n = 5;
+    setup.slew_n_per_s = 8000, setup.rate_hz = 1000;
+    setup.onset_s = setup.release_s = 0.02F;
+    kernel_.set(view, setup, live_);
+  }
+
+  /// One tick; the sum of the forces.
+  float tick() noexcept {
+    for (int i = 0; i < 3; ++i) {
+      const int32_t draw = next_();
+      if (draw % 100 == 0) speed_[i] = (draw >> 4) % 61;
+      if (draw % 333 == 0) speed_[i] = draw % 2;
+      if (counts_[i] > 3500) speed_[i] = -speed_[i] < 0 ? -speed_[i] : speed_[i];
+      if (counts_[i] < -3500) speed_[i] = -speed_[i] > 0 ? -speed_[i] : speed_[i];
+      counts_[i] += speed_[i];
+    }
+    const auto output = kernel_.tick(counts_, ++ticks_ < kWorkloadTicks - 400);
+    flags_ |= output.flags;
+    return output.force_n[0] + output.force_n[1] + output.force_n[2];
+  }
+  uint32_t flags() const noexcept { return flags_; }
+
+ private:
+  static constexpr uint32_t kPieces = 5, kWords = core::kPieceNumbers + core::kWallStateWords;
+  struct Block {
+    core::SceneHeader header;
+    core::ScenePatch patch;
+    core::SceneLayer layers[kPieces];
+    float numbers[kPieces * kWords] = {};
+    core::PieceTable tables[kPieces];
+  } block_;
+  WorkloadRandom next_{1996};
+  uint32_t flags_ = 0, ticks_ = 0;
+  int32_t counts_[3] = {}, speed_[3] = {};
+  float live_[kPieces * kWords + core::kPatchWords];
+  core::SceneKernel kernel_;
+};
+
+}  // namespace tacto::tests
