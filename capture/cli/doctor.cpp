@@ -51,9 +51,7 @@ schema::Result<cli::Report> run_doctor(const DoctorOptions& options) {
   for (const schema::Channel& channel : diagnosis.channels)
     if (options.request.device.starts_with("comedi:")) wired.push_back(row_of(channel));
   if (!wired.empty()) report.add("wiring", std::move(wired));
-  report
-      .add("can_record", first_failure == nullptr)
-      .add("next", diagnosis.next);
+  report.add("can_record", first_failure == nullptr).add("next", diagnosis.next);
   if (first_failure != nullptr)
     report.ends_with(first_failure->name == "disk" ? first_failure->fault : schema::ErrorKind::device);
   return report;
@@ -62,7 +60,8 @@ schema::Result<cli::Report> run_doctor(const DoctorOptions& options) {
 cli::Action declare_doctor(CLI::App& app) {
   auto options = std::make_shared<DoctorOptions>();
   DoctorRequest& request = options->request;
-  app.add_option("-d,--device", request.device, "The device: usb:, usb:serial=XYZ, tty:, comedi:NAME, sim:...");
+  app.add_option("-d,--device", request.device,
+                 "The device: usb:, usb:serial=XYZ, tty:, comedi:NAME, sim:...");
   app.add_option("-o,--folder", request.folder, "Folder of the recordings");
   app.add_option("--calibration", request.calibration,
                  "Calibration file of the device, if not the one that 'tactograph calibrate' stores");

@@ -63,7 +63,7 @@ struct Check {
 struct Diagnosis {
   std::vector<Check> checks;
   std::vector<schema::Channel> channels;  ///< of the device; empty without one
-  std::string next;  ///< the next command to type
+  std::string next;                       ///< the next command to type
   /// The first failed check that prevents a recording; nullptr if a recording can be made.
   const Check* first_failure() const;
 };

@@ -35,8 +35,8 @@ using Layer = OneOf<TextureLayer>;
 inline constexpr std::size_t kMostLayers = 256;
 
 struct Scene {
-  std::vector<Layer> layers;   ///< of a tray; their target displacements add up
-  std::vector<Patch> patches;  ///< of a force device; a scene has layers, patches, or both
+  std::vector<Layer> layers;       ///< of a tray; their target displacements add up
+  std::vector<Patch> patches;      ///< of a force device; a scene has layers, patches, or both
   std::vector<Piece> pieces = {};  ///< in space, of a force device; not beside patches
   double point_radius_m = 0;       ///< of the sphere that touches the pieces; radius_m in the file
   PieceContact contact = PieceContact::ghost;

@@ -228,7 +228,7 @@ Result<std::unique_ptr<Device>> ComediDevice::open(const std::string& uri, const
   TACTO_TRY(device->find_inputs(wiring));
   TACTO_TRY(device->plan_command(wiring.rate_hz));
   const auto asked_bytes = static_cast<unsigned>(kBuffer_s * about.sample_rate_hz) *
-                      static_cast<unsigned>(wiring.inputs.size() * device->sample_bytes_);
+                           static_cast<unsigned>(wiring.inputs.size() * device->sample_bytes_);
   const int most = comedi_get_max_buffer_size(device->card_.get(), device->subdevice_);
   comedi_set_buffer_size(device->card_.get(), device->subdevice_,
                          std::min<unsigned>(asked_bytes, std::max(most, 0)));

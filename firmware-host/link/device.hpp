@@ -35,7 +35,7 @@ struct Capabilities {
   /// transducer, which is not part of the device.
   std::vector<schema::Channel> channels;
   std::optional<schema::Transducer> transducer;
-  std::string surface;  ///< the surface on the tray, if the device reports it
+  std::string surface;                ///< the surface on the tray, if the device reports it
   std::vector<std::string> warnings;  ///< for whoever records, and for the recording
 };
 

@@ -35,11 +35,12 @@ struct ForceOutput {
 /// it. Of a surface, frequencies above half the rate at this speed are not played (held_by_rate(); of an
 /// octave of noise up to kNoiseCycles; of a height or force map one of its levels or two, mixed; the last
 /// level of a force map at all higher speeds, because its mean is a force). Without the axis x
-/// or y the hand stays at 0 along it; an axis z gets no force. In a scene of pieces in space the force is that of GhostPoint, along all
-/// axes; move() and raise() of its patch do nothing. Single precision, no contraction, of libm only
-/// the square root: the same bits on host and device. Against double precision (ExactScene) at places up to
-/// 0.1 m: within 3e-7 of the sum of the absolute forces of all layers. No function allocates, locks, throws
-/// or makes system calls; a tick costs at most one step per patch and layer.
+/// or y the hand stays at 0 along it; an axis z gets no force. In a scene of pieces in space the force is
+/// that of GhostPoint, along all axes; move() and raise() of its patch do nothing. Single precision, no
+/// contraction, of libm only the square root: the same bits on host and device. Against double precision
+/// (ExactScene) at places up to 0.1 m: within 3e-7 of the sum of the absolute forces of all layers. No
+/// function allocates, locks, throws or makes system calls; a tick costs at most one step per patch and
+/// layer.
 class SceneKernel {
  public:
   /// Starts at rest at zero, with the numbers, places and order of the block. The block, and `live` with
