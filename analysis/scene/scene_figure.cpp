@@ -136,7 +136,7 @@ const Pen kTravelPen{spatial::kGreyInk, 0.9, true}, kSpringWay{kSpringInk, 0.7, 
 const TextStyle kName{.size = 9.5, .bold = true, .align_x = 0, .align_y = 0}, kLegendText{.size = 9};
 
 constexpr Colour kBodyInk{0.45, 0.25, 0.55};
-const Pen kBodyPath{kBodyInk, 1.2}, kReach{kBodyInk, 0.7, true};
+const Pen kBodyPath{kBodyInk, 1.2}, kLassoReach{kBodyInk, 0.7, true};
 
 Colour path_colour() {
   return spatial::series_colour(0);
@@ -256,7 +256,7 @@ class PatchPainter {
         avoid(paths[i]);
         at = paths[i].start();
       }
-      if (all[i].length_m > 0) draw_circle(canvas_, at, all[i].length_m * map_.points_per_m(), kReach);
+      if (all[i].length_m > 0) draw_circle(canvas_, at, all[i].length_m * map_.points_per_m(), kLassoReach);
       draw_body(canvas_, at);
       taken_.push_back({at.x - 5, at.y - 5, 10, 10});
     }
@@ -506,7 +506,7 @@ void add_body_words(Canvas& canvas, SceneLegend& legend, const std::vector<BodyO
                draw_body(canvas, {at.x + 5, at.y});
              });
   if (std::ranges::any_of(bodies, [](const BodyOfScene& body) { return body.length_m > 0; }))
-    legend.add_line(kReach, "up to here a lasso does not pull");
+    legend.add_line(kLassoReach, "up to here a lasso does not pull");
 }
 
 bool adds_a_patch(const std::vector<schema::Patch>& patches) {
