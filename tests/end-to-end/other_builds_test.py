@@ -77,13 +77,14 @@ def newer_files_are_used_with_a_warning():
             "c.calibration.json": ["record", "-d", "sim:surface=E,speed=50mm/s,seed=3", "--time", "1s", "-o", "again", "--calibration", "c.calibration.json"],
             "study/plan.corpus.json": ["corpus", "workflow", "study", "--engine", "slurm", "-o", "job"],
             "s-P01.trials.jsonl": ["experiment", "prove", "s-P01"],
-            "s.protocol.json": ["experiment", "power", "s", "--weber", "15%,30%", "--spread", "23%"]}
+            "s.protocol.json": ["experiment", "check", "s"]}
     for file, verb in uses.items():
         change = with_journal_version if file.endswith(".jsonl") else with_version
         before = pathlib.Path(file).read_text()
         change(file, "1.73")
         said = tacto.run(*verb)[1]
-        assert sum(file in line and "1.73" in line for line in said.splitlines()) == 1, (file, said)
+        stem = file.split(".")[0]  # a verb may name the file by it
+        assert sum(stem in line and "1.73" in line for line in said.splitlines()) == 1, (file, said)
         for output in ("again.json", "again.wav", "job"):
             pathlib.Path(output).unlink(missing_ok=True)
         change(file, "1.0")
