@@ -35,6 +35,7 @@ enum class SceneLayerKind : uint16_t {
   cylinder = 18,
   quadric = 19
 };
+inline constexpr uint16_t kSceneLayerKinds = 9;  ///< of the plane, from 0 on
 
 /// Whether a layer is a piece: a solid in space. In a block either all layers are pieces or none is.
 constexpr bool is_piece(SceneLayerKind kind) noexcept {
@@ -42,7 +43,7 @@ constexpr bool is_piece(SceneLayerKind kind) noexcept {
 }
 
 constexpr bool is_known(SceneLayerKind kind) noexcept {
-  return kind <= SceneLayerKind::field || is_piece(kind);
+  return static_cast<uint16_t>(kind) < kSceneLayerKinds || is_piece(kind);
 }
 
 /// The places of a layer's numbers, from its first one.
