@@ -41,7 +41,7 @@ Result<DeviceToRecord> open_sim_to_record(const std::string& uri) {
 }  // namespace
 
 Result<DeviceToRecord> open_device_to_record(const std::string& uri) {
-  if (uri.starts_with(kPlanarScheme))
+  if (is_planar(uri))
     return schema::fail(schema::ErrorKind::unsuitable, "a force device has no channels to record", uri,
                         "play a scene with force patches on it");
   if (uri.starts_with(kSimScheme)) return open_sim_to_record(uri);

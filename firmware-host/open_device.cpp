@@ -18,9 +18,10 @@ struct Scheme {
   schema::Result<std::unique_ptr<Device>> (*open)(const std::string& uri, std::string_view parameters);
 };
 
-constexpr Scheme kSchemes[] = {{"usb:", open_usb_device},       {"tty:", open_tty_device},
-                               {"comedi:", open_comedi_device}, {kPlanarScheme, open_planar_device},
-                               {"sim:", open_sim_device},       {"replay:", open_replay_device}};
+constexpr Scheme kSchemes[] = {{"usb:", open_usb_device},        {"tty:", open_tty_device},
+                               {"comedi:", open_comedi_device},  {kPlanarScheme, open_planar_device},
+                               {kArmScheme, open_planar_device}, {"sim:", open_sim_device},
+                               {"replay:", open_replay_device}};
 
 std::string schemes() {
   std::string list;

@@ -114,7 +114,7 @@ Result<void> check_only_tray(const Scene& scene, const std::string& where) {
     return fail(ErrorKind::unsuitable, "this scene has pieces in space, which a tray cannot play",
                 where + "#/pieces",
                 "name a force device: `render` and `explain` have --device, `play` has -d "
-                "sim:planar,device=arm");
+                "sim:arm");
   if (scene.patches.empty()) return {};
   return fail(ErrorKind::unsuitable, "this scene has force patches, which a tray cannot play",
               where + "#/patches",

@@ -17,7 +17,8 @@ std::string sim_text() {
          "Without paced=1 it runs faster than real time, and record needs --time or --strokes.\n"
          "\nsim:planar is an emulated force device, which plays scenes with force patches. Its keys:\n"
          "  device=  a preset or NAME.device.json; default: sandpaper-1990\n"
-         "  hand=    a preset or NAME.hand.json; default: none, the device moves along the path\n";
+         "  hand=    a preset or NAME.hand.json; default: none, the device moves along the path\n"
+         "sim:arm is the same with device=arm: three axes, for scenes with pieces in space.\n";
 }
 
 std::string devices_text() {
@@ -33,6 +34,7 @@ std::string devices_text() {
          "play\n"
          "  sim:KEY=VALUE,...       the emulated device; the keys: tactograph help sim\n"
          "  sim:planar,KEY=VALUE    the emulated force device, for scenes with force patches\n"
+         "  sim:arm,KEY=VALUE       the same with three axes, for scenes with pieces in space\n"
          "  replay:NAME             a recording as a device, as fast as possible\n"
          "  replay:NAME,paced=1     the same in real time\n"
          "tactograph scan lists the devices that answer.\n";

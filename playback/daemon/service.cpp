@@ -190,7 +190,7 @@ Result<std::unique_ptr<Service>> Service::open(const schema::DaemonConfig& confi
 
 Result<PlayerDevice> Service::open_device() {
   const std::string uri = paced(config_.device);
-  if (uri.starts_with(firmware_host::kPlanarScheme)) {
+  if (firmware_host::is_planar(uri)) {
     auto opened = open_force_device(uri, config_.finger_path, true);
     TACTO_TRY(opened);
     force_device_ = std::move(opened->about), force_hand_ = std::move(opened->hand);

@@ -266,7 +266,7 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
 }
 
 bool plays_forces(const std::string& what, const std::string& device_uri) {
-  if (device_uri.starts_with(firmware_host::kPlanarScheme)) return true;
+  if (firmware_host::is_planar(device_uri)) return true;
   if (!names_a_scene(what)) return false;
   const auto scene = schema::read_scene(what);
   return scene && (!scene->patches.empty() || !scene->pieces.empty());

@@ -175,7 +175,7 @@ Result<PlayerDevice> open_player_device(const std::string& uri, const std::optio
 }
 
 Result<ForceDevice> open_force_device(const std::string& uri, const std::string& path, bool repeated) {
-  const bool emulated = uri.starts_with(firmware_host::kPlanarScheme);
+  const bool emulated = firmware_host::is_planar(uri);
   auto player = open_player_device(uri, std::nullopt);
   TACTO_TRY(player);
   if (!player->client->description().axes)

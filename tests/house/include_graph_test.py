@@ -25,7 +25,7 @@ ROOMS = ["analysis", "capture", "data-schema", "firmware-host", "playback", "spa
 WALLS = {
     r"libusb": ["firmware-host/usb"],
     r"comedi(lib)?\.h": ["firmware-host/comedi"],
-    r"termios": ["firmware-host/tty", "data-schema/command"],
+    r"termios": ["firmware-host/tty", "data-schema/command", "firmware-host/examples"],
     r"fftw3": ["spatial/dsp"],
     r"sndfile": ["data-schema/wav"],
     r"nlohmann/|valijson/": ["data-schema"],
@@ -55,7 +55,7 @@ FILES = ["CMakeLists.txt", "README.md", "tactograph.cpp", "LICENSE", "CONTRIBUTI
          "packages.txt", "CMakePresets.json", ".gitignore", ".clang-format", ".clang-tidy"]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]', re.M)
-SPDX = {"firmware-host/core": "Apache-2.0", "firmware-host/boards": "Apache-2.0"}
+SPDX = {"firmware-host/core": "Apache-2.0", "firmware-host/boards": "Apache-2.0", "firmware-host/examples": "Apache-2.0"}
 
 
 def spelled_out(row):

@@ -44,6 +44,7 @@ MAY_INCLUDE = {
     "firmware-host/core/kernel": "firmware-host/core/wire",
     "firmware-host/core/scene": "firmware-host/core/{kernel wire}",
     "firmware-host/core/wire": "",
+    "firmware-host/examples": "firmware-host/core/firmware",
     "firmware-host/gadget":
         "data-schema/{base recording report} firmware-host/{core/firmware core/wire link sim/device tty}",
     "firmware-host/link":

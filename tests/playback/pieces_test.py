@@ -92,7 +92,7 @@ def a_played_scene_replays_to_the_bit():
     write_scene("room", *walls)
     turn = 2 * np.pi * TIME_S
     write_path("path.csv", np.column_stack([0.03 * np.sin(turn), 0.02 * np.cos(1.5 * turn) - 0.02, 0.012 * np.cos(2.5 * turn)]))
-    report = run_json("play", "room.scene.json", "-d", "sim:planar,device=arm", "--finger-path", "path.csv", "--onset", "0s", "-o", "played")
+    report = run_json("play", "room.scene.json", "-d", "sim:arm", "--finger-path", "path.csv", "--onset", "0s", "-o", "played")
     assert report["lost_ticks"] == 0 and report["ticks"] >= 2000, report
     again = run_json("replay", "played")
     assert again["same_to_the_bit"] is True and again["ticks_compared"] == report["ticks"], again

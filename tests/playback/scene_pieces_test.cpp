@@ -319,6 +319,56 @@ TEST(ScenePiecesTest, ARandomHandFallsThroughNothing) {
   }
 }
 
+// Cones, cavities, saddles and their complements bend towards the point: the passes of a tick may end inside,
+// and the ghost has to stay outside all the same. A ghost that begins inside is moved out in the first ticks.
+TEST(ScenePiecesTest, ARandomHandFallsThroughNoQuadric) {
+  constexpr double kBend = 1 / (0.03 * 0.03);
+  const std::array<double, 10> cavity = {-kBend, -2 * kBend, -kBend, 0, 0, 0, 0, 0, 0, 1},
+                               saddle = {20, -20, 0, 0, 0, 0, 0, 0, 1, 0};
+  const std::vector<std::vector<std::array<double, 10>>> scenes = {
+      {{1, 1, -0.3, 0, 0, 0, 0, 0, 0, 0}},
+      {{-1, -1, 0.3, 0, 0, 0, 0, 0, 0, 0}},
+      {{-kBend, -kBend, kBend, 0, 0, 0, 0, 0, 0, 1}},
+      {{kBend, kBend, -kBend, 0, 0, 0, 0, 0, 0, 1}},
+      {{1, 1, 1e4, 0, 0, 0, 0, 0, 0, -1e-3}},
+      {cavity},
+      {saddle},
+      {cavity, saddle}};
+  for (const auto& scene : scenes) {
+    std::vector<Piece> pieces;
+    for (const auto& coefficients : scene) {
+      pieces.push_back(piece_at(PieceShape::quadric, 0, 0, 1e-9 * static_cast<double>(pieces.size())));
+      pieces.back().coefficients = coefficients;
+    }
+    PiecesOnArm arm(scene_of(pieces));
+    core::GhostPoint ghost;
+    const float steps[3] = {1e-5F, 1e-5F, 1e-5F};
+    std::mt19937_64 random(1995);
+    const auto anywhere = [&] { return 0.12 * (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5); };
+    Space3 hand = {0.004, 0.002, 0.001}, goal = hand;
+    double deepest_m = 0;
+    for (int tick = 0; tick < 50'000; ++tick) {
+      if (tick % 50 == 49) goal = {anywhere(), anywhere(), anywhere()};
+      if (tick % 1000 == 999) hand = {anywhere(), anywhere(), anywhere()};
+      for (std::size_t i = 0; i < 3; ++i) hand[i] += 0.05 * (goal[i] - hand[i]);
+      const auto counts = arm.counts_at(hand);
+      ghost.force(arm.scene.view(), arm.live.data(), {{counts[0], counts[1], counts[2]}, {}}, steps,
+                  arm.setup);
+      if (tick < 100) continue;
+      const core::SpacePlace& at = ghost.place();
+      const double x = at.counts[0] * 1e-5 + double{at.rest_m.x},
+                   y = at.counts[1] * 1e-5 + double{at.rest_m.y},
+                   z = at.counts[2] * 1e-5 + double{at.rest_m.z};
+      for (const auto& c : scene) {
+        const double value = c[0] * x * x + c[1] * y * y + c[2] * z * z + c[8] * z + c[9];
+        const double slope = std::hypot(2 * c[0] * x, 2 * c[1] * y, 2 * c[2] * z + c[8]);
+        deepest_m = std::max(deepest_m, -value / std::max(slope, 1e-3));
+      }
+    }
+    EXPECT_LT(deepest_m, 2e-6) << scene[0][2] << " " << scene[0][9];  // GhostPoint states 1e-6
+  }
+}
+
 TEST(ScenePiecesTest, SinglePrecisionIsNearDoublePrecision) {
   for (const auto contact : {schema::PieceContact::ghost, schema::PieceContact::add}) {
     std::vector<Piece> pieces = {plane_at(0, 0, 0.0125, {0.1, 0, 1}), sphere_at(0.02, 0, 0, 0.015),

@@ -7,6 +7,7 @@ namespace tacto::core {
 namespace {
 
 constexpr float kTouch_m = 1e-7F;     // nearer, a piece is touched
+constexpr float kInside_m = 1e-6F;    // deeper is not rounding
 constexpr float kSettled_m = 1e-9F;   // a shorter way is none
 constexpr float kRounding_m = 2e-8F;  // of a plane's place: 24 bits of 0.3 m
 constexpr float kSameSide = 0.8F;     // cosine of the largest turn of the normal in one step
@@ -156,6 +157,16 @@ float most_force_n(const ForceSetup& setup, SpaceVector normal) noexcept {
   return most_n;
 }
 
+bool is_inside(const SceneView& scene, const SpacePlace& place, const float (&step_m)[3]) noexcept {
+  for (uint32_t i = 0; i < scene.layer_count; ++i) {
+    const PieceTable& table = piece_of(scene, i);
+    if (surface_at(kind_of(scene, i), table, difference(place, origin_of(table), step_m)).distance_m <
+        -kInside_m)
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void GhostPoint::move(SpaceVector way, const float (&step_m)[3]) noexcept {
@@ -202,16 +213,20 @@ bool GhostPoint::settle_on(const SceneView& scene, const SpacePlace& hand, const
 
 GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace& hand,
                                        const float (&step_m)[3]) noexcept {
-  Holding holding;
+  Holding holding, of_last;
+  SpacePlace last = ghost_;  // at which the ghost was outside
+  bool outside = false;
   uint32_t touched = 0;
   static_assert(kMostPieces <= 32);
   for (int pass = 0; pass < kGhostPasses; ++pass) {
     const SpaceVector straight = difference(hand, ghost_, step_m);
     Planes planes;
+    float nearest_m = kFarthestInSpace_m;
     for (uint32_t i = 0; i < scene.layer_count; ++i) {
       const PieceTable& table = piece_of(scene, i);
       const PieceSurface at =
           surface_at(kind_of(scene, i), table, difference(ghost_, origin_of(table), step_m));
+      nearest_m = at.distance_m < nearest_m ? at.distance_m : nearest_m;
       if (at.distance_m <= kTouch_m) touched |= UINT32_C(1) << i;
       if (touched >> i & 1) planes.add({i, at.distance_m, normal_or(at.normal, straight)});
     }
@@ -223,6 +238,7 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
       holding.normal[i] = plane.normal;
       holding.depth_m[i] = goal.push_m[i];
     }
+    if (nearest_m >= -kInside_m) last = ghost_, of_last = holding, outside = true;
     if (goal.count == 1 && settle_on(scene, hand, step_m, touched, holding)) break;
     SpaceVector way = goal.way;
     // A surface that bends towards the ghost: a shorter step, so that it stays near.
@@ -254,7 +270,9 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
     move(part * way, step_m);
     if (met == scene.layer_count && length(way) <= kSettled_m) break;
   }
-  return holding;
+  if (!outside || !is_inside(scene, ghost_, step_m)) return holding;
+  ghost_ = last;
+  return of_last;
 }
 
 SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHand& hand,

@@ -25,10 +25,11 @@ struct SpaceHand {
 /// curved piece it goes to the place of the surface nearest to the hand at once (nearest_on()), if that is
 /// less than about 37 degrees of the normal away and nothing is between. So it passes through no surface:
 /// what it touches it leaves outwards only, and what it does not touch is met in closed form. Rounding leaves
-/// it at most 1e-7 m inside of a piece; there it is moved out.
-/// The force is the sum over the holding planes of wall_force() along the normal, the depth of each its share
-/// of the way from hand to ghost (the multiplier of its plane): of equal stiffness K together K (ghost -
-/// hand). `contact: add`: each piece by itself, from its nearest face.
+/// it at most 1e-6 m inside of a piece; there it is moved out. Where the passes end deeper (a quadric that
+/// bends towards it, and a hand that is far away), it stays at the last place outside, and goes on in the
+/// next tick. The force is the sum over the holding planes of wall_force() along the normal, the depth of
+/// each its share of the way from hand to ghost (the multiplier of its plane): of equal stiffness K together
+/// K (ghost - hand). `contact: add`: each piece by itself, from its nearest face.
 class GhostPoint {
  public:
   /// Without a place: the next hand is the ghost.

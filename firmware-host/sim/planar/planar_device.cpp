@@ -141,7 +141,7 @@ Result<void> PlanarDevice::start() {
 
 Result<std::unique_ptr<PlanarDevice>> make_planar_device(const std::string& uri,
                                                          std::string_view parameters) {
-  std::string device_name = "sandpaper-1990", hand_name, paced = "0";
+  std::string device_name = uri.starts_with(kArmScheme) ? "arm" : "sandpaper-1990", hand_name, paced = "0";
   while (!parameters.empty()) {
     const std::string_view part = parameters.substr(1, parameters.find(',', 1) - 1);
     const std::string_view key = part.substr(0, part.find('='));

@@ -85,8 +85,14 @@ class PlanarDevice final : public Device {
 };
 
 inline constexpr std::string_view kPlanarScheme = "sim:planar";
+/// The same, with the device `arm` of three axes as its default.
+inline constexpr std::string_view kArmScheme = "sim:arm";
 
-/// `parameters` follows "sim:planar": ",device=NAME,hand=NAME,paced=1"; default: sandpaper-1990, no hand, as
+constexpr bool is_planar(std::string_view uri) {
+  return uri.starts_with(kPlanarScheme) || uri.starts_with(kArmScheme);
+}
+
+/// `parameters` follows the scheme: ",device=NAME,hand=NAME,paced=1"; default: sandpaper-1990, no hand, as
 /// fast as possible. Errors: usage, for another key; as read_device, read_hand.
 schema::Result<std::unique_ptr<PlanarDevice>> make_planar_device(const std::string& uri,
                                                                  std::string_view parameters);

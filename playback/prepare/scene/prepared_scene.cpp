@@ -480,7 +480,7 @@ Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& wher
                                     const std::optional<schema::Hand>& hand) {
   if (!scene.pieces.empty()) return prepare_pieces(scene, where, device, rate_hz, hand);
   if (scene.patches.empty())
-    return fail(ErrorKind::unsuitable, "this scene has neither force patches nor pieces", where,
+    return fail(ErrorKind::unsuitable, "this scene has no force patches and no pieces", where,
                 "a scene of a tray is played with --transducer");
   TACTO_TRY(check_bodies(scene, where, rate_hz));
   PreparedScene base;
