@@ -17,7 +17,7 @@ import numpy as np
 import tacto
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "fuzz"))
-from xdf_maker import boundary, chunk, clock_offset, file_header, footer, header, samples, varied
+from xdf_maker import boundary, chunk, clock_offset, file_header, footer, header, samples
 
 USAGE, MALFORMED, UNSUITABLE = 2, 4, 5
 ROWS = 3000
