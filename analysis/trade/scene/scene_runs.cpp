@@ -122,11 +122,11 @@ void add_differences(const ForceRows& forces, const ForceRows& reference, double
 }
 
 std::vector<double> tick_costs_ns(const std::vector<TimedScene>& scenes) {
-  constexpr int kBatches = 15;
+  constexpr int kRunBatches = 15;
   std::vector<std::function<void()>> works;
   for (const TimedScene& scene : scenes)
     works.emplace_back([timed = std::make_shared<TimedKernel>(scene)] { timed->run(); });
-  return median_costs_ns(works, kTimedTicks, kBatches);
+  return median_costs_ns(works, kTimedTicks, kRunBatches);
 }
 
 }  // namespace tacto::analysis
