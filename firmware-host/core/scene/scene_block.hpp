@@ -36,7 +36,6 @@ enum class SceneLayerKind : uint16_t {
   cylinder = 18,
   quadric = 19
 };
-inline constexpr uint16_t kSceneLayerKinds = 9;  ///< of the plane, from 0 on
 
 /// Whether a layer is a piece: a solid in space. In a block either all layers are pieces or none is.
 constexpr bool is_piece(SceneLayerKind kind) noexcept {
