@@ -100,7 +100,8 @@ def a_played_scene_replays_to_the_bit():
     table = np.genfromtxt("played.csv", delimiter=",", names=True)
     force = forces("room")[2]
     for i, axis in enumerate("xyz"):
-        assert np.abs(table[f"force_{axis}_n"][:2000] - force[:2000, i]).max() < 1e-6, axis
+        # Single precision: 1e-6 of the 10 N that the arrest reaches.
+        assert np.abs(table[f"force_{axis}_n"][:2000] - force[:2000, i]).max() < 1e-5, axis
     assert np.abs(force).max(axis=0).min() > 0.1, "a force along each axis"
 
 
