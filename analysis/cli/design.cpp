@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "analysis/cli/results_output.hpp"
@@ -159,7 +160,10 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
     row.add("stiffness_n_per_m", piece.stiffness_n_per_m).add("damping_n_s_per_m", piece.damping_n_s_per_m);
     row.add("limit_n_per_m", playback::stiffness_limit_of(request.device, request.rate_hz, request.hand,
                                                           piece.damping_n_s_per_m, true));
-    row.add("growth_per_tick", growth);
+    // Until a motion is e times as small, or as large.
+    if (growth != 1)
+      row.add(growth < 1 ? "decay_time_s" : "growth_time_s",
+              1 / (request.rate_hz * std::abs(std::log(growth))));
     rows.push_back(std::move(row));
   }
   Report report;

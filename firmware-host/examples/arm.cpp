@@ -69,6 +69,12 @@ void read_axes(void* board, std::int32_t* counts) noexcept {
   }
 }
 
+std::int32_t height(void* board) noexcept {
+  std::int32_t counts[3];
+  read_axes(board, counts);
+  return counts[2];
+}
+
 void write_forces(void* board, const float* force_n) noexcept {
   board_of(board).arm.write({force_n[0], force_n[1], force_n[2]});
 }
@@ -76,8 +82,11 @@ void write_forces(void* board, const float* force_n) noexcept {
 Hal hal_of(ArmBoard& board) {
   Hal hal;
   hal.board = &board;
-  hal.read_encoder = [](void* /*board*/) noexcept { return std::int32_t{0}; };
-  hal.read_channels = [](void* /*board*/, std::int32_t* /*codes*/) noexcept { return true; };
+  hal.read_encoder = [](void* b) noexcept { return height(b); };
+  hal.read_channels = [](void* b, std::int32_t* codes) noexcept {
+    codes[0] = height(b);
+    return true;
+  };
   hal.write_drive = [](void* /*board*/, float /*volts*/) noexcept {};
   hal.read_axes = read_axes;
   hal.write_forces = write_forces;
@@ -118,6 +127,13 @@ int main() {
   axes.peak_n = 10, axes.continuous_n = 3, axes.slew_n_per_s = 20000;
   for (std::uint8_t i = 0; i < 3; ++i)
     axes.axes[i] = {static_cast<wire::AxisAlong>(i), {}, 10, 3, static_cast<float>(kStep_m), -0.1, 0.1};
+  wire::Channel z;  // a device has at least one channel that `record` can read
+  std::strcpy(z.name, "z");
+  std::strcpy(z.quantity, "position");
+  std::strcpy(z.unit, "m");
+  std::strcpy(z.source, "SDK");
+  z.scale = kStep_m;
+  z.range_min = z.range_max = z.native_rate_hz = std::nan("");
   std::vector<float> memory(1U << 16);
   Board about;
   std::strcpy(about.about.name, "example arm");
@@ -127,6 +143,7 @@ int main() {
   about.about.default_rate_millihertz = about.about.least_rate_millihertz = about.about.most_rate_millihertz =
       1000 * kRate_hz;
   about.profile_memory = memory.data(), about.profile_samples = static_cast<std::uint32_t>(memory.size());
+  about.channels = &z, about.channel_count = 1;
   about.axes = &axes;
   Firmware firmware(about, hal_of(board));
   std::printf("tty:%s\n", ptsname(board.port));

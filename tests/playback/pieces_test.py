@@ -6,6 +6,7 @@ import pathlib
 
 import numpy as np
 from scipy.optimize import minimize
+from scipy.signal import cont2discrete
 
 import tacto
 from tacto import error_of, run, run_json
@@ -100,18 +101,33 @@ def a_played_scene_replays_to_the_bit():
     table = np.genfromtxt("played.csv", delimiter=",", names=True)
     force = forces("room")[2]
     for i, axis in enumerate("xyz"):
-        assert np.abs(table[f"force_{axis}_n"][:2000] - force[:2000, i]).max() < 1e-6, axis
+        # Single precision: 1e-6 of the 10 N that the arrest reaches.
+        assert np.abs(table[f"force_{axis}_n"][:2000] - force[:2000, i]).max() < 1e-5, axis
     assert np.abs(force).max(axis=0).min() > 0.1, "a force along each axis"
+
+
+def decay_time_s(stiffness, damping, integral):
+    """Of place, speed and integral from tick to tick: the arm's 0.15 kg and 0.5 N s/m, exactly discretised by SciPy."""
+    step, push, *_ = cont2discrete((np.array([[0, 1], [0, -0.5 / 0.15]]), np.array([[0], [1 / 0.15]]), np.eye(2), np.zeros((2, 1))), 1 / RATE_HZ)
+    grown = np.array([integral / RATE_HZ, 0, 1])
+    force = np.array([-stiffness - grown[0], -damping, -1])
+    motion = np.vstack([np.hstack([step, np.zeros((2, 1))]) + push * force, grown])
+    values = np.abs(np.linalg.eigvals(motion if integral > 0 else motion[:2, :2]))
+    return -1 / RATE_HZ / np.log(values.max())
 
 
 def explain_and_design_judge_walls():
     write_scene("walls", piece("soft", "plane", damping_n_s_per_m=4))
     said = run_json("explain", "walls.scene.json", "--device", "arm")
     assert said["fits"] is True and said["pieces"][0]["piece"] == "soft" and said["block_bytes"] == 20 + 32 + 8 + 9 * 4 + 64, said
-    assert run_json("design", "walls.scene.json", "--device", "arm")["pieces"][0]["verdict"] == "stable"
+    soft = run_json("design", "walls.scene.json", "--device", "arm")["pieces"][0]
+    assert soft["verdict"] == "stable" and abs(soft["decay_time_s"] / decay_time_s(STIFFNESS, 4, 0) - 1) < 1e-6, soft
+    write_scene("walls", piece("steady", "plane", damping_n_s_per_m=4, integral_n_per_m_s=5000, integral_bound_n=5))
+    steady = run_json("design", "walls.scene.json", "--device", "arm")["pieces"][0]
+    assert abs(steady["decay_time_s"] / decay_time_s(STIFFNESS, 4, 5000) - 1) < 1e-6, steady
     write_scene("walls", piece("hard", "plane", damping_n_s_per_m=4) | {"stiffness_n_per_m": 2e4})
     stiff = run_json("design", "walls.scene.json", "--device", "arm", code=UNSTABLE)["pieces"][0]
-    assert stiff["verdict"] == "unstable" and stiff["limit_n_per_m"] < 2e4 and stiff["growth_per_tick"] > 1, stiff
+    assert stiff["verdict"] == "unstable" and stiff["limit_n_per_m"] < 2e4 and 0 < stiff["growth_time_s"] < 1, stiff
 
 
 def what_cannot_be_is_refused():

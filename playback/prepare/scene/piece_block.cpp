@@ -134,7 +134,7 @@ Matrix wall_motion(const Piece& wall, const schema::DeviceAxis& axis, const sche
   Matrix motion(kForces + late, std::vector<double>(kForces + late));
   std::vector<double> force(kForces + late), integral(kForces + late);
   integral[kPlace] = wall.integral_n_per_m_s * tick_s;
-  integral[kIntegral] = 1 - wall.integral_leak_per_s * tick_s;
+  integral[kIntegral] = wall.integral_n_per_m_s > 0 ? 1 - wall.integral_leak_per_s * tick_s : 0;
   force[kPlace] = -wall.stiffness_n_per_m - integral[kPlace];
   force[kSpeed] = -wall.damping_n_s_per_m;
   force[kIntegral] = -integral[kIntegral];
