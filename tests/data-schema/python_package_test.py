@@ -53,19 +53,19 @@ def the_wheel_plays():
 
 def the_readme_starts_a_daemon():
     """Its first line writes the configuration with which the second starts the daemon; that of the daemon's help starts it, too."""
-    daemon_test.prepare_files()
+    run_daemon.prepare_files()
     pathlib.Path("tactographd.json").unlink()
     write, start = example("Start a daemon").split("\n")
     assert start == "tactographd --config tactographd.json &", start
     subprocess.run(["bash", "-c", write], check=True)
-    with daemon_test.daemon():
+    with run_daemon.daemon():
         done = subprocess.run(["/usr/bin/python3", "-c", example("Play") + "\nprint(len(played.time))"],
                               capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(ROOT / "data-schema/python")})
     assert done.returncode == 0 and int(done.stdout.split()[-1]) > 1000, done
-    shown = subprocess.run([daemon_test.DAEMON, "--help"], capture_output=True, text=True)
+    shown = subprocess.run([run_daemon.DAEMON, "--help"], capture_output=True, text=True)
     config, = (line for line in (shown.stdout + shown.stderr).split("\n") if '"kind"' in line)
     pathlib.Path("tactographd.json").write_text(config)
-    with daemon_test.daemon():
+    with run_daemon.daemon():
         pass
 
 

@@ -105,7 +105,7 @@ def what_cannot_be_recorded_is_refused():
         assert again.returncode == CANNOT_WRITE, again
     with board("newer", BOARD, "version=2.0"):
         refused(OTHER_VERSION, "tty:newer", says=["2.0"])
-    with board("minor", BOARD, "--fault", "version=1.4"):
+    with board("minor", BOARD, "version=1.4"):
         said = tacto.run("record", "-d", "tty:minor", "--time", "0.5s", "-o", "minor")[1]
         assert sum("tty:minor" in line and "1.4" in line for line in said.splitlines()) == 1, said
     refused(NOT_FOUND, "tty:absent", says=["absent"])

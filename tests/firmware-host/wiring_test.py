@@ -10,7 +10,7 @@ import pathlib
 import tacto
 
 GOOD = {
-    "kind": "wiring", "version": "1.0", "name": "oak bench", "card": "/nonexistent/comedi0", "rate_hz": 10000,
+    "kind": "wiring", "version": "1.0", "name": "oak bench", "card": "/dev/nonexistent-comedi0", "rate_hz": 10000,
     "inputs": [
         {"input": 0, "quantity": "tangential_force", "range_v": [-5, 5], "reference": "differential"},
         {"input": 2, "quantity": "position", "range_v": [-10, 10], "reference": "ground", "per_volt": 0.002, "at_zero_volt": 0.01},
