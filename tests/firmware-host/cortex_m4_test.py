@@ -12,7 +12,7 @@ import sys
 from measured import measured
 
 CYCLES = 168_000_000 // 20_000  # 20 kHz at 168 MHz
-SCENE_CYCLES = 168_000_000 // 4_000  # force devices tick at 1 to 4 kHz
+SCENE_CYCLES = 168_000_000 // 5_000  # force devices tick at 1 to 4 kHz
 CYCLES_PER_INSTRUCTION = 3      # more than this core's instruction mix needs
 
 
