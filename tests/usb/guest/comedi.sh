@@ -19,15 +19,17 @@ take saw saw 2s
 say "a rate that the driver changes"
 take fast fast 200ms
 say "the program is stopped until the card's buffer runs over; another program asks for the card"
-take saw stopped 100s &
+"$TACTOGRAPH" record -d comedi:saw -o stopped --time 100s --json >$results/stopped.out 2>$results/stopped.err &
+pid=$!
 within 60 at_work stopped
 sleep 2
 take saw second 100ms
-pid=$(grep -l "comedi:saw" /proc/[0-9]*/cmdline 2>/dev/null | cut -d/ -f3 | while read -r p; do [ "$(readlink /proc/$p/exe)" = "$TACTOGRAPH" ] && echo $p; done)
 kill -STOP $pid
 sleep 8
 kill -CONT $pid
-wait
+code=0
+wait $pid || code=$?
+echo $code >$results/stopped.code
 say "a card that is not there"
 take none none 100ms
 cp saw.json saw.wav fast.json fast.wav stopped.json stopped.wav $results/
