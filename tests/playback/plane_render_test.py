@@ -157,15 +157,15 @@ def a_filtered_step_rests_and_a_steeper_one_swings():
     limit = min((1 - e) / q, 2 * (1 + e) / (p - q) if p > q else np.inf)
     bare = np.sqrt(0.242 * kappa * depth / limit)
 
-    def swing(margin, device="free", hand="push", hand_stiffness=0.1, kappa=kappa):
-        """RMS of the last quarter, m, and sigma. The highest place is at the centre of the patch, so a step rises a quarter of a period before it."""
-        write_scene("step", patch(x_m=period / 4, width_m=0.1, layers=[grooves("square", period, depth, kappa, filter_margin=margin)]))
+    def swing(margin, device="free", hand="push", hand_stiffness=0.1, kappa=kappa, at=0.0):
+        """RMS of the last quarter, m, and sigma. The highest place is at the centre of the patch, so a step rises a quarter of a period before it: at `at`, m."""
+        write_scene("step", patch(x_m=at + period / 4, width_m=0.1, layers=[grooves("square", period, depth, kappa, filter_margin=margin)]))
         # The soft hand's mass of 1e-4 kg is not in the limit of the free device.
         told = run_json("explain", "step.scene.json", "--device", device, *(("--hand", hand) if hand != "push" else ()))
         sigma = told["layers"][0]["filter_m"]
         assert abs(sigma / (margin * np.sqrt(0.242 * kappa * depth / told["stiffness_limit_n_per_m"])) - 1) < 1e-5, told
         push = kappa * depth * np.exp(-0.5) / (np.sqrt(2 * np.pi) * sigma)
-        write_path("push.csv", {"time_s": [0, 0.001, 40], "x_m": [-sigma, -sigma + push / hand_stiffness, -sigma + push / hand_stiffness]})
+        write_path("push.csv", {"time_s": [0, 0.001, 40], "x_m": [at - sigma, at - sigma + push / hand_stiffness, at - sigma + push / hand_stiffness]})
         run("render", "step.scene.json", "--finger-path", "push.csv", "--device", device, "--hand", hand, "-o", "step.csv", "--force")
         place = np.genfromtxt("step.csv", delimiter=",", names=True)["x_m"]
         return np.std(place[3 * len(place) // 4:]), sigma, told["stiffness_limit_n_per_m"]
@@ -178,11 +178,15 @@ def a_filtered_step_rests_and_a_steeper_one_swings():
     print(f"  a step with sigma 1.03 and 0.97 times the limit: RMS swing {swings[1.03]:.2g} and {swings[0.97]:.2g} sigma")
     # At rest a motion of the beginning has become smaller by e^(-0.35 * 30): its damping is 6 % of 1.17 N s/m on 0.1 kg. The swing is the issue's.
     assert swings[1.03] < 1e-4 and abs(swings[0.97] - 0.35) < 0.05, swings
-    # The rounding of an encoder of 10 um moves it at the bare limit, and not with the margin of 1.5: the figures of the issue.
+    # The rounding of an encoder of 10 um moves it at the bare limit, and not with the margin of 1.5: the figures of the issue, RMS. How much depends on
+    # where between two counts the place of rest is, so the median of many places is the figure. Over 64 of them, at 1.03, the same loop iterated in NumPy
+    # (the plant's zero-order hold, the step as a Gaussian, rounded places) finds 0.46 to 1.28 counts, half of them within 0.15 of 0.95.
     write_line("coarse", mass=mass - 1e-4, viscous=viscous, rate=rate, travel=10, step=1e-5)
-    counts = {margin: swing(margin, "coarse")[0] / 1e-5 for margin in (1.03, 0.97, 1.5)}
-    print(f"  with an encoder of 10 um: {counts[1.03]:.2g}, {counts[0.97]:.2g} and, with the margin, {counts[1.5]:.2g} counts")
-    assert 0.5 < counts[1.03] < 1.5 and 4 <= counts[0.97] <= 11 and counts[1.5] < 0.5, counts
+    counts = {margin: sorted(swing(margin, "coarse", at=1e-5 * place / places)[0] / 1e-5 for place in range(places))
+              for margin, places in ((1.03, 32), (0.97, 8), (1.5, 8))}
+    for margin, found in counts.items():
+        print(f"  with an encoder of 10 um, sigma {margin} times the limit: {found[0]:.2g} to {found[-1]:.2g}, median {np.median(found):.2g} counts RMS")
+    assert abs(np.median(counts[1.03]) - 0.9) < 0.15 and 4 <= np.median(counts[0.97]) <= 11 and counts[1.5][-1] < 0.5, counts
     # In a hand, with its own limit, the boundary is the same; the surface is steeper, because no filter is below a 76th of the period.
     write_hand("firm", 0.4, 2, 100)
     held = {margin: swing(margin, "free", "firm", 100, 4 * kappa) for margin in (1.03, 0.97)}
