@@ -2,7 +2,9 @@
 // The firmware on a test board, controlled by messages.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -85,6 +87,19 @@ class FirmwareBench {
       expect_ok(code(chunk));
     }
     expect_ok(code(wire::ProfileEnd{wire::crc32c(bytes, target.size() * 4)}));
+  }
+  /// Uploads the block of a scene; the answer to its last part, or the first that is not ok.
+  wire::AnswerCode upload_scene(const void* block, std::size_t bytes, std::size_t part = 32) {
+    wire::AnswerCode last = wire::AnswerCode::ok;
+    for (std::size_t first = 0; first < bytes && last == wire::AnswerCode::ok; first += part) {
+      wire::ScenePart message{};
+      message.bytes = static_cast<std::uint32_t>(bytes);
+      message.first = static_cast<std::uint32_t>(first);
+      message.count = static_cast<std::uint16_t>(std::min(part, bytes - first));
+      std::memcpy(message.data, static_cast<const char*>(block) + first, message.count);
+      last = code(message);
+    }
+    return last;
   }
   void arm_profile(float value) {
     expect_ok(code(kTestLimits));

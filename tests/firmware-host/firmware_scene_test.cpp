@@ -35,18 +35,7 @@ Block block_of(float stiffness) {
 struct SceneBench : FirmwareBench {
   SceneBench() : FirmwareBench(WithForces{}) {}
 
-  AnswerCode upload(const Block& block, std::size_t part = 32) {
-    AnswerCode last = AnswerCode::ok;
-    for (std::size_t first = 0; first < sizeof block && last == AnswerCode::ok; first += part) {
-      wire::ScenePart message{};
-      message.bytes = sizeof block;
-      message.first = static_cast<std::uint32_t>(first);
-      message.count = static_cast<std::uint16_t>(std::min(part, sizeof block - first));
-      std::memcpy(message.data, reinterpret_cast<const char*>(&block) + first, message.count);
-      last = code(message);
-    }
-    return last;
-  }
+  AnswerCode upload(const Block& block) { return upload_scene(&block, sizeof block); }
   void play_spring(float stiffness) {
     expect_ok(code(kLimits));
     expect_ok(upload(block_of(stiffness)));

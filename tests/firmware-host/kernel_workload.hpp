@@ -128,6 +128,7 @@ inline constexpr uint32_t kSceneFingerprint = 4093480433;
 /// hand in the plane whose speed varies between rest and 60 counts per tick; all limits are reached.
 class SceneWorkload {
  public:
+  static constexpr uint16_t kKinds[12] = {1, 0, 1, 0, 2, 3, 4, 5, 6, 7, 8, 9};
   SceneWorkload() noexcept {
     block_.header.patches = 4, block_.header.layers = 12, block_.header.numbers = kNumbers;
     block_.header.table_words = (sizeof block_.grooves + sizeof block_.noise + sizeof block_.relief +
@@ -137,9 +138,8 @@ class SceneWorkload {
     block_.patches[1] = {0, 0, 1, 0, 0.1F, 0.1F, 1, 2, 0};
     block_.patches[2] = {0, 0.01F, 0.6F, -0.8F, 0.1F, 0.03F, 3, 4, 1};
     block_.patches[3] = {-0.01F, 0, 0.8F, -0.6F, 0.03F, 0.1F, 7, 5, 1};
-    const uint16_t kinds[12] = {1, 0, 1, 0, 2, 3, 4, 5, 6, 7, 8, 9},
-                   firsts[12] = {0, 1, 4, 5, 8, 10, 12, 13, 26, 37, 39, 41};
-    for (int i = 0; i < 12; ++i) block_.layers[i] = {kinds[i], firsts[i], 0};
+    const uint16_t firsts[12] = {0, 1, 4, 5, 8, 10, 12, 13, 26, 37, 39, 41};
+    for (int i = 0; i < 12; ++i) block_.layers[i] = {kKinds[i], firsts[i], 0};
     block_.layers[5].table = sizeof block_.grooves / sizeof(uint32_t);
     block_.layers[6].table = (sizeof block_.grooves + sizeof block_.noise) / sizeof(uint32_t);
     constexpr uint32_t kBodies =
@@ -234,6 +234,7 @@ class SceneWorkload {
     return output.force_n[0] + output.force_n[1];
   }
   uint32_t flags() const noexcept { return flags_; }
+  const auto& block() const noexcept { return block_; }
 
  private:
   static constexpr uint32_t kNumbers = 13 + 13 + 11 + 2 + 2 + 1;

@@ -14,15 +14,17 @@ inline constexpr uint32_t kPiecesFingerprint = 317246980;
 /// A floor, a plate on edge, a ball, a pipe and an ellipsoid, and a hand that is pushed through them at up to
 /// 60 counts per tick; walls with dampers, arrest and integral; all limits are reached.
 class PiecesWorkload {
+  static constexpr uint32_t kPieces = 5, kWords = core::kPieceNumbers + core::kWallStateWords;
+
  public:
+  static constexpr uint16_t kKinds[kPieces] = {16, 16, 17, 18, 19};
   PiecesWorkload() noexcept {
     block_.header.patches = 1, block_.header.layers = kPieces;
     block_.header.numbers = kPieces * kWords;
     block_.header.table_words = kPieces * sizeof(core::PieceTable) / sizeof(uint32_t);
     block_.patch = {0, 0, 1, 0, 1000, 1000, 0, kPieces, 0};
-    const uint16_t kinds[kPieces] = {16, 16, 17, 18, 19};
     for (uint32_t i = 0; i < kPieces; ++i) {
-      block_.layers[i] = {kinds[i], static_cast<uint16_t>(i * kWords),
+      block_.layers[i] = {kKinds[i], static_cast<uint16_t>(i * kWords),
                           i * static_cast<uint32_t>(sizeof(core::PieceTable) / sizeof(uint32_t))};
       const float wall[6] = {2000, 4, 0.1F, 3000, 2, 0.5F};
       for (uint32_t j = 0; j < 6; ++j) block_.numbers[i * kWords + j] = wall[j];
@@ -63,7 +65,6 @@ class PiecesWorkload {
   uint32_t flags() const noexcept { return flags_; }
 
  private:
-  static constexpr uint32_t kPieces = 5, kWords = core::kPieceNumbers + core::kWallStateWords;
   struct Block {
     core::SceneHeader header;
     core::ScenePatch patch;

@@ -4,15 +4,11 @@
 #include "playback/host-loop/host_loop.hpp"
 
 #include <gtest/gtest.h>
-#include <linux/seccomp.h>
-#include <sys/prctl.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cmath>
-#include <functional>
 
 #include "firmware-host/core/wire/crc32c.hpp"
 #include "firmware-host/sim/device/sim_device.hpp"
@@ -21,6 +17,7 @@
 #include "playback/strokes/stroke_report.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 #include "tests/firmware-host/allocation_hook.hpp"
+#include "tests/firmware-host/seccomp.hpp"
 #include "tests/measured.hpp"
 
 namespace tacto::playback {
@@ -286,27 +283,15 @@ TEST_F(HostBoardTicks, AreGatedByTheForceThatTheDeviceStreams) {
   EXPECT_EQ(drive_under(0), 0);
 }
 
-// In strict mode the kernel kills a thread for any system call except read, write and exit.
-int status_under_seccomp(const std::function<bool()>& work) {
-  const pid_t child = fork();
-  if (child == 0) {
-    if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_STRICT) != 0) _exit(2);
-    syscall(SYS_exit, work() ? 0 : 1);
-  }
-  int status = -1;
-  waitpid(child, &status, 0);
-  return status;
-}
-
 TEST_F(HostBoardTicks, CallTheSystemForNothing) {
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer)
   GTEST_SKIP() << "ThreadSanitizer calls the system by itself";
 #endif
 #endif
-  const int calling = status_under_seccomp([] { return getppid() > 0; });
+  const int calling = tests::status_under_seccomp([] { return getppid() > 0; });
   ASSERT_TRUE(WIFSIGNALED(calling)) << "the watch sees nothing";
-  const int ticking = status_under_seccomp([this] {
+  const int ticking = tests::status_under_seccomp([this] {
     float drive_v = 0;
     for (int i = 0; i < 1500; ++i) drive_v = tick_at(i);
     return std::abs(drive_v - 0.5F) < 1e-3F;
