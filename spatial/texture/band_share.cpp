@@ -30,7 +30,7 @@ schema::Result<BandShare> share_of_stroke(const TouchRecord& record, FilteredTra
   if (piece == record.pieces().end())
     return schema::fail(schema::ErrorKind::unsuitable, "frames are missing inside the stroke",
                         record.where());
-  const auto passed = filtered.values(*piece, frames);
+  const auto passed = filtered.values(record.source(), *piece, frames);
   TACTO_TRY(passed);
   std::vector<double> taken(frames.size());
   TACTO_TRY(record.source().read(Track::value, frames.begin, taken));
@@ -44,7 +44,7 @@ schema::Result<BandShare> share_of_stroke(const TouchRecord& record, FilteredTra
 
 schema::Result<BandShare> band_share(const TouchRecord& record, const TimeFilter& filter,
                                      std::span<const Stroke> strokes) {
-  FilteredTrack filtered(record.source(), record.header().sample_rate_hz, filter, {});
+  FilteredTrack filtered(record.header().sample_rate_hz, filter, {});
   BandShare worst;
   for (const Stroke& stroke : strokes) {
     const auto share = share_of_stroke(record, filtered, stroke.frames);
