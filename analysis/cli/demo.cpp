@@ -13,9 +13,12 @@
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/report/terminal.hpp"
 #include "data-schema/results/results.hpp"
+#include "data-schema/texture/texture.hpp"
 #include "data-schema/version.hpp"
 #include "firmware-host/sim/physics/paper_surfaces.hpp"
 #include "spatial/cli/verbs.hpp"
+#include "spatial/picture/spectrogram_figure.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -43,8 +46,8 @@ constexpr DemoCommand kOfEachSurface[] = {
     {&spatial::kSpatialVerb, "{stem} -o {stem} --stroke 1",
      "The first stroke becomes a texture, force against position: 15-500 Hz, divided by the sensor's "
      "response, piecewise cubic Hermite, 1 µm grid."},
-    {&spatial::kSpectrogramVerb, "{stem} -o {stem}.png -o {stem}.svg -o {stem}.nc",
-     "The spatial spectrogram of the texture, as pictures and as data."},
+    {&spatial::kSpectrogramVerb, "{stem} -o {stem}.png -o {stem}.nc",
+     "The spatial spectrogram of the texture, as a picture and as data."},
     {&kFidelityVerb, "{stem} --speed 25mm/s --gain 0.5mm/N -o {stem}.results.json",
      "The texture is played at half the speed, through the inverse of the transducer's model. Trays that are "
      "integrated from their equations of motion, independently of that inverse, move under the drive; their "
@@ -91,7 +94,7 @@ Result<RunCommand> run_of(const DemoCommand& command, const std::string& stem,
 }
 
 // The recording, by which an earlier demo is known, is removed last.
-constexpr const char* kDemoEndings[] = {".texture.json", ".texture.wav",  ".nc",  ".png", ".svg",
+constexpr const char* kDemoEndings[] = {".texture.json", ".texture.wav",  ".nc",  ".png",
                                         ".results.json", ".events.jsonl", ".wav", ".json"};
 
 bool is_of_demo(const std::string& stem) {
@@ -178,7 +181,13 @@ Result<ShownSurface> shown_surface(const firmware_host::PaperSurface& surface, c
     TACTO_TRY(run);
     shown.commands.push_back(std::move(*run));
   }
-  auto svg = schema::read_file(stem + ".svg");
+  auto texture = schema::read_texture(stem);
+  TACTO_TRY(texture);
+  auto spectrogram = spatial::spatial_spectrogram(*texture, {});
+  TACTO_TRY(spectrogram);
+  spectrogram->name = shown.name;
+  texture->simulated = kSimulatedOnPage;
+  auto svg = spatial::to_page_svg(spatial::SpectrogramFigure({{&*texture, &*spectrogram}}));
   TACTO_TRY(svg);
   shown.spectrogram_svg = std::move(*svg);
   auto results = schema::read_results(stem + ".results.json");

@@ -134,7 +134,7 @@ MAY_INCLUDE = {
         "analysis/{compare corpus design experiment extremes fidelity identify/fit identify/measure identify/report live page report scene "
         "trade trade/rows trade/scene} capture/cli data-schema/{base command files kinds recording report results scene texture} "
         "firmware-host/sim/physics playback/{cli "
-        "model player prepare/scene render session stability} spatial/{cli picture}",
+        "model player prepare/scene render session stability} spatial/{cli picture spectrogram}",
     "analysis/compare":
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
         "dsp/fourier dsp/resample dsp/spectrum features numbers spectrogram strokes texture}",
