@@ -402,7 +402,8 @@ Result<Report> compare_all(const CompareVerbOptions& o, const Tell& tell) {
   }
   const bool single = std::ranges::all_of(inputs, [](const auto& textures) { return textures.size() == 1; });
   std::vector<Report> matrix, pairs;
-  for (const std::string& name : names) matrix.push_back(Report().add("input", name));
+  for (const std::string& name : names)  // the columns have these numbers
+    matrix.push_back(Report().add("number", matrix.size() + 1).add("input", name));
   const std::size_t count = names.size() * (names.size() - 1) / 2;
   for (std::size_t i = 0; i < names.size(); ++i)
     for (std::size_t j = i + 1; j < names.size(); ++j) {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "analysis/corpus/recording_glob.hpp"
 #include "data-schema/base/error.hpp"
 #include "data-schema/corpus/corpus_plan.hpp"
 #include "data-schema/files/files.hpp"

@@ -27,6 +27,7 @@ table.pairs th, table.pairs td { text-align: left; } table.c9 { font-size: .9rem
 .picture { overflow-x: auto; } .picture img { min-width: 40rem; } .small img { min-width: 0; }
 img { width: 100%; height: auto; margin: .6rem 0; border-radius: .3rem; } p.note { color: var(--soft); font-size: .9rem; }
 details { margin: .8rem 0; border: 1px solid var(--line); border-radius: .3rem; padding: 0 .8rem; }
+pre { overflow-x: auto; background: rgba(127, 127, 127, .12); padding: .6rem 1rem; font-size: .85rem; }
 summary { cursor: pointer; padding: .5rem 0; font-weight: 600; }
 )";
 

@@ -84,12 +84,11 @@ std::string foreign_list(const Project& project) {
 }
 
 std::string section_body(const Project& project, const ProjectFile& file) {
-  std::string html = file.figures.empty() ? "" : figures_html(file.figures);
+  auto figures = file.figures;
+  if (!file.simulated.empty()) figures.push_back({"simulated", file.simulated});
+  std::string html = figures.empty() ? "" : figures_html(figures);
   for (const std::string& svg : file.drawings) html += inline_svg(svg, within(project, file.path));
-  html += file.pictures_html;
-  if (file.simulated.empty()) return html;
-  return fmt::format("<p class=\"simulated\"><strong>Simulated</strong> {}.</p>\n", escaped(file.simulated)) +
-         html;
+  return html + file.pictures_html;
 }
 
 // A browser opens a folded section when a link leads to its inside.
@@ -102,11 +101,25 @@ std::string section(const Project& project, std::size_t number) {
   return fmt::format("<h2 id=\"{}\">{}</h2>\n{}", id, escaped(title), body);
 }
 
+std::size_t simulated_files(const Project& project) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(project.files, [](const auto& f) { return !f.simulated.empty(); }));
+}
+
 std::string counted(const Project& project) {
-  const auto simulated =
-      std::ranges::count_if(project.files, [](const auto& f) { return !f.simulated.empty(); });
   return fmt::format("{} {}, {} of them simulated; {} can't be used", project.files.size(),
-                     project.files.size() == 1 ? "file" : "files", simulated, project.broken.size());
+                     project.files.size() == 1 ? "file" : "files", simulated_files(project),
+                     project.broken.size());
+}
+
+// Once a page; the section of each file has the origin of its simulation.
+std::string box_of(const Project& project) {
+  const std::size_t simulated = simulated_files(project);
+  if (simulated == 0) return "";
+  return fmt::format(
+      "<p class=\"simulated\"><strong>Simulated</strong>: {} of {} files. Their sections name what simulated "
+      "them.</p>\n",
+      simulated, project.files.size());
 }
 
 }  // namespace
@@ -115,7 +128,7 @@ std::string project_page(const Project& project) {
   const std::string title = std::filesystem::weakly_canonical(project.folder).filename().string();
   std::string body = fmt::format("<h1>{}</h1>\n{}<p>Made {} by {}.</p>\n", escaped(title),
                                  answer(counted(project) + "."), schema::creation_time(), escaped(kCreator));
-  body += broken_list(project) + overview(project) + foreign_list(project);
+  body += box_of(project) + broken_list(project) + overview(project) + foreign_list(project);
   if (project.files.size() > kSectionsShown) body += "<h2>Each file</h2>\n";
   for (std::size_t i = 0; i < project.files.size(); ++i) body += section(project, i);
   return html_document(title, body);

@@ -98,15 +98,16 @@ std::string with_micro(std::string text) {
   return text;
 }
 
-// Only choices of the front have names, because the other names would overlap.
+// The front comes first, because a name is left out where the names before it leave no space.
 spatial::Series marks_of(const TradeHalf& half, const std::vector<Worth>& worth,
-                         const std::vector<std::size_t>& rows, spatial::Colour colour) {
+                         std::vector<std::size_t> rows, spatial::Colour colour) {
+  std::ranges::stable_partition(rows, [&](std::size_t i) { return worth[i].knee || worth[i].on_front; });
   spatial::Series series{half.rows[rows.front()].knob, {}, {}, colour, 1.5, false, true, {}};
   for (const std::size_t i : rows) {
     series.x.push_back(half.rows[i].cost_ns);
     series.y.push_back(error_db(half.rows[i]));
     const std::string choice = with_micro(half.rows[i].choice);
-    series.labels.push_back(worth[i].knee ? choice + "  (knee)" : worth[i].on_front ? choice : "");
+    series.labels.push_back(worth[i].knee ? choice + "  (knee)" : choice);
   }
   return series;
 }

@@ -71,6 +71,18 @@ std::size_t choose(const std::string& option, const std::string& word,
   return static_cast<std::size_t>(found - words.begin());
 }
 
+schema::Result<Report> run_verb(const Verb& verb, std::vector<std::string> words) {
+  CLI::App app;
+  const Action action = verb.declare(app);
+  std::ranges::reverse(words);  // CLI11 takes them from the back
+  try {
+    app.parse(std::move(words));
+  } catch (const CLI::ParseError& error) {
+    return schema::fail(schema::ErrorKind::usage, error.what(), std::string(verb.name));
+  }
+  return action();
+}
+
 Action declare_parts(CLI::App& app, std::span<const VerbPart> parts) {
   auto actions = std::make_shared<std::vector<std::pair<CLI::App*, Action>>>();
   std::vector<std::string> names;

@@ -31,6 +31,10 @@ struct Verb {
   Action (*declare)(CLI::App& app);
 };
 
+/// Runs a verb in this process, as if its words had been typed, and gives the report that it would print.
+/// Errors: usage, of the words; those of the verb.
+schema::Result<Report> run_verb(const Verb& verb, std::vector<std::string> words);
+
 /// A part of a verb, as `init` of `corpus`: declared and run like a verb.
 struct VerbPart {
   const char *name, *summary;

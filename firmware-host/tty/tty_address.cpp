@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <termios.h>
 
-#include <algorithm>
 #include <charconv>
 
 namespace tacto::firmware_host {
@@ -27,20 +26,21 @@ Result<unsigned> parse_baud(std::string_view text) {
 
 }  // namespace
 
+// PATH, or PATH,baud=N, or baud=N; the path may be empty.
 Result<TtyAddress> parse_tty_address(std::string_view parameters) {
   TtyAddress address;
-  const std::size_t comma = std::min(parameters.find(','), parameters.size());
-  std::string_view key = parameters.substr(std::min(comma + 1, parameters.size()));
-  if (parameters.starts_with(kBaudKey))
-    key = parameters;
-  else
+  std::string_view rate = parameters;
+  if (!parameters.starts_with(kBaudKey)) {
+    const std::size_t comma = parameters.find(',');
     address.path = parameters.substr(0, comma);
-  if (key.empty() && comma == parameters.size()) return address;
-  if (!key.starts_with(kBaudKey))
+    if (comma == parameters.npos) return address;
+    rate = parameters.substr(comma + 1);
+  }
+  if (!rate.starts_with(kBaudKey))
     return schema::fail(
         ErrorKind::usage, fmt::format("'{}' is not an address of a serial port", parameters), "device",
         "give tty: (if there is only one), tty:/dev/ttyACM0 or tty:/dev/ttyACM0,baud=2000000");
-  const auto baud = parse_baud(key.substr(kBaudKey.size()));
+  const auto baud = parse_baud(rate.substr(kBaudKey.size()));
   TACTO_TRY(baud);
   address.baud = *baud;
   return address;

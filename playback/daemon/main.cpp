@@ -2,10 +2,16 @@
 // tactographd: plays textures on a device, controlled over a socket. See playback/README.md and CONTROL.md.
 #include <fmt/format.h>
 
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,7 +26,6 @@
 #include "playback/control/control_server.hpp"
 #include "playback/control/control_token.hpp"
 #include "playback/daemon/service.hpp"
-#include "playback/daemon/service_manager.hpp"
 #include "playback/host-loop/locked_memory.hpp"
 
 namespace {
@@ -28,7 +33,6 @@ namespace {
 using namespace tacto;
 using playback::ControlServer;
 using playback::Service;
-using playback::ServiceManager;
 
 constexpr int kIdleMs = 100, kLoadingMs = 5;
 constexpr double kStepS = 2e-3;
@@ -41,6 +45,59 @@ constexpr const char* kHelp =
     R"("socket": "control", "sessions": "sessions"})"
     "\nSIGTERM, SIGHUP (the terminal was closed) and Ctrl-C ramp the "
     "drive to zero and end the daemon.\nMessages go to stderr; systemd stores them in its journal.\n";
+
+// Notifies systemd: a datagram to $NOTIFY_SOCKET (sd_notify(3)); does nothing if it is not set.
+class ServiceManager {
+ public:
+  /// Reads NOTIFY_SOCKET and WATCHDOG_USEC.
+  ServiceManager();
+  ServiceManager(const ServiceManager&) = delete;
+  ServiceManager& operator=(const ServiceManager&) = delete;
+  ~ServiceManager();
+
+  /// `assignment`: "READY=1", "STOPPING=1", "STATUS=playing oak".
+  void tell(std::string_view assignment) const;
+  /// Notifies the watchdog at half its time. Call often.
+  void feed_watchdog(double now_s);
+
+ private:
+  std::string address_;
+  int descriptor_ = -1;
+  double watchdog_s_ = 0, next_s_ = 0;
+};
+
+std::string environment(const char* name) {
+  const char* const text = std::getenv(name);
+  return text == nullptr ? "" : text;
+}
+
+ServiceManager::ServiceManager() : address_(environment("NOTIFY_SOCKET")) {
+  if (address_.empty()) return;
+  descriptor_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  watchdog_s_ = 1e-6 * std::atof(environment("WATCHDOG_USEC").c_str());
+}
+
+ServiceManager::~ServiceManager() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void ServiceManager::tell(std::string_view assignment) const {
+  sockaddr_un address{};
+  if (descriptor_ < 0 || address_.size() >= sizeof address.sun_path) return;
+  address.sun_family = AF_UNIX;
+  std::memcpy(address.sun_path, address_.data(), address_.size());
+  if (address_.front() == '@') address.sun_path[0] = '\0';  // Linux's abstract sockets
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + address_.size());
+  [[maybe_unused]] const auto sent =
+      sendto(descriptor_, assignment.data(), assignment.size(), MSG_DONTWAIT | MSG_NOSIGNAL,
+             reinterpret_cast<const sockaddr*>(&address), size);
+}
+
+void ServiceManager::feed_watchdog(double now_s) {
+  if (watchdog_s_ <= 0 || now_s < next_s_) return;
+  next_s_ = now_s + watchdog_s_ / 2;
+  tell("WATCHDOG=1");
+}
 
 volatile std::sig_atomic_t stop_asked = 0;
 

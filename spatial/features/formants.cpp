@@ -3,14 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "data-schema/base/decibels.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
 #include "spatial/numbers/parabolic_peak.hpp"
 #include "spatial/numbers/robust_statistics.hpp"
-#include "spatial/spectrogram/known_bins.hpp"
 #include "spatial/spectrogram/spectrogram_summary.hpp"
 
 namespace tacto::spatial {
@@ -39,6 +41,36 @@ Result<void> check(const Spectrogram& spectrogram, const FormantOptions& options
   if (spectrogram.position_m.empty() || spectrogram.bins < 3)
     return schema::fail(ErrorKind::unsuitable, "the spectrogram is too small for formants", spectrogram.name);
   return {};
+}
+
+// Bins from `first` up to, not including, `end`; empty if they are equal.
+struct BinRange {
+  std::size_t first = 0, end = 0;
+  bool holds(std::size_t bin) const { return first <= bin && bin < end; }
+};
+
+std::size_t bin_at(double bin, std::size_t bins) {
+  return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(bins)));
+}
+
+// For each row the bins with known frequencies (known_band.hpp) that are at least the resolution away from
+// the limits, because every slope has a maximum where a band-pass ends. They begin at 2 / window: a window
+// has too few periods of lower frequencies to separate them from a drift. If the spectrogram has no known
+// band, all bins from there on.
+std::vector<BinRange> known_bins(const schema::Spectrogram& spectrogram) {
+  const double step = spectrogram.frequency_step_per_m;
+  const double least_per_m = 2 / spectrogram.window_m;
+  const double edge_per_m = resolution_per_m(spectrogram);
+  std::vector<BinRange> rows;
+  for (std::size_t row = 0; row < spectrogram.position_m.size(); ++row) {
+    const schema::KnownBand known =
+        spectrogram.known.empty() ? schema::KnownBand{-edge_per_m, INFINITY} : spectrogram.known[row];
+    const double low = std::ceil(std::max(known.low_per_m + edge_per_m, least_per_m) / step * (1 - 1e-12));
+    const double high = std::floor((known.high_per_m - edge_per_m) / step * (1 + 1e-12)) + 1;
+    const std::size_t first = bin_at(low, spectrogram.bins);
+    rows.push_back({first, std::max(first, bin_at(high, spectrogram.bins))});
+  }
+  return rows;
 }
 
 // A peak of one row of the spectrogram that exceeds its background.

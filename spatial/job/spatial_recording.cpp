@@ -5,7 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <vector>
 
+#include "data-schema/base/error.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/base/stroke_rule.hpp"
 #include "data-schema/base/unknown_note.hpp"
@@ -19,8 +24,9 @@
 #include "spatial/spectrogram/budget.hpp"
 #include "spatial/strokes/finger_contact.hpp"
 #include "spatial/strokes/touch_record.hpp"
-#include "spatial/texture/band_share.hpp"
+#include "spatial/texture/filtered_track.hpp"
 #include "spatial/texture/texture_warnings.hpp"
+#include "spatial/texture/time_filter.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -62,6 +68,57 @@ Report row_of(const TextureChoice& choice, const TextureChoice& taken) {
 
 std::string asked(const schema::Budget& budget) {
   return budget.most_exact() ? "the most exact" : fmt::format("at most {:g} %", 100 * budget.most_error());
+}
+
+/// RMS of the recorded values minus the filtered ones, about its mean, over the RMS of the filtered ones in
+/// the same frames; each is the largest of all strokes.
+struct BandShare {
+  double whole = 0;   ///< in all frames of a stroke
+  double inside = 0;  ///< in their middle half, without the steps of the force at start and stop
+};
+
+double square_sum(std::span<const double> values, double about) {
+  double sum = 0;
+  for (const double value : values) sum += (value - about) * (value - about);
+  return sum;
+}
+
+double rms_share(std::span<const double> taken, std::span<const double> passed) {
+  const double mean = std::accumulate(taken.begin(), taken.end(), 0.0) / static_cast<double>(taken.size());
+  const double all = square_sum(passed, 0);
+  return all > 0 ? std::sqrt(square_sum(taken, mean) / all) : 0;
+}
+
+schema::Result<BandShare> share_of_stroke(const TouchRecord& record, FilteredTrack& filtered,
+                                          FrameRange frames) {
+  const auto holds = [&](const FrameRange& piece) { return piece.contains(frames); };
+  const auto piece = std::ranges::find_if(record.pieces(), holds);
+  if (piece == record.pieces().end())
+    return schema::fail(schema::ErrorKind::unsuitable, "frames are missing inside the stroke",
+                        record.where());
+  const auto passed = filtered.values(record.source(), *piece, frames);
+  TACTO_TRY(passed);
+  std::vector<double> taken(frames.size());
+  TACTO_TRY(record.source().read(Track::value, frames.begin, taken));
+  for (std::size_t i = 0; i < taken.size(); ++i) taken[i] -= (*passed)[i];
+  const std::size_t quarter = taken.size() / 4, half = taken.size() - 2 * quarter;
+  return BandShare{rms_share(taken, *passed),
+                   rms_share(std::span(taken).subspan(quarter, half), passed->subspan(quarter, half))};
+}
+
+// Without an equaliser. Each section between two gaps is filtered once. Errors: unsuitable, if frames are
+// missing inside a stroke; of check(filter, sample_rate_hz); of reading.
+schema::Result<BandShare> band_share(const TouchRecord& record, const TimeFilter& filter,
+                                     std::span<const Stroke> strokes) {
+  FilteredTrack filtered(record.header().sample_rate_hz, filter, {});
+  BandShare worst;
+  for (const Stroke& stroke : strokes) {
+    const auto share = share_of_stroke(record, filtered, stroke.frames);
+    TACTO_TRY(share);
+    worst.whole = std::max(worst.whole, share->whole);
+    worst.inside = std::max(worst.inside, share->inside);
+  }
+  return worst;
 }
 
 // The promise is about the force behind the band-pass, so what the band-pass removes is reported separately,

@@ -23,6 +23,7 @@ schema::Result<Pixels> heatmap(const schema::Spectrogram& spectrogram, double lo
   const auto& engine = drawing_engine();
   TACTO_TRY(engine);
   const auto last = static_cast<double>(spectrogram.bins - 1);
+  // The level of a cell is decade_db log10(factor cell).
   const LevelReference reference = level_reference(spectrogram);
   HeatmapJob job;
   job.cells = spectrogram.cells;

@@ -52,30 +52,31 @@ std::string seconds(double s) {
 schema::Result<PositionTrack> PositionTrack::open(TouchSource& source, std::size_t frames,
                                                   std::span<const schema::Gap> gaps) {
   PositionTrack track(source);
-  TACTO_TRY(track.survey(frames, gaps));
-  if (frames > kShortFrames) return track;
-  std::vector<double> all(frames);
-  TACTO_TRY(track.read(0, all));
-  track.kept_m_ = std::move(all);
-  return track;
-}
-
-schema::Result<void> PositionTrack::survey(std::size_t frames, std::span<const schema::Gap> gaps) {
+  const bool is_kept = frames <= kShortFrames;
   CounterWrapFinder finder(gaps);
-  std::vector<double> chunk(std::min(kChunkFrames, frames));
+  std::vector<double> stored(is_kept ? frames : kChunkFrames);
   const auto add = [&](FrameRange part) -> schema::Result<void> {
-    const auto counts = std::span(chunk).first(part.size());
-    if (auto done = source_->read_stored(Track::position, part.begin, counts); !done) return done;
+    const auto counts = std::span(stored).subspan(is_kept ? part.begin : 0, part.size());
+    TACTO_TRY(source.read_stored(Track::position, part.begin, counts));
     finder.add(counts);
     return {};
   };
-  if (auto done = chunk_by_chunk({0, frames}, add); !done) return done;
-  const schema::Channel& properties = *source_->channel(Track::position);
+  TACTO_TRY(chunk_by_chunk({0, frames}, add));
+  const schema::Channel& properties = *source.channel(Track::position);
   const double counts = std::max(std::abs(finder.lowest()), std::abs(finder.highest()));
-  furthest_m_ = counts * std::abs(properties.scale) + std::abs(properties.offset);
-  moves_ = finder.lowest() < finder.highest() && properties.scale != 0;
-  wraps_ = finder.finish();
-  return {};
+  track.furthest_m_ = counts * std::abs(properties.scale) + std::abs(properties.offset);
+  track.moves_ = finder.lowest() < finder.highest() && properties.scale != 0;
+  track.wraps_ = finder.finish();
+  if (!is_kept) return track;
+  track.to_metres(0, stored);
+  track.kept_m_ = std::move(stored);
+  return track;
+}
+
+void PositionTrack::to_metres(std::size_t first, std::span<double> counts) const {
+  wraps_.unwrap(first, counts);
+  const schema::Channel& properties = *source_->channel(Track::position);
+  for (double& value : counts) value = properties.physical(value);
 }
 
 schema::Result<void> PositionTrack::read(std::size_t first, std::span<double> out) const {
@@ -83,10 +84,8 @@ schema::Result<void> PositionTrack::read(std::size_t first, std::span<double> ou
     std::ranges::copy(std::span(kept_m_).subspan(first, out.size()), out.begin());
     return {};
   }
-  if (auto done = source_->read_stored(Track::position, first, out); !done) return done;
-  wraps_.unwrap(first, out);
-  const schema::Channel& properties = *source_->channel(Track::position);
-  for (double& value : out) value = properties.physical(value);
+  TACTO_TRY(source_->read_stored(Track::position, first, out));
+  to_metres(first, out);
   return {};
 }
 

@@ -25,7 +25,8 @@ namespace tacto::spatial {
 /// what was requested. The source must outlive it.
 class PositionTrack {
  public:
-  /// Reads the whole record once, to find the wraps of its counter. Errors: of reading.
+  /// Reads the whole record once, to find the wraps of its counter; a short one is not read again. Errors: of
+  /// reading.
   static schema::Result<PositionTrack> open(TouchSource& source, std::size_t frames,
                                             std::span<const schema::Gap> gaps);
 
@@ -39,7 +40,8 @@ class PositionTrack {
 
  private:
   explicit PositionTrack(TouchSource& source) : source_(&source) {}
-  schema::Result<void> survey(std::size_t frames, std::span<const schema::Gap> gaps);
+  /// Stored numbers from frame `first` on.
+  void to_metres(std::size_t first, std::span<double> counts) const;
 
   TouchSource* source_;
   std::vector<double> kept_m_;
@@ -52,9 +54,10 @@ class PositionTrack {
 /// shared between threads.
 class TouchRecord {
  public:
-  /// Reads the position (six times, once more for each stroke), finds the strokes and, if there is a normal
-  /// force, the strokes with the finger up. `channel` (by name) is what is to become a texture. Errors:
-  /// unsuitable, without such a channel, without a position or with one that never moves; of reading.
+  /// Reads the position (once; of a long record six times, and once more for each stroke), finds the strokes
+  /// and, if there is a normal force, the strokes with the finger up. `channel` (by name) is what is to
+  /// become a texture. Errors: unsuitable, without such a channel, without a position or with one that never
+  /// moves; of reading.
   static schema::Result<TouchRecord> open(const schema::Recording& recording, const std::string& channel);
   /// From any source; `where` is its name in messages.
   static schema::Result<TouchRecord> open(std::unique_ptr<TouchSource> source, schema::RecordingHeader header,

@@ -6,9 +6,8 @@
 
 namespace tacto::spatial {
 
-FilteredTrack::FilteredTrack(TouchSource& source, double sample_rate_hz, const TimeFilter& filter,
-                             SpectralGain equaliser)
-    : source_(&source), sample_rate_hz_(sample_rate_hz), filter_(filter), equaliser_(std::move(equaliser)) {}
+FilteredTrack::FilteredTrack(double sample_rate_hz, const TimeFilter& filter, SpectralGain equaliser)
+    : sample_rate_hz_(sample_rate_hz), filter_(filter), equaliser_(std::move(equaliser)) {}
 
 schema::Result<void> FilteredTrack::begin(FrameRange piece) {
   stream_.reset();
@@ -29,7 +28,7 @@ void FilteredTrack::drop_before(std::size_t frame) {
   kept_from_ += gone;
 }
 
-schema::Result<void> FilteredTrack::advance() {
+schema::Result<void> FilteredTrack::advance(TouchSource& source) {
   if (next_ == piece_.end) {
     stream_->finish(kept_);
     ++next_;
@@ -37,20 +36,21 @@ schema::Result<void> FilteredTrack::advance() {
   }
   const std::size_t size = std::min(kChunkFrames, piece_.end - next_);
   chunk_.resize(size);
-  if (auto done = source_->read(Track::value, next_, chunk_); !done) return done;
+  if (auto done = source.read(Track::value, next_, chunk_); !done) return done;
   if (auto done = stream_->push(chunk_, kept_); !done) return done;
   next_ += size;
   return {};
 }
 
-schema::Result<std::span<const double>> FilteredTrack::values(FrameRange piece, FrameRange frames) {
+schema::Result<std::span<const double>> FilteredTrack::values(TouchSource& source, FrameRange piece,
+                                                              FrameRange frames) {
   assert(piece.contains(frames));
   const bool goes_on = stream_ && piece.begin == piece_.begin && frames.begin >= kept_from_;
   if (!goes_on) TACTO_TRY(begin(piece));
   drop_before(frames.begin);
   while (kept_from_ + kept_.size() < frames.end) {
     assert(next_ <= piece_.end);
-    if (auto done = advance(); !done) {
+    if (auto done = advance(source); !done) {
       stream_.reset();
       return schema::forward_error(done);
     }

@@ -13,22 +13,21 @@
 namespace tacto::spatial {
 
 /// Filters each section between two gaps as a whole and holds only the requested frames. Requests ordered by
-/// time are fast; a request before the last one filters its piece again from the beginning. The source must
-/// outlive it.
+/// time are fast; a request before the last one filters its piece again from the beginning.
 class FilteredTrack {
  public:
-  FilteredTrack(TouchSource& source, double sample_rate_hz, const TimeFilter& filter, SpectralGain equaliser);
+  FilteredTrack(double sample_rate_hz, const TimeFilter& filter, SpectralGain equaliser);
 
-  /// Filtered values of `frames`, which are inside `piece`, a section between two gaps; valid until the next
-  /// call. Errors: of check(filter, sample_rate_hz); of reading.
-  schema::Result<std::span<const double>> values(FrameRange piece, FrameRange frames);
+  /// Filtered values of `frames`, which are inside `piece`, a section of `source` between two gaps; valid
+  /// until the next call. All calls have the same source. Errors: of check(filter, sample_rate_hz); of
+  /// reading.
+  schema::Result<std::span<const double>> values(TouchSource& source, FrameRange piece, FrameRange frames);
 
  private:
   schema::Result<void> begin(FrameRange piece);
   void drop_before(std::size_t frame);
-  schema::Result<void> advance();
+  schema::Result<void> advance(TouchSource& source);
 
-  TouchSource* source_;
   double sample_rate_hz_;
   TimeFilter filter_;
   SpectralGain equaliser_;

@@ -51,7 +51,7 @@ schema::Result<void> TextureMaker::prepare() {
   }
   if (options_.space) options_.filter.method = FilterMethod::none;
   if (const auto equalised = choose_equaliser(); !equalised) return equalised;
-  filtered_.emplace(record_.source(), header.sample_rate_hz, options_.filter, equaliser_);
+  filtered_.emplace(header.sample_rate_hz, options_.filter, equaliser_);
   return {};
 }
 
@@ -115,7 +115,7 @@ schema::Result<std::vector<double>> TextureMaker::resampled(const Stroke& stroke
   const std::size_t margin = margin_of(options_.method);
   const std::size_t before = std::min(margin, stroke.frames.begin - piece->begin);
   const FrameRange frames{stroke.frames.begin - before, std::min(stroke.frames.end + margin, piece->end)};
-  const auto seen = filtered_->values(*piece, frames);
+  const auto seen = filtered_->values(record_.source(), *piece, frames);
   TACTO_TRY(seen);
   std::vector<double> values(grid.count);
   resampler_(path, stroke.direction, grid, *seen, before, values);

@@ -308,7 +308,7 @@ def more_than_two_give_all_pairs():
     alone = tacto.run_json("compare", "C", "E")
     last = told["pairs"][1]
     assert (last["a"], last["b"], last["verdict"], last["p"]) == ("C", "E", alone["verdict"], alone["p"]), (last, alone)
-    assert told["matrix"][0]["3"] == alone["verdict"] and told["matrix"][2] == {"input": "E"}, told["matrix"]
+    assert told["matrix"][0]["3"] == alone["verdict"] and told["matrix"][2] == {"number": 3, "input": "E"}, told["matrix"]
     tacto.run("compare", *names, "-o", "x.html", code=2)
     tacto.run("compare", "first", "second", "first", code=2)
 

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/demo/demo.hpp"
-
 namespace tacto::analysis {
 namespace {
 
@@ -85,30 +83,6 @@ TEST(Html, AColumnIsAlignedAsAWhole) {
   const std::string uri = html_table(std::vector<std::string>{"sim:surface=C,speed=50mm/s,seed=1"},
                                      {{"a", [](const auto& x) { return x; }}});
   EXPECT_NE(uri.find("C,<wbr>speed=50mm/s,<wbr>seed"), std::string::npos) << uri;
-}
-
-// Each value is in the column of its header. The gain was once shown under "wanted".
-TEST(DemoPage, EachValueHasItsHeader) {
-  DemoSurface surface;
-  surface.surface = "A";
-  surface.gain_m_per_n = 0.7e-3;
-  surface.target_rms_m = 9e-6;
-  surface.drive_peak_v = 3;
-  const std::string page = demo_page({surface}, "by a test");
-  EXPECT_EQ(count_of("<th>", page), count_of("<td", page));
-  for (const char* cell :
-       {"data-label=\"gain\">700&nbsp;\u00B5m/N", "data-label=\"target, RMS\">9&nbsp;\u00B5m",
-        "data-label=\"drive, peak\">3&nbsp;V"})
-    EXPECT_NE(page.find(cell), std::string::npos) << cell;
-}
-
-TEST(DemoPage, SaysSimulatedOnEverySurface) {
-  DemoSurface surface;
-  surface.surface = "X<";
-  surface.simulated = "by a test";
-  const std::string page = demo_page({surface, surface}, "by a test");
-  EXPECT_EQ(count_of("simulated: by a test", page), 2U);
-  EXPECT_EQ(page.find("X<"), page.npos);
 }
 
 }  // namespace

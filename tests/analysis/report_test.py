@@ -6,6 +6,7 @@ import html.parser
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 
@@ -68,7 +69,8 @@ def a_project_on_one_page():
             data = pathlib.Path(row["file"]).with_suffix(".wav").read_bytes()
             assert hashlib.sha256(data).hexdigest().startswith(row["sha256"])
     simulated = sum(row["simulated"] for row in report["files"])
-    assert simulated >= 6 and text.count('class="simulated"') == simulated
+    assert simulated >= 6 and text.count('class="simulated"') == 1, "one box"
+    assert len(re.findall(r">simulated</td>", text)) == simulated, "and each file the origin of its own"
     assert "path.csv" in said and "C.png" in said, "other programs' files are named"
     again = ["report", root, "-o", "study/study.html"]
     assert "--force" in tacto.run(*again, code=2)[1]  # --force replaces the page, which is no file of the project

@@ -126,7 +126,7 @@ def a_demo_replaces_only_demos():
     for ending in ("wav", "json"):
         pathlib.Path(f"demo/C.{ending}").write_text("mine")
     _, said = tacto.run("demo", "-o", "demo", code=USAGE)
-    assert "demo/C.json" in said and pathlib.Path("demo/C.wav").read_text() == "mine", said
+    assert "demo/C.wav" in said and pathlib.Path("demo/C.wav").read_text() == "mine", said
 
 
 def one_file_by_two_spellings_is_named_twice():

@@ -191,8 +191,8 @@ def prove_it_can_fail():
         "spatial/dsp/filter/a.cpp": spdx + "#include <opencv2/core.hpp>\n",
         "data-schema/cli/a.cpp": spdx + "#include <nlohmann/json.hpp>\n",
         "data-schema/command/a.cpp": spdx + "#include <nlohmann/json.hpp>\n",
-        "analysis/demo/a.cpp": "int x;\n",
-        "analysis/demo/c.cpp": spdx + '#include "demo.hpp"\n',
+        "analysis/scene/a.cpp": "int x;\n",
+        "analysis/scene/c.cpp": spdx + '#include "scene.hpp"\n',
     }
     for name, text in bad.items():
         assert faults_of(name, text), f"the check does not see what is wrong with {name}"

@@ -131,17 +131,15 @@ MAY_INCLUDE = {
         "render/reference session} spatial/features",
     "playback/wasm": "firmware-host/core/firmware",
     "analysis/cli":
-        "analysis/{compare corpus demo design experiment extremes fidelity identify/fit identify/measure identify/report live page report scene "
-        "trade trade/rows trade/scene} data-schema/{base command files kinds report results scene texture} playback/{cli "
-        "model player prepare/scene render session stability} spatial/{cli picture}",
+        "analysis/{compare corpus design experiment extremes fidelity identify/fit identify/measure identify/report live page report scene "
+        "trade trade/rows trade/scene} capture/cli data-schema/{base command files kinds recording report results scene texture} "
+        "firmware-host/sim/physics playback/{cli "
+        "model player prepare/scene render session stability} spatial/{cli picture spectrogram}",
     "analysis/compare":
         "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
         "dsp/fourier dsp/resample dsp/spectrum features numbers spectrogram strokes texture}",
     "analysis/corpus":
         "data-schema/{base command corpus exchange files kinds recording report texture wav} spatial/{features job}",
-    "analysis/demo":
-        "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
-        "sim/bench sim/physics} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
     "analysis/experiment":
         "analysis/{page psychometrics} capture/table data-schema/{base experiment files results session texture} firmware-host/core/wire "
         "playback/{model player prepare render session strokes} spatial/{features transform}",

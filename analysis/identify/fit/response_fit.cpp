@@ -18,6 +18,7 @@
 #include "analysis/identify/fit/three_poles.hpp"
 #include "analysis/identify/measure/angles.hpp"
 #include "analysis/identify/measure/hold.hpp"
+#include "data-schema/base/quantity.hpp"
 #include "data-schema/base/statistics.hpp"
 
 namespace tacto::analysis {
@@ -509,15 +510,17 @@ std::vector<std::string> held_words(const ModelChoice& choice, const schema::Tra
   if (choice.finger)
     return {fmt::format("all of '{}' is held: only stiffness, damping and mass are added to it", base.name)};
   const bool actuator = choice.direction == Direction::actuator;
-  return {fmt::format("only the product of gain, beta and the amplifier's gain is determined: delta {:.4g} "
-                      "m, v_max {:.4g} V and {} are held, {} is fitted",
-                      base.deflection_m, base.max_voltage_v, actuator ? "G_a" : "G_s",
-                      actuator ? "actuator_scale" : "sensor_scale"),
-          fmt::format("of k_r, k_p and m only (k_r + k_p) / m is determined: k_r {:.4g} N/m and k_p {:.4g} "
-                      "N/m are held, m is fitted",
+  const char* const side = actuator ? "actuator" : "sensor";
+  return {fmt::format("only the product of the bender's deflection per volt and the amplifier's gain is "
+                      "determined: deflection {} at {} and the gain are held, the scale of the {} is fitted",
+                      schema::for_people(base.deflection_m, schema::Dimension::length),
+                      schema::for_people(base.max_voltage_v, schema::Dimension::voltage), side),
+          fmt::format("of the stiffnesses of flexure and bender and the mass only (k_r + k_p) / m is "
+                      "determined: k_r {:.4g} N/m and k_p {:.4g} N/m are held, the mass is fitted",
                       base.flexure_stiffness_n_per_m, base.bender_stiffness_n_per_m),
-          fmt::format("only the product of {} and C_p is determined: C_p {:.4g} F is held",
-                      actuator ? "R_a" : "R_s", base.capacitance_f)};
+          fmt::format("only the product of the {}'s resistance and the bender's capacitance is determined: "
+                      "the capacitance, {:.4g} F, is held",
+                      actuator ? "amplifier" : "sensor", base.capacitance_f)};
 }
 
 }  // namespace tacto::analysis

@@ -71,6 +71,17 @@ FaultCode Ticker::take_stream_fault() noexcept {
   return code;
 }
 
+// One tick; its steps follow in their order.
+void Ticker::tick() noexcept {
+  Record* place = records_.place();
+  Record& record = place != nullptr ? *place : spare_;
+  look(record);
+  sample(record);
+  drive(record);
+  count(record.flags);
+  keep(place != nullptr, record);
+}
+
 void Ticker::look(Record& record) noexcept {
   record.clock = hal_.clock(hal_.board);
   record.encoder = hal_.read_encoder(hal_.board);
@@ -231,16 +242,6 @@ void Ticker::keep(bool there, const Record& record) noexcept {
   if (!there) ++counts_.lost_records;
   if (!there && !losing_) tell(FaultCode::ring_full);
   losing_ = !there;
-}
-
-void Ticker::tick() noexcept {
-  Record* place = records_.place();
-  Record& record = place != nullptr ? *place : spare_;
-  look(record);
-  sample(record);
-  drive(record);
-  count(record.flags);
-  keep(place != nullptr, record);
 }
 
 }  // namespace tacto::core

@@ -56,6 +56,7 @@ void append(Words& words, const std::vector<T>& parts) {
   append(words, parts.data(), parts.size());
 }
 
+// whole + part 2^-32 + rest 2^-64: the kernel adds such steps count by count without rounding.
 struct Fixed {
   std::int32_t whole;
   std::uint32_t part, rest;  // of 2^-32, of 2^-64
@@ -291,6 +292,8 @@ Result<Relief> levels_of_texture(const std::string& file, double rate_hz) {
   return levels;
 }
 
+// The block of core/scene/scene_block.hpp: header, patches, layers, the numbers that can change, tables. A
+// layer holds the index of its first number and of the first word of its table.
 Words block_of(const std::vector<schema::Patch>& from, const PlaneSteps& steps, const Reliefs& reliefs) {
   std::vector<core::ScenePatch> patches;
   std::vector<core::SceneLayer> layers;
