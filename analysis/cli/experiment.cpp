@@ -6,6 +6,7 @@
 #include "analysis/cli/experiment_study.hpp"
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
+#include "analysis/experiment/amplitude_answers.hpp"
 #include "analysis/experiment/answers_page.hpp"
 #include "analysis/experiment/identification_answers.hpp"
 #include "analysis/experiment/study_answers.hpp"
@@ -285,6 +286,27 @@ Report identification_report(const IdentificationAnswers& all, const std::string
   return report.add("conditions", std::move(conditions)).add("people", std::move(people));
 }
 
+void add_matched(Report& row, const MatchedPerson& each) {
+  row.add("trials", each.ratings.size()).add("rated_0", each.rated_0);
+  if (each.mean_at_0) row.add("mean_ratio_at_0", *each.mean_at_0);
+  if (each.match) add_estimate(row, "match", *each.match);
+}
+
+Report amplitude_report(const AmplitudeAnswers& all, const std::string& verdict) {
+  Report report;
+  report.add("verdict", verdict);
+  if (!all.simulated.empty()) report.add("simulated", all.simulated);
+  if (all.mean_at_0) report.add("mean_ratio_at_0", *all.mean_at_0);
+  if (all.match) add_estimate(report, "match", *all.match);
+  std::vector<Report> people;
+  for (const MatchedPerson& each : all.people) {
+    Report& row = people.emplace_back();
+    row.add("participant", each.participant);
+    add_matched(row, each);
+  }
+  return report.add("people", std::move(people));
+}
+
 Result<Report> analyse_task(const AnalyseOptions& o, bool json) {
   const auto protocol = schema::read_protocol(o.fit.file);
   TACTO_TRY(protocol);
@@ -295,6 +317,11 @@ Result<Report> analyse_task(const AnalyseOptions& o, bool json) {
   }
   const auto runs = answered_runs(o.fit.file, o.unblind);
   TACTO_TRY(runs);
+  if (protocol->task == schema::Task::amplitude) {
+    const AmplitudeAnswers answers = amplitude_answers(*runs);
+    const Findings findings = findings_of(answers);
+    return write_fit(o.fit, findings, amplitude_report(answers, findings.verdict()), json);
+  }
   const IdentificationAnswers answers = identification_answers(*runs);
   const Findings findings = findings_of(answers);
   return write_fit(o.fit, findings, identification_report(answers, findings.verdict()), json);
@@ -327,7 +354,15 @@ cli::Action declare_analyse(CLI::App& app) {
       "real and of virtual comparisons, each person analysed and then the mean taken; information is "
       "corrected for its bias by the jackknife, with the plug-in value and that of Miller and Madow beside "
       "it; "
-      "the answers are the sum over people.");
+      "the answers are the sum over people.\nOf amplitude: the mean ratio of the trials that were rated 0, "
+      "and the "
+      "fitted match, the ratio at the middle of what is rated 0: it does not depend on which ratios were "
+      "asked. Its "
+      "model: normal errors; two limits, below and above which the rating is not 0; lapses at both ends "
+      "alike, with "
+      "the prior Beta(1, 19). Median and 95 % interval of the posterior; of several people the geometric "
+      "mean of "
+      "their matches, by Student's t.");
   CLI::App* const verb = app.get_parent();
   return [options, verb] { return run_analyse(*options, verb->count("--json") > 0); };
 }
@@ -338,7 +373,8 @@ constexpr cli::VerbPart kExperimentParts[] = {
     {"run", "Run a study with one participant, or with a simulated observer", declare_run_study},
     {"resume", "Continue an interrupted run", declare_resume_study},
     {"prove", "Compute from the sessions of a run what was delivered", declare_prove_run},
-    {"analyse", "Fit psychometric functions to the answers of a study, or count confusions", declare_analyse},
+    {"analyse", "Fit psychometric functions to the answers of a study, count confusions, or find a match",
+     declare_analyse},
     {"power", "How many participants a study needs for a difference of Weber fractions", declare_study_power},
     {"export", "Write the trials of a study as CSV and BIDS, with a script for R", declare_export_study},
     {"withdraw", "Delete all files of a participant; code and date are noted", declare_withdraw},
@@ -356,11 +392,14 @@ const cli::Verb kExperimentVerb{
     "tactograph experiment new stretch -o stretch\n"
     "  tactograph experiment new identification --textures A,B,C,D,E --comparisons C,D,E "
     "-o surfaces\n"
+    "  tactograph experiment new amplitude --textures E -o amplitude\n"
     "  tactograph experiment run stretch -d usb: --participant P01\n"
     "  tactograph experiment run stretch -d sim: --participant P02 --observer "
     "weber=25%,lapse=2%\n"
     "  tactograph experiment run surfaces -d sim: --participant P01 --observer "
     "template\n"
+    "  tactograph experiment run amplitude -d sim: --participant P01 --observer "
+    "match=86%,weber=10%\n"
     "  tactograph experiment prove stretch-P01\n"
     "  tactograph experiment analyse stretch --unblind -o stretch.html\n"
     "  tactograph experiment prove sessions/2026-11-29.session\n"

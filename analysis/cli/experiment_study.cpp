@@ -59,6 +59,8 @@ Report study_report(const Study& study) {
   report.add("study", study.stem).add("task", schema::word_of(protocol.task));
   if (protocol.task == schema::Task::two_interval)
     report.add("levels", protocol.levels.size());
+  else if (protocol.task == schema::Task::amplitude)
+    report.add("largest_ratio", protocol.largest_ratio);
   else
     report.add("standards", protocol.standards.size())
         .add("comparisons", protocol.comparisons.size())
@@ -81,10 +83,12 @@ Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& t
   if (o.what == "stretch")
     return schema::fail(ErrorKind::usage, "the stimuli of stretch are computed", "--textures",
                         "leave it out");
-  if (o.what != "identification")
+  if (o.what != "identification" && o.what != "amplitude")
     return schema::fail(ErrorKind::usage,
                         fmt::format("'{}' is not a protocol that comes with tactograph", o.what),
-                        "experiment new", "there are: stretch, identification");
+                        "experiment new", "there are: stretch, identification, amplitude");
+  if (o.what == "amplitude" && !o.comparisons.empty())
+    return schema::fail(ErrorKind::usage, "amplitude has no comparisons", "--comparisons", "leave it out");
   for (const std::string& file : o.textures) {
     auto texture = schema::read_texture(file);
     TACTO_TRY(texture);
@@ -92,6 +96,7 @@ Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& t
     if (!textures.emplace(name, std::move(*texture)).second)
       return schema::fail(ErrorKind::usage, name + " is named twice", "--textures", "name each texture once");
   }
+  if (o.what == "amplitude") return amplitude_protocol(o.seed, textures);
   std::vector<std::string> comparisons = o.comparisons;
   if (comparisons.empty())
     for (const auto& [name, texture] : textures) comparisons.push_back(name);
@@ -143,7 +148,7 @@ Report report_of_run(const Run& run) {
   report.add("run", run.stem).add("complete", run.queue.has_ended());
   report.add("trials", run.queue.trials()).add("delivered_and_answered", run.queue.counted());
   report.add("attempts", run.queue.attempts().size());
-  if (!run.journal.plan.observer.empty()) report.add("simulated", "observer " + run.journal.plan.observer);
+  if (!run.journal.plan.observer.empty()) report.add("simulated", observer_in_words(run));
   std::vector<std::string> written = {schema::journal_path(run.stem), run.stem + "/"};
   if (run.queue.has_ended()) written.push_back(run.stem + ".trials.tsv");
   report.add("written", written);
@@ -212,6 +217,8 @@ std::string proof_in_words(const Proof& proof) {
     words += fmt::format(", {} with real samples, of which there is only the operator's word", proof.placed);
   if (proof.stretch_error)
     words += fmt::format("; predicted stretch within {:.2g} of the nominal one", *proof.stretch_error);
+  if (proof.ratio_error)
+    words += fmt::format("; predicted ratio within {:.2g} of the asked one", *proof.ratio_error);
   return words +
          fmt::format("; {} of {} sessions the same to the bit", proof.same_to_the_bit, proof.sessions);
 }
@@ -296,9 +303,10 @@ Result<Report> run_prove_run(const ProveOptions& o) {
       .add("same_to_the_bit", proof.same_to_the_bit);
   if (run->study.protocol.task == schema::Task::identification) report.add("real_samples", proof.placed);
   if (proof.stretch_error) report.add("stretch_error", *proof.stretch_error);
+  if (proof.ratio_error) report.add("ratio_error", *proof.ratio_error);
   report.add("recorded", "ticks and drive").add("predicted", "displacement, by the transducer's model");
   if (!proof.simulated.empty()) report.add("simulated", proof.simulated);
-  if (!run->journal.plan.observer.empty()) report.add("observer", run->journal.plan.observer);
+  if (!run->journal.plan.observer.empty()) report.add("observer", observer_in_words(*run));
   if (!proof.faults.empty()) report.add("faults", proof.faults);
   return proof.holds() ? report : report.ends_with(ErrorKind::unsuitable);
 }
@@ -422,11 +430,12 @@ Result<Report> run_withdraw(const WithdrawOptions& o) {
 cli::Action declare_new_study(CLI::App& app) {
   auto options = std::make_shared<NewStudyOptions>();
   app.add_option("PROTOCOL", options->what,
-                 "stretch or identification: experiments 2 and 1 of Wiertlewski 2011")
+                 "stretch or identification: experiments 2 and 1 of Wiertlewski 2011; amplitude: after Fiene "
+                 "and Kuchenbecker 2007")
       ->required();
   app.add_option("-o,--output", options->stem, "Stem of the study's files; default: the protocol's name");
   app.add_option("--textures", options->textures,
-                 "Of identification: the standards, textures of force, A,B,C,D,E")
+                 "Textures of force. Of identification: the standards, A,B,C,D,E; of amplitude: one")
       ->delimiter(',');
   app.add_option("--comparisons", options->comparisons,
                  "Of identification: which of them are presented, C,D,E; default: all")
@@ -435,7 +444,9 @@ cli::Action declare_new_study(CLI::App& app) {
   app.footer(
       "stretch: which of two sinusoids has the smaller period. identification: which of the standards is a "
       "comparison, a real sample in one block and played in the other one, each of 100 trials or 15 "
-      "minutes. "
+      "minutes. amplitude: one texture at gains between 0 and 2 times that of the real sample, which is "
+      "before "
+      "the participant; each is rated from -3 to 3 against it. "
       "Label the real samples with the codes of STUDY.key.json, which neither operator nor participant "
       "reads.");
   cli::declare_force(app, options->existing);
@@ -461,7 +472,9 @@ cli::Action declare_run_study(CLI::App& app) {
       "A simulated participant, which gets only the displacement that the sessions predict: "
       "weber=25.3%,lapse=2%,hurry=5%,seed=1 (hurry: share of trials with a finger of twice the speed). Of an "
       "identification: template,noise=9dB,hurry=5%,seed=1, which compares its spectrum with the standards'; "
-      "its noise is tuned, so its success says nothing about people");
+      "its noise is tuned, so its success says nothing about people. Of amplitude: "
+      "match=86%,weber=10%,lapse=2%,seed=1 "
+      "(match: the ratio that seems equal to the real sample)");
   app.add_option("--answers", options->answers, kAnswersHelp)->excludes(observer);
   app.footer(
       "Each step is in STUDY-P07.trials.jsonl before the next one begins. Whether a trial was delivered is "

@@ -41,6 +41,16 @@ std::optional<double> predicted_period_m(const std::string& session) {
   return spatial_period_m(position_m, stroke->predicted_m);
 }
 
+// Of all strokes. Precondition: each has a target, of one texture at this gain.
+double predicted_gain_m_per_n(std::span<const playback::PlayedStroke> strokes, double gain_m_per_n) {
+  double predicted_m2 = 0, target_m2 = 0;
+  for (const playback::PlayedStroke& stroke : strokes) {
+    predicted_m2 += stroke.predicted.rms_m * stroke.predicted.rms_m;
+    target_m2 += stroke.target_rms_m * stroke.target_rms_m;
+  }
+  return gain_m_per_n * std::sqrt(predicted_m2 / target_m2);
+}
+
 void add_count(std::vector<std::string>& why, std::uint64_t count, int limit, const char* what) {
   if (count > static_cast<std::uint64_t>(limit)) why.push_back(fmt::format("{} {}", count, what));
 }
@@ -95,6 +105,10 @@ Result<IntervalFacts> interval_facts(const std::string& session) {
     facts.strokes = report->stroke_count;
     if (report->limits) facts.removed_by_limits_db = report->limits->removed_db();
     add_strokes(report->strokes, facts);
+    const schema::SessionHeader& header = reader->header();
+    if (header.textures.size() == 1 && facts.predicted_error_db)
+      facts.predicted_gain_m_per_n =
+          predicted_gain_m_per_n(report->strokes, header.initial_gain * header.textures.front().gain_m_per_n);
   }
   if (facts.strokes > 0) facts.predicted_period_m = predicted_period_m(session);
   return facts;

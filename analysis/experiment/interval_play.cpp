@@ -44,7 +44,7 @@ playback::PlayOptions options_of(const schema::Protocol& protocol, const Interva
   playback::PlayOptions options;
   options.program.file = play.stimulus;
   options.program.at_m = 0;
-  options.program.gain = schema::Gain{protocol.gain_m_per_n, false};
+  options.program.gain = schema::Gain{play.ratio * protocol.gain_m_per_n, false};
   options.device_uri = play.device_uri;
   options.session = play.session;
   schema::ProtocolPace pace = protocol.pace;
@@ -65,7 +65,8 @@ Result<double> load_time_s(const Study& study, const std::string& code, const st
   if (!transducer)
     return fail(ErrorKind::unsuitable, "the device does not report its transducer", device_uri,
                 "give the device its calibration, or use another one");
-  const auto options = options_of(study.protocol, {device_uri, study.stimulus(code), {}, false, {}});
+  const auto options = options_of(
+      study.protocol, {device_uri, study.stimulus(code), {}, false, {}, study.protocol.largest_ratio});
   playback::PrepareOptions prepare;
   prepare.most_samples = device->client->description().welcome.profile_samples;
   const auto program = playback::make_program(options.program, transducer->name, prepare);

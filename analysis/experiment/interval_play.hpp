@@ -21,6 +21,7 @@ struct IntervalPlay {
   std::string session;   ///< to be written
   bool hurried = false;  ///< an emulated finger moves at twice the speed
   std::function<bool()> stop_asked;
+  double ratio = 1;  ///< gain over that of the protocol
 };
 
 /// Begins `lead_s` after this call on a device that keeps time, when the texture is on the device, and lasts
@@ -38,9 +39,9 @@ struct SlowestLoad {
   std::string code;
 };
 
-/// Whether the device can play every stimulus, each of them loaded once, as an interval loads it. Errors:
-/// those of opening the device, of make_program, of the upload; unsuitable: the lead is shorter than the
-/// slowest load.
+/// Whether the device can play every stimulus, at the largest gain, each of them loaded once, as an interval
+/// loads it. Errors: those of opening the device, of make_program, of the upload; unsuitable: the lead is
+/// shorter than the slowest load.
 schema::Result<SlowestLoad> check_on_device(const Study& study, const std::string& device_uri);
 
 }  // namespace tacto::analysis

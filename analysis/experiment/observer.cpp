@@ -8,9 +8,9 @@
 #include <numbers>
 #include <vector>
 
+#include "analysis/experiment/trial_order.hpp"
 #include "data-schema/base/nearest_word.hpp"
 #include "data-schema/base/quantity.hpp"
-#include "data-schema/files/files.hpp"
 
 namespace tacto::analysis {
 
@@ -29,12 +29,15 @@ struct ObserverShare {
   double Observer::*member;
   double most;
 };
-const ObserverShare kObserverShares[] = {
-    {"weber", &Observer::weber, 10}, {"lapse", &Observer::lapse, 1}, {"hurry", &Observer::hurry, 1}};
+const ObserverShare kObserverShares[] = {{"weber", &Observer::weber, 10},
+                                         {"match", &Observer::match, 10},
+                                         {"lapse", &Observer::lapse, 1},
+                                         {"hurry", &Observer::hurry, 1}};
 
 tl::unexpected<schema::Error> bad_observer(const std::string& what) {
-  return fail(ErrorKind::usage, what, "--observer",
-              "give for example weber=25.3%,lapse=2%,seed=1, or template,seed=1");
+  return fail(
+      ErrorKind::usage, what, "--observer",
+      "give for example weber=25.3%,lapse=2%,seed=1, or match=86%,weber=10%,seed=1, or template,seed=1");
 }
 
 Result<void> set(Observer& observer, const std::string& name, const std::string& value) {
@@ -52,9 +55,9 @@ Result<void> set(Observer& observer, const std::string& name, const std::string&
   if (found == std::end(kObserverShares) || (observer.identifies && found->member != &Observer::hurry))
     return bad_observer(fmt::format(
         "'{}' is unknown{}", name,
-        schema::did_you_mean(name, observer.identifies
-                                       ? std::vector<std::string>{"noise", "hurry", "seed"}
-                                       : std::vector<std::string>{"weber", "lapse", "hurry", "seed"})));
+        schema::did_you_mean(name, observer.identifies ? std::vector<std::string>{"noise", "hurry", "seed"}
+                                                       : std::vector<std::string>{"weber", "match", "lapse",
+                                                                                  "hurry", "seed"})));
   const auto share = schema::parse_quantity(value, schema::Dimension::share);
   if (!share) return bad_observer(fmt::format("{}: {}", name, share.error().what));
   if (!(*share >= 0 && *share <= found->most))
@@ -65,10 +68,8 @@ Result<void> set(Observer& observer, const std::string& name, const std::string&
 
 }  // namespace
 
-// Above 0, below 1: 52 bits of the SHA-256 of SEED/PLACE/WHAT.
 double uniform_of(const Observer& observer, const std::string& place, const char* what) {
-  const std::string sum = schema::sha256_of(fmt::format("{}/{}/{}", observer.seed, place, what));
-  return (static_cast<double>(std::stoull(sum.substr(0, 13), nullptr, 16)) + 0.5) / 0x1p52;
+  return uniform_by_sum(fmt::format("{}/{}/{}", observer.seed, place, what));
 }
 
 // Box and Muller 1958.
@@ -103,6 +104,15 @@ int smaller_period(const Observer& observer, const std::string& place,
   if (by_chance || !period_m[0] || !period_m[1]) return uniform_of(observer, place, "guess") < 0.5 ? 1 : 2;
   const double noise_m = observer.weber * standard_m / kQuantile75 * normal_of(observer, place);
   return *period_m[0] - *period_m[1] + noise_m < 0 ? 1 : 2;
+}
+
+int rated(const Observer& observer, const std::string& place, double ratio) {
+  constexpr int kMost = schema::kLargestRating;
+  if (uniform_of(observer, place, "lapse") < observer.lapse)
+    return static_cast<int>((2 * kMost + 1) * uniform_of(observer, place, "guess")) - kMost;
+  const double noise = observer.weber / kQuantile75 * normal_of(observer, place);
+  return static_cast<int>(
+      std::lround(std::clamp<double>(kMost * (ratio - observer.match + noise), -kMost, kMost)));
 }
 
 bool hurries(const Observer& observer, const std::string& place) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "analysis/experiment/interval_facts.hpp"
 #include "analysis/experiment/trial_runner.hpp"
@@ -22,14 +23,15 @@ using schema::Result;
 namespace {
 
 constexpr const char *kStretchColumns = "standard_interval\tnominal_stretch\tpredicted_stretch",
-                     *kIdentificationColumns = "block\tcondition\tpresented";
+                     *kIdentificationColumns = "block\tcondition\tpresented",
+                     *kAmplitudeColumns = "nominal_ratio\tpredicted_ratio";
 constexpr const char* kTrialColumns =
     "attempt\ttrial\t{}\tpredicted_error_db\tmeasured_error_db\t{}\tanswer\tanswer_s\tdelivered\twhy\t"
     "simulated\n";
 constexpr const char* kPlacedReason = "real sample, placed by the operator: no session records it";
 
-bool has_two_intervals(const Run& run) {
-  return run.study.protocol.task == schema::Task::two_interval;
+schema::Task task_of(const Run& run) {
+  return run.study.protocol.task;
 }
 
 std::string folder_with(const std::string& stem) {
@@ -102,12 +104,22 @@ class Prover {
                                           fmt::join(attempt.judged->why, "; ")));
     if (!again.counts()) return;
     ++proof_.delivered;
-    if (!has_two_intervals(run_)) return;
+    if (task_of(run_) == schema::Task::amplitude) compare_ratio(again);
+    if (task_of(run_) != schema::Task::two_interval) return;
     const double nominal = stimulus_of(run_.study.key, attempt.trial.code).stretch;
     if (const auto predicted = predicted_stretch(again))
       proof_.stretch_error = std::max(proof_.stretch_error.value_or(0), std::abs(*predicted - nominal));
     else
       proof_.faults.push_back(fmt::format("attempt {}: its sessions have no period", attempt.begun.attempt));
+  }
+
+  void compare_ratio(const Attempt& attempt) {
+    if (const auto predicted = predicted_ratio(run_, attempt))
+      proof_.ratio_error =
+          std::max(proof_.ratio_error.value_or(0), std::abs(*predicted - attempt.trial.ratio));
+    else
+      proof_.faults.push_back(
+          fmt::format("attempt {}: its session does not say the gain", attempt.begun.attempt));
   }
 
   const Run& run_;
@@ -125,7 +137,11 @@ std::string level_cell(const Attempt& attempt, std::optional<double> schema::Int
 
 std::string cells_of_task(const Run& run, const Attempt& attempt) {
   const schema::CodedStimulus& stimulus = stimulus_of(run.study.key, attempt.trial.code);
-  if (!has_two_intervals(run))
+  if (task_of(run) == schema::Task::amplitude) {
+    const auto ratio = attempt.judged ? predicted_ratio(run, attempt) : std::nullopt;
+    return fmt::format("{:.9g}\t{}", attempt.trial.ratio, ratio ? fmt::format("{:.9g}", *ratio) : "");
+  }
+  if (task_of(run) == schema::Task::identification)
     return fmt::format("{}\t{}\t{}", attempt.trial.block,
                        attempt.trial.real ? schema::kRealCondition : schema::kVirtualCondition,
                        stimulus.name);
@@ -141,7 +157,9 @@ std::string trial_row(const Run& run, const Attempt& attempt) {
        {&schema::IntervalFacts::predicted_error_db, &schema::IntervalFacts::measured_error_db})
     row += "\t" + (attempt.judged ? level_cell(attempt, member) : "");
   if (const auto& answered = attempt.answered)
-    row += fmt::format("\t{}\t{}\t{:.3f}", answered->choice, answered->word, answered->answer_s);
+    row += fmt::format("\t{}\t{}\t{:.3f}",
+                       task_of(run) == schema::Task::amplitude ? rating_of(attempt) : answered->choice,
+                       answered->word, answered->answer_s);
   else
     row += "\t\t\t";
   row += std::string("\t") + (!attempt.judged ? "unknown" : attempt.judged->delivered ? "yes" : "no");
@@ -195,10 +213,32 @@ std::optional<double> predicted_stretch(const Attempt& attempt) {
   return *of_stretched / *of_standard - 1;
 }
 
+std::optional<double> predicted_ratio(const Run& run, const Attempt& attempt) {
+  if (attempt.judged->intervals.size() != 1) return std::nullopt;
+  const auto& gain_m_per_n = attempt.judged->intervals.front().predicted_gain_m_per_n;
+  if (!gain_m_per_n) return std::nullopt;
+  return *gain_m_per_n / run.study.protocol.gain_m_per_n;
+}
+
+int rating_of(const Attempt& attempt) {
+  return attempt.answered->choice - 1 - schema::kLargestRating;
+}
+
+std::string observer_in_words(const Run& run) {
+  const schema::RunPlanned& plan = run.journal.plan;
+  if (plan.observer.empty()) return {};
+  std::string words = fmt::format("observer {} ({})", plan.observer, plan.participant);
+  if (run.queue.placed() > 0)
+    words += ", which got the stored texture, without a device, in place of each real sample";
+  return words;
+}
+
 std::string trials_table(const Run& run) {
-  std::string table = has_two_intervals(run)
-                          ? fmt::format(kTrialColumns, kStretchColumns, "answer_interval")
-                          : fmt::format(kTrialColumns, kIdentificationColumns, "answer_choice");
+  constexpr std::pair<const char*, const char*> kColumnsOfTask[] = {{kStretchColumns, "answer_interval"},
+                                                                    {kIdentificationColumns, "answer_choice"},
+                                                                    {kAmplitudeColumns, "rating"}};
+  const auto& [columns, answer] = kColumnsOfTask[static_cast<int>(task_of(run))];
+  std::string table = fmt::format(kTrialColumns, columns, answer);
   for (const Attempt& attempt : run.queue.attempts()) table += trial_row(run, attempt) + "\n";
   return table;
 }

@@ -27,8 +27,10 @@ schema::Result<Run> read_run(const std::string& name);
 /// The same for a journal that was read already.
 schema::Result<Run> run_of(const std::string& stem, schema::Journal journal);
 
-/// How far the predicted stretch may be from the nominal one.
+/// How far the predicted stretch may be from the nominal one, and the predicted ratio from the asked one: 1 %
+/// of the largest ratio of `new amplitude`.
 inline constexpr double kStretchTolerance = 0.01;
+inline constexpr double kRatioTolerance = 0.02;
 
 struct Proof {
   std::size_t trials = 0;                                 ///< planned; without those whose time was over
@@ -36,13 +38,16 @@ struct Proof {
   std::size_t attempts = 0, interrupted = 0, failed = 0;  ///< of the attempts: without answer; not delivered
   std::size_t sessions = 0, same_to_the_bit = 0;
   std::size_t placed = 0;  ///< answered real samples: what they were is the operator's word
-  /// Largest |predicted - nominal| of those delivered; none in an identification.
+  /// Largest |predicted - nominal| of those delivered; of two intervals.
   std::optional<double> stretch_error;
+  /// Largest |predicted - asked| of those delivered; of amplitude.
+  std::optional<double> ratio_error;
   std::vector<std::string> faults;  ///< what differs from the journal, session by session
   std::string simulated;
 
   bool holds() const {
-    return faults.empty() && same_to_the_bit == sessions && stretch_error.value_or(0) <= kStretchTolerance;
+    return faults.empty() && same_to_the_bit == sessions && stretch_error.value_or(0) <= kStretchTolerance &&
+           ratio_error.value_or(0) <= kRatioTolerance;
   }
 };
 
@@ -53,6 +58,15 @@ Proof prove(const Run& run, const std::function<void(double)>& tell);
 /// Of a trial of two intervals: predicted period of the stretched stimulus over that of the standard, minus
 /// 1; none: a period is unknown.
 std::optional<double> predicted_stretch(const Attempt& attempt);
+
+/// Of a trial of amplitude: the gain that the session predicts, over that of the protocol; none: unknown.
+std::optional<double> predicted_ratio(const Run& run, const Attempt& attempt);
+
+/// From -3 to 3. Precondition: an answer in the task amplitude.
+int rating_of(const Attempt& attempt);
+
+/// The observer of the run and what it got; empty: a person answered.
+std::string observer_in_words(const Run& run);
 
 /// STUDY-P07.trials.tsv: a row for each attempt. Its columns are those of the task.
 std::string trials_table(const Run& run);

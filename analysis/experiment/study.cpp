@@ -61,6 +61,28 @@ schema::Texture coded(const schema::Texture& texture) {
   return stimulus;
 }
 
+// Path, speeds and gain for textures that are played up to `ratio` times as strong. Their names are the
+// standards.
+Result<void> fit_to_textures(schema::Protocol& protocol, const NamedTextures& textures, double ratio) {
+  double shortest_m = INFINITY, largest_n = 0;
+  for (const auto& [name, texture] : textures) {
+    if (texture.unit != "N")
+      return fail(ErrorKind::unsuitable,
+                  fmt::format("is in {}, and the gain of a protocol is for forces", texture.unit), name,
+                  "name textures of tangential force");
+    protocol.standards.push_back(name);
+    shortest_m = std::min(shortest_m, texture.signal.length_m());
+    for (const double force_n : texture.signal.values) largest_n = std::max(largest_n, std::abs(force_n));
+  }
+  const double inner_m = std::floor((shortest_m - 2 * kTextureEndM) * 1e3) / 1e3;
+  protocol.pace = {kTextureEndM, kTextureEndM + inner_m, 0.05, 2};
+  protocol.delivered.slowest_mps = 0.035, protocol.delivered.fastest_mps = 0.065;  // 50 +- 15 mm/s
+  if (ratio * largest_n * protocol.gain_m_per_n > kLargestDisplacementM)
+    protocol.gain_m_per_n = std::floor(1e6 * kLargestDisplacementM / (ratio * largest_n)) / 1e6;
+  protocol.standard = {}, protocol.keep_slope = false, protocol.levels.clear(), protocol.choices.clear();
+  return {};
+}
+
 Result<schema::Texture> stimulus_texture(const schema::Protocol& protocol, const NamedTextures& textures,
                                          const schema::CodedStimulus& stimulus) {
   if (!stimulus.name.empty()) return coded(textures.at(stimulus.name));
@@ -170,34 +192,38 @@ Result<schema::Protocol> identification_protocol(const std::string& seed, const 
                   "name those of --textures that are to be presented");
   schema::Protocol protocol = stretch_protocol(seed);
   protocol.task = schema::Task::identification;
-  protocol.standard = {}, protocol.keep_slope = false, protocol.levels.clear();
+  TACTO_TRY(fit_to_textures(protocol, textures, 1));
   protocol.comparisons = comparisons;
   protocol.conditions = {schema::kRealCondition, schema::kVirtualCondition};
   protocol.most_trials = 100;
   protocol.longest_s = 900;
   protocol.repetitions = static_cast<int>(std::ceil(100.0 / static_cast<double>(comparisons.size())));
   protocol.participants = 10;
-  protocol.choices.clear();
-  double shortest_m = INFINITY, largest_n = 0;
-  for (const auto& [name, texture] : textures) {
-    if (texture.unit != "N")
-      return fail(ErrorKind::unsuitable,
-                  fmt::format("is in {}, and the gain of a protocol is for forces", texture.unit), name,
-                  "name textures of tangential force");
-    protocol.standards.push_back(name);
+  for (const std::string& name : protocol.standards)
     protocol.choices.push_back({std::string(1, kAnswerKeys[protocol.choices.size()]), name});
-    shortest_m = std::min(shortest_m, texture.signal.length_m());
-    for (const double force_n : texture.signal.values) largest_n = std::max(largest_n, std::abs(force_n));
-  }
-  const double inner_m = std::floor((shortest_m - 2 * kTextureEndM) * 1e3) / 1e3;
-  protocol.pace = {kTextureEndM, kTextureEndM + inner_m, 0.05, 2};
-  protocol.delivered.slowest_mps = 0.035, protocol.delivered.fastest_mps = 0.065;  // 50 +- 15 mm/s
-  if (largest_n * protocol.gain_m_per_n > kLargestDisplacementM)
-    protocol.gain_m_per_n = std::floor(1e6 * kLargestDisplacementM / largest_n) / 1e6;
   protocol.texts.welcome = "You feel one texture at a time. Say which of the textures before you it is.";
   protocol.texts.question = fmt::format("Which one was it? Press its button, {} to {}.", kAnswerKeys.front(),
                                         protocol.choices.back().key);
   protocol.texts.place = "For the operator: put this sample on the bench, type its label and press Enter.";
+  return protocol;
+}
+
+Result<schema::Protocol> amplitude_protocol(const std::string& seed, const NamedTextures& textures) {
+  if (textures.size() != 1)
+    return fail(ErrorKind::usage, fmt::format("there are {} textures", textures.size()), "--textures",
+                "name one: for others make a study each");
+  schema::Protocol protocol = stretch_protocol(seed);
+  protocol.task = schema::Task::amplitude;
+  protocol.largest_ratio = 2;
+  TACTO_TRY(fit_to_textures(protocol, textures, protocol.largest_ratio));
+  protocol.repetitions = 60;
+  protocol.choices = {{"a", "-3"}, {"s", "-2"}, {"d", "-1"}, {"f", "0"}, {"j", "1"}, {"k", "2"}, {"l", "3"}};
+  protocol.texts.welcome =
+      "You feel one texture at a time. Say how strong it is, compared with the real sample before you.";
+  protocol.texts.question =
+      "Compared with the real sample, the texture was: a: much weaker (-3), s: weaker (-2), d: a little "
+      "weaker "
+      "(-1), f: equal (0), j: a little stronger (1), k: stronger (2), l: much stronger (3).";
   return protocol;
 }
 

@@ -39,6 +39,11 @@ schema::Result<schema::Protocol> identification_protocol(const std::string& seed
                                                          const NamedTextures& textures,
                                                          const std::vector<std::string>& comparisons);
 
+/// The task of Fiene and Kuchenbecker 2007: one texture, 60 times, each at a gain between 0 and 2 times that
+/// of the real sample, which is rated from -3 to 3 against it. Path and gain as of an identification, for
+/// twice the force. Errors: usage, if there is not one texture; as identification_protocol.
+schema::Result<schema::Protocol> amplitude_protocol(const std::string& seed, const NamedTextures& textures);
+
 /// Makes the stimuli (spatial/transform; or of `textures`, without what names their surface) and writes all
 /// files. Errors: usage, if there is one of them and it is to be kept; cannot_write; those of stretching.
 schema::Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,

@@ -67,8 +67,7 @@ void add_simulated(std::vector<std::string>& all, const Run& run) {
   const auto add = [&](const std::string& what) {
     if (std::ranges::find(all, what) == all.end()) all.push_back(what);
   };
-  const schema::RunPlanned& plan = run.journal.plan;
-  if (!plan.observer.empty()) add(fmt::format("observer {} ({})", plan.observer, plan.participant));
+  if (const std::string observer = observer_in_words(run); !observer.empty()) add(observer);
   for (const Attempt& attempt : run.queue.attempts())
     if (attempt.judged)
       for (const schema::IntervalFacts& facts : attempt.judged->intervals)

@@ -31,6 +31,9 @@ constexpr Column kColumns[] = {
     {"presented", "name of the comparison", ""},
     {"answer_choice", "number of the standard that was answered", ""},
     {"correct", "1: the answer is the comparison, else 0", ""},
+    {"nominal_ratio", "gain of the trial over that at which the displacement is the real sample's", "1"},
+    {"predicted_ratio", "the same of the displacement that the transducer's model predicts", "1"},
+    {"rating", "from -3, much weaker than the real sample, to 3, much stronger", ""},
     {"standard_interval", "interval in which the standard was played, 1 or 2", ""},
     {"nominal_stretch", "period of the stretched stimulus over that of the standard, minus 1", "1"},
     {"predicted_stretch", "the same of the displacement that the transducer's model predicts", "1"},
@@ -122,13 +125,14 @@ bool is_right(const Run& run, const Attempt& attempt) {
              : attempt.answered->word == stimulus_of(run.study.key, attempt.trial.code).name;
 }
 
-// The cells of trials_table(), with seemed_longer or correct.
+// The cells of trials_table(); with seemed_longer of two intervals, with correct of an identification.
 std::vector<std::vector<std::string>> rows_of(const Run& run) {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::string> lines = split(trials_table(run), '\n');
   lines.pop_back();
   for (std::size_t i = 0; i < lines.size(); ++i) {
     rows.push_back(split(lines[i], '\t'));
+    if (run.study.protocol.task == schema::Task::amplitude) continue;
     const Attempt* const attempt = i > 0 ? &run.queue.attempts()[i - 1] : nullptr;
     const bool answered = attempt != nullptr && attempt->answered;
     const char* const name = is_two_interval(run.study.protocol) ? "seemed_longer" : "correct";

@@ -102,7 +102,7 @@ class LiveSteps {
 
   Result<std::optional<schema::JournalEntry>> play(const Attempt& attempt) {
     std::vector<std::string> late, sums;
-    IntervalPlay interval{request_.device_uri, {}, {}, false, request_.stop_asked};
+    IntervalPlay interval{request_.device_uri, {}, {}, false, request_.stop_asked, attempt.trial.ratio};
     interval.hurried = request_.observer && hurries(*request_.observer, place(attempt));
     for (std::size_t i = 0; i < attempt.begun.stimuli.size(); ++i) {
       if (!go_ahead(static_cast<int>(i) + 1)) return std::nullopt;
@@ -146,6 +146,10 @@ class LiveSteps {
                          0};
     }
     const auto& intervals = attempt.judged->intervals;
+    if (run_.study.protocol.task == schema::Task::amplitude) {
+      const double ratio = predicted_ratio(run_, attempt).value_or(0);
+      return GivenAnswer{rated(*request_.observer, place(attempt), ratio) + schema::kLargestRating + 1, 0};
+    }
     const int choice = smaller_period(*request_.observer, place(attempt),
                                       {intervals[0].predicted_period_m, intervals[1].predicted_period_m},
                                       run_.study.protocol.standard.period_m);
@@ -164,9 +168,9 @@ class LiveSteps {
 // The row of block orders that the fewest complete runs have. A journal that cannot be read is of no
 // complete run.
 int next_order(const Study& study) {
-  std::vector<int> complete(static_cast<std::size_t>(study.protocol.task == schema::Task::two_interval
-                                                         ? 1
-                                                         : williams_rows(study.protocol.conditions.size())));
+  std::vector<int> complete(static_cast<std::size_t>(study.protocol.task == schema::Task::identification
+                                                         ? williams_rows(study.protocol.conditions.size())
+                                                         : 1));
   for (const std::string& stem : runs_of(study)) {
     const auto journal = schema::read_journal(schema::journal_path(stem));
     if (!journal) continue;
@@ -178,12 +182,12 @@ int next_order(const Study& study) {
 }
 
 Result<void> check_observer(const schema::Protocol& protocol, const std::optional<Observer>& observer) {
-  const bool identifies = protocol.task == schema::Task::identification;
-  if (!observer || observer->identifies == identifies) return {};
+  constexpr const char* kExamples[] = {"weber=25.3%", "template", "match=86%,weber=10%"};
+  if (!observer || observer->task() == protocol.task) return {};
   return fail(
       ErrorKind::usage,
       fmt::format("'{}' cannot answer in the task {}", observer->text, schema::word_of(protocol.task)),
-      "--observer", identifies ? "give template" : "give for example weber=25.3%");
+      "--observer", fmt::format("give for example {}", kExamples[static_cast<int>(protocol.task)]));
 }
 
 Result<void> write_table(const Run& run) {

@@ -22,9 +22,14 @@ std::vector<Value> sorted_by_sum(std::vector<Value> values, const TextOf& text_o
 }
 
 bool is_presented(const schema::Protocol& protocol, const schema::CodedStimulus& stimulus) {
-  return protocol.task == schema::Task::two_interval
-             ? stimulus.stretch != 0
-             : std::ranges::find(protocol.comparisons, stimulus.name) != protocol.comparisons.end();
+  if (protocol.task == schema::Task::two_interval) return stimulus.stretch != 0;
+  return protocol.task == schema::Task::amplitude ||
+         std::ranges::find(protocol.comparisons, stimulus.name) != protocol.comparisons.end();
+}
+
+std::string hashed_text(const schema::Protocol& protocol, const std::string& participant,
+                     const StudyTrial& trial) {
+  return fmt::format("{}/{}/{}/{}", protocol.seed, participant, trial.block, trial.name());
 }
 
 // `kind`: a trial of the block, without its stimulus.
@@ -33,18 +38,21 @@ std::vector<StudyTrial> trials_of_block(const schema::Protocol& protocol, const 
   std::vector<StudyTrial> trials;
   for (const schema::CodedStimulus& stimulus : key.stimuli)
     for (int i = 1; i <= protocol.repetitions && is_presented(protocol, stimulus); ++i)
-      trials.push_back({stimulus.code, i, kind.block, kind.real});
-  return sorted_by_sum(std::move(trials), [&](const StudyTrial& trial) {
-    return fmt::format("{}/{}/{}/{}", protocol.seed, participant, trial.block, trial.name());
-  });
+      trials.push_back({stimulus.code, i, kind.block, kind.real, 1});
+  if (protocol.task == schema::Task::amplitude)
+    for (StudyTrial& trial : trials)
+      trial.ratio =
+          protocol.largest_ratio * uniform_by_sum(hashed_text(protocol, participant, trial) + "/ratio");
+  return sorted_by_sum(std::move(trials),
+                       [&](const StudyTrial& trial) { return hashed_text(protocol, participant, trial); });
 }
 
 }  // namespace
 
 std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                        const std::string& participant, int order) {
-  if (protocol.task == schema::Task::two_interval)
-    return trials_of_block(protocol, key, participant, {{}, 0, 1, false});
+  if (protocol.task != schema::Task::identification)
+    return trials_of_block(protocol, key, participant, {{}, 0, 1, false, 1});
   std::vector<StudyTrial> trials;
   StudyTrial kind;
   for (const std::size_t condition : williams_row(protocol.conditions.size(), order)) {
@@ -68,6 +76,11 @@ std::vector<schema::CodedStimulus> stimuli_by_code(const schema::Protocol& proto
   });
   for (std::size_t i = 0; i < stimuli.size(); ++i) stimuli[i].code = fmt::format("K{}", i + 1);
   return stimuli;
+}
+
+double uniform_by_sum(const std::string& text) {
+  const std::string sum = schema::sha256_of(text);
+  return (static_cast<double>(std::stoull(sum.substr(0, 13), nullptr, 16)) + 0.5) / 0x1p52;
 }
 
 std::vector<std::size_t> williams_row(std::size_t count, int row) {

@@ -14,21 +14,26 @@ struct StudyTrial {
   int repetition = 0;
   int block = 1;
   bool real = false;  ///< a sample on the bench, instead of playback
+  double ratio = 1;   ///< its gain over that of the protocol
 
   std::string name() const { return code + "." + std::to_string(repetition); }
   bool standard_comes_first() const { return repetition % 2 == 1; }
 };
 
 /// All trials of a participant. Those of each block are sorted by the SHA-256 of
-/// SEED/PARTICIPANT/BLOCK/CODE.REPETITION. two_interval has one block, 1; the blocks of an identification are
-/// its conditions, in the order of row `order` of their Williams square, and each has its first most_trials
-/// trials.
+/// SEED/PARTICIPANT/BLOCK/CODE.REPETITION. two_interval and amplitude have one block, 1; the blocks of an
+/// identification are its conditions, in the order of row `order` of their Williams square, and each has its
+/// first most_trials trials. The ratio of a trial of amplitude is largest_ratio times uniform_by_sum() of
+/// that text with /ratio at its end.
 std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                        const std::string& participant, int order);
 
 /// The stimuli of a protocol, in the order of their codes K1, K2 ...: sorted by the SHA-256 of
 /// SEED/code/STRETCH, with the stretch as in 0.3, or of SEED/code/NAME. Without their sums.
 std::vector<schema::CodedStimulus> stimuli_by_code(const schema::Protocol& protocol);
+
+/// Above 0, below 1: (the first 52 bits of the SHA-256 of the text + 1/2) / 2^52.
+double uniform_by_sum(const std::string& text);
 
 /// A row of the Williams square of `count` conditions, from row 1: every condition is at each place equally
 /// often, and follows each other one equally often. `count` rows if that is even, else twice as many

@@ -53,6 +53,8 @@ struct IntervalFacts {
   std::optional<double> predicted_error_db;    ///< of the worst stroke; none: the target is unknown
   std::optional<double> measured_error_db;     ///< the same, if the tray has a sensor
   std::optional<double> predicted_period_m;    ///< of the predicted displacement along position
+  /// RMS of the predicted displacement of all strokes, re that of the texture's force in the band.
+  std::optional<double> predicted_gain_m_per_n;
   bool operator==(const IntervalFacts&) const = default;
 };
 

@@ -48,7 +48,8 @@ struct PerhapsFact {
 constexpr PerhapsFact kPerhapsFacts[] = {{"removed_by_limits_db", &IntervalFacts::removed_by_limits_db},
                                          {"predicted_error_db", &IntervalFacts::predicted_error_db},
                                          {"measured_error_db", &IntervalFacts::measured_error_db},
-                                         {"predicted_period_m", &IntervalFacts::predicted_period_m}};
+                                         {"predicted_period_m", &IntervalFacts::predicted_period_m},
+                                         {"predicted_gain_m_per_n", &IntervalFacts::predicted_gain_m_per_n}};
 
 struct PlanText {
   const char* name;

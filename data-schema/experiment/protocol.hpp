@@ -17,14 +17,18 @@ struct StandardStimulus {
 
 /// What a trial asks. two_interval: the standard and a stretched version of it are played, one after the
 /// other; which of them has the smaller period. identification: one of the comparisons is played, or lies on
-/// the bench as a real sample; which of the standards it is.
-enum class Task { two_interval, identification };
+/// the bench as a real sample; which of the standards it is. amplitude: the standard is played, at a gain of
+/// each trial; how strong it is, re the real sample that is before the participant.
+enum class Task { two_interval, identification, amplitude };
 
-/// "two_interval", "identification".
+/// "two_interval", "identification", "amplitude".
 const char* word_of(Task task);
 
 /// One condition of an identification: the comparisons are real samples, or played.
 inline constexpr const char *kRealCondition = "real", *kVirtualCondition = "virtual";
+
+/// The answers of the task amplitude, in order: the ratings -3 to 3.
+inline constexpr int kLargestRating = 3;
 
 /// How the finger is to move in each interval.
 struct ProtocolPace {
@@ -59,17 +63,20 @@ struct Protocol {
   StandardStimulus standard;   ///< of two_interval, as the next two
   bool keep_slope = false;     ///< the amplitude is stretched alike
   std::vector<double> levels;  ///< stretch of the period: 0.3 is 30 % longer; ascending, never 0
-  std::vector<std::string> standards, comparisons;  ///< names of textures; comparisons are standards
+  /// Names of textures: the comparisons are standards; of amplitude there is one standard.
+  std::vector<std::string> standards, comparisons;
   std::vector<std::string>
-      conditions;           ///< of an identification, a block each; their order is a row of a Williams square
-  int most_trials = 0;      ///< of one block
-  double longest_s = 0;     ///< of one block: then no further trial of it begins
-  int repetitions = 0;      ///< of each level or comparison (in each condition)
-  std::string seed;         ///< of codes and order
-  double gain_m_per_n = 0;  ///< of playback
+      conditions;        ///< of an identification, a block each; their order is a row of a Williams square
+  int most_trials = 0;   ///< of one block
+  double longest_s = 0;  ///< of one block: then no further trial of it begins
+  double largest_ratio = 1;  ///< of amplitude: gains of trials are uniform from 0 to this times gain_m_per_n
+  int repetitions = 0;       ///< of each level or comparison (in each condition); trials of amplitude
+  std::string seed;          ///< of codes and order
+  double gain_m_per_n = 0;   ///< of playback; of amplitude that of the ratio 1
   ProtocolPace pace;
   double lead_s = 0;  ///< from the participant's go-ahead to the beginning of an interval: above any load
-  std::vector<AnswerWord> choices;  ///< the answers: first and second interval; or a standard each, in order
+  std::vector<AnswerWord>
+      choices;  ///< the answers: first and second interval; a standard each, in order; or ratings
   std::string begin_key;
   int most_attempts = 0;  ///< of one trial; then the run goes on without it
   int participants = 0;   ///< planned: before they are complete, the analysis needs --unblind
@@ -84,8 +91,9 @@ struct Protocol {
 
 /// By stem, NAME.protocol.json or a JSON file with another name. Errors: not_found; malformed, with the
 /// place: also an unknown member (with the nearest known one), one that the task lacks or does not have,
-/// levels that do not rise or include 0, a comparison that is no standard, doubled keys or words, a path that
-/// leaves the texture, limits of speed that exclude the pace; unsupported_version.
+/// levels that do not rise or include 0, a comparison that is no standard, doubled keys or words, a word that
+/// is another answer's key, a path that leaves the texture, limits of speed that exclude the pace;
+/// unsupported_version.
 Result<Protocol> read_protocol(const std::string& name);
 
 /// The text of the file. Errors: unsuitable, by the schema.
@@ -99,7 +107,7 @@ std::string key_path(const std::string& study);
 struct CodedStimulus {
   std::string code;    ///< "K3"
   double stretch = 0;  ///< of two_interval; 0: the standard
-  std::string name;    ///< of an identification
+  std::string name;    ///< of the texture, in the other tasks
   std::string sha256;  ///< of its WAV
 };
 

@@ -40,11 +40,12 @@ struct ShownText {
   const char* name;
   std::string ProtocolTexts::*member;
 };
-constexpr const char* kTaskWords[] = {"two_interval", "identification"};
-// Members that one task has and the other one does not.
-constexpr const char* kTwoIntervalMembers[] = {"standard", "keep", "levels"};
-constexpr const char* kIdentificationMembers[] = {"standards", "comparisons", "conditions", "most_trials",
-                                                  "longest_s"};
+constexpr const char* kTaskWords[] = {"two_interval", "identification", "amplitude"};
+// The members of each task. Those of another one are refused.
+const std::vector<std::string> kTaskMembers[] = {
+    {"standard", "keep", "levels"},
+    {"standards", "comparisons", "conditions", "most_trials", "longest_s"},
+    {"standards", "largest_ratio"}};
 constexpr ShownText kShownTexts[] = {{"welcome", &ProtocolTexts::welcome},
                                      {"begin", &ProtocolTexts::begin},
                                      {"interval", &ProtocolTexts::interval},
@@ -52,7 +53,8 @@ constexpr ShownText kShownTexts[] = {{"welcome", &ProtocolTexts::welcome},
                                      {"end", &ProtocolTexts::end}};
 
 Task task_of(const Json& body) {
-  return body["task"] == kTaskWords[0] ? Task::two_interval : Task::identification;
+  return static_cast<Task>(std::ranges::find(kTaskWords, body["task"].get<std::string>()) -
+                           std::begin(kTaskWords));
 }
 
 void take_two_interval(const Json& body, Protocol& protocol) {
@@ -70,15 +72,19 @@ void take_identification(const Json& body, Protocol& protocol) {
   protocol.longest_s = body["longest_s"];
 }
 
+void take_amplitude(const Json& body, Protocol& protocol) {
+  protocol.standards = body["standards"].get<std::vector<std::string>>();
+  protocol.largest_ratio = body["largest_ratio"];
+}
+
 Protocol protocol_from(const Document& document) {
   const Json& body = document.body;
   Protocol protocol;
   const Json &pace = body["pace"], &answers = body["answers"];
   protocol.task = task_of(body);
-  if (protocol.task == Task::two_interval)
-    take_two_interval(body, protocol);
-  else
-    take_identification(body, protocol);
+  if (protocol.task == Task::two_interval) take_two_interval(body, protocol);
+  if (protocol.task == Task::identification) take_identification(body, protocol);
+  if (protocol.task == Task::amplitude) take_amplitude(body, protocol);
   protocol.repetitions = body["repetitions"];
   protocol.seed = body["seed"];
   protocol.gain_m_per_n = body["gain_m_per_n"];
@@ -114,14 +120,18 @@ void put_identification(Json& body, const Protocol& protocol) {
   body["longest_s"] = protocol.longest_s;
 }
 
+void put_amplitude(Json& body, const Protocol& protocol) {
+  body["standards"] = protocol.standards;
+  body["largest_ratio"] = protocol.largest_ratio;
+}
+
 Json protocol_body(const Protocol& protocol) {
   Json body = Json::object();
   put_text(body, "version", protocol.newer_version);
   body["task"] = word_of(protocol.task);
-  if (protocol.task == Task::two_interval)
-    put_two_interval(body, protocol);
-  else
-    put_identification(body, protocol);
+  if (protocol.task == Task::two_interval) put_two_interval(body, protocol);
+  if (protocol.task == Task::identification) put_identification(body, protocol);
+  if (protocol.task == Task::amplitude) put_amplitude(body, protocol);
   body["repetitions"] = protocol.repetitions;
   body["seed"] = protocol.seed;
   body["gain_m_per_n"] = protocol.gain_m_per_n;
@@ -171,14 +181,26 @@ Result<void> check_answers(const Protocol& protocol, const std::string& path) {
       return malformed_at(path, fmt::format("answers/choices/{}/word", words.size()).c_str(),
                           "two answers have the same word", "give them different words");
   }
-  const std::size_t expected = protocol.task == Task::two_interval ? 2 : protocol.standards.size();
+  for (const AnswerWord& one : protocol.choices)
+    for (const AnswerWord& other : protocol.choices)
+      if (one.word != other.word && one.word == other.key)
+        return malformed_at(path, "answers/choices",
+                            fmt::format("the word {} is the key of {}", one.word, other.word),
+                            "choose another key: a line of --answers is a word or a key");
+  const std::size_t expected = protocol.task == Task::two_interval ? 2
+                               : protocol.task == Task::amplitude  ? 2 * kLargestRating + 1
+                                                                   : protocol.standards.size();
   if (protocol.choices.size() == expected) return {};
   return malformed_at(path, "answers/choices",
                       fmt::format("has {} answers, the task {}", protocol.choices.size(), expected),
-                      "give one for each interval, or for each standard");
+                      "give one for each interval, for each standard, or for each rating from -3 to 3");
 }
 
 Result<void> check_names(const Protocol& protocol, const std::string& path) {
+  if (protocol.task != Task::two_interval &&
+      (protocol.task == Task::amplitude) != (protocol.standards.size() == 1))
+    return malformed_at(path, "standards", fmt::format("has {} names", protocol.standards.size()),
+                        "give one in the task amplitude, two or more in an identification");
   std::set<std::string> standards;
   for (const std::string& name : protocol.standards)
     if (!standards.insert(name).second)
@@ -191,22 +213,18 @@ Result<void> check_names(const Protocol& protocol, const std::string& path) {
   return {};
 }
 
-template <std::size_t kCount>
-Result<void> check_has(const Json& body, const char* const (&members)[kCount], bool expected,
-                       const std::string& path) {
-  for (const char* name : members)
-    if (body.contains(name) != expected)
-      return malformed_at(path, name,
+Result<void> check_members_of_task(const Json& body, const std::string& path) {
+  const std::vector<std::string>& own = kTaskMembers[static_cast<int>(task_of(body))];
+  for (const std::vector<std::string>& members : kTaskMembers)
+    for (const std::string& name : members) {
+      const bool expected = std::ranges::find(own, name) != own.end();
+      if (body.contains(name) == expected) continue;
+      return malformed_at(path, name.c_str(),
                           fmt::format("a protocol of the task {} {}", body["task"].get<std::string>(),
                                       expected ? "needs this member" : "does not have this member"),
                           expected ? "add it" : "remove it");
+    }
   return {};
-}
-
-Result<void> check_members_of_task(const Json& body, const std::string& path) {
-  const bool two_interval = task_of(body) == Task::two_interval;
-  TACTO_TRY(check_has(body, kTwoIntervalMembers, two_interval, path));
-  return check_has(body, kIdentificationMembers, !two_interval, path);
 }
 
 Result<void> check_pace(const Protocol& protocol, const std::string& path) {

@@ -91,6 +91,42 @@ nlohmann::json identification(nlohmann::json body, const nlohmann::json& change)
   return body;
 }
 
+TEST_F(ProtocolFile, AnAmplitudeReadsBackAndEachFaultHasItsPlace) {
+  nlohmann::json amplitude = body_;
+  for (const char* member : {"standard", "keep", "levels"}) amplitude.erase(member);
+  amplitude.merge_patch({{"task", "amplitude"}, {"standards", {"E"}}, {"largest_ratio", 2.0}});
+  nlohmann::json choices = nlohmann::json::array();
+  for (int rating = -3; rating <= 3; ++rating)
+    choices.push_back({{"key", std::string(1, "asdfjkl"[rating + 3])}, {"word", std::to_string(rating)}});
+  amplitude["answers"]["choices"] = choices;
+  const auto read = [&](const nlohmann::json& change) {
+    nlohmann::json body = amplitude;
+    body.merge_patch(change);
+    PendingFiles pending;
+    EXPECT_TRUE(pending.write(folder_ / "odd.protocol.json", body.dump()));
+    EXPECT_TRUE(pending.commit());
+    return read_protocol(folder_ / "odd");
+  };
+  const auto protocol = read(nlohmann::json::object());
+  ASSERT_TRUE(protocol) << message(protocol.error());
+  EXPECT_EQ(nlohmann::json::parse(protocol_text(*protocol).value()), amplitude);
+  nlohmann::json key_is_a_word = choices;
+  key_is_a_word[0]["key"] = "1";
+  for (const auto& [change, place] :
+       {std::pair<nlohmann::json, const char*>{{{"standards", {"E", "F"}}}, "/standards"},
+        {{{"largest_ratio", nullptr}}, "/largest_ratio"},
+        {{{"largest_ratio", 1.0}}, "/largest_ratio"},
+        {{{"longest_s", 900.0}}, "/longest_s"},
+        {{{"answers", {{"choices", {choices[0], choices[1]}}}}}, "/answers/choices"},
+        {{{"answers", {{"choices", key_is_a_word}}}}, "/answers/choices"}}) {
+    const auto refused = read(change);
+    ASSERT_FALSE(refused) << change;
+    EXPECT_EQ(refused.error().kind, ErrorKind::malformed) << change;
+    EXPECT_TRUE(refused.error().where.ends_with(std::string("odd.protocol.json#") + place))
+        << refused.error().where;
+  }
+}
+
 TEST_F(ProtocolFile, AnIdentificationReadsBackAndEachFaultHasItsPlace) {
   const auto read = [&](const nlohmann::json& change) {
     PendingFiles pending;
