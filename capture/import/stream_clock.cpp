@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "data-schema/recording/clock_fit.hpp"
+#include "capture/import/offset_drift.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -184,16 +184,25 @@ void Search::compare_with_nominal() {
 }
 
 void Search::move_to_recorders_clock(std::span<const schema::ClockPair> pairs) {
-  const auto fit = schema::fit_clock(pairs);
-  if (!fit) {
-    found_.words = "times of the stream, by its own clock (too few clock offsets, or too close in time)";
+  constexpr double kFastForACrystal_ppm = 100;
+  const auto fit = offset_drift(pairs);
+  if (!fit || !fit->is_certain()) {
+    found_.words = "times of the stream, by its own clock " +
+                   (fit ? fmt::format("(its drift of {:.3g} ppm is not certain: {:.3g} to {:.3g} ppm)",
+                                      fit->drift_ppm, fit->lowest_ppm, fit->highest_ppm)
+                        : "(too few clock offsets, or too close in time)");
     return;
   }
   found_.clock.rate_hz *= 1 + 1e-6 * fit->drift_ppm;
   found_.words = fmt::format(
       "times of the stream, by the recorder's clock: that of the stream is {:.3g} ppm {} ({} clock "
-      "offsets, scatter {:.3g} ms)",
-      std::abs(fit->drift_ppm), fit->drift_ppm < 0 ? "slower" : "faster", pairs.size(), 1e3 * fit->scatter_s);
+      "offsets, median deviation {:.3g} ms)",
+      std::abs(fit->drift_ppm), fit->drift_ppm < 0 ? "slower" : "faster", pairs.size(),
+      1e3 * fit->deviation_s);
+  if (std::abs(fit->drift_ppm) > kFastForACrystal_ppm)
+    found_.warnings.push_back(fmt::format(
+        "its clock is {:.3g} ppm {} than the recorder's: crystals deviate by less than {:g} ppm",
+        std::abs(fit->drift_ppm), fit->drift_ppm < 0 ? "slower" : "faster", kFastForACrystal_ppm));
 }
 
 Result<StreamClock> Search::run() {
@@ -210,8 +219,8 @@ Result<StreamClock> Search::run() {
     located.error().remedy = kWithoutTimes;
     return schema::forward_error(located);
   }
-  compare_with_nominal();
   move_to_recorders_clock(*pairs);
+  compare_with_nominal();
   return std::move(found_);
 }
 

@@ -22,9 +22,9 @@ inline constexpr double kLongestScatter_samples = 500;
 inline constexpr double kClockReset_s = 1;
 
 struct StreamClock {
-  UniformClock clock;  ///< by the recorder's clock, if there are enough offsets for fit_clock()
-  std::string words;   ///< where the rate is from, for the recording
-  std::vector<std::string> warnings;  ///< scatter; a rate far from the nominal one
+  UniformClock clock;                 ///< by the recorder's clock, if offset_drift() is certain
+  std::string words;                  ///< where the rate is from, for the recording
+  std::vector<std::string> warnings;  ///< scatter; a large drift; a rate far from the nominal one
 };
 
 /// The times are even, with missing whole periods (ClockFinder); or, if they scatter and the stream has a

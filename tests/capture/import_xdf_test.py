@@ -14,6 +14,7 @@ import sys
 import xml.etree.ElementTree
 
 import numpy as np
+import scipy.stats
 import tacto
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "fuzz"))
@@ -170,6 +171,32 @@ def clock_offsets_give_the_recorders_rate():
     assert imported(one_stream(times_s, 1000, offsets=offsets[:2]))["sample_rate_hz"] == 1000  # too few to fit
 
 
+def wrong_offsets_change_no_rate_and_noise_is_no_drift():
+    """The median of the slopes, and Sen's interval, also by SciPy."""
+    times_s = 500 + np.arange(60_000) / 1000
+    rng = np.random.default_rng(6)
+    stamps = np.arange(500, 560, 5.0)
+    for drift, wrong in ((40e-6, ()), (40e-6, (3,)), (40e-6, (0, 11)), (0, (7,)), (300e-6, (5,))):
+        ahead_s = 17.5 - drift * (stamps - 500) + rng.normal(0, 2e-5, stamps.size)
+        ahead_s[list(wrong)] += 0.7
+        told = imported(one_stream(times_s, 1000, offsets=list(zip(stamps, ahead_s))))
+        host_s = stamps + ahead_s
+        slope, _, low, high = scipy.stats.theilslopes(stamps - host_s, host_s, 0.95)
+        expected = 1000 * (1 + slope) if low * high > 0 else 1000
+        assert abs(told["sample_rate_hz"] / expected - 1) < 1e-9, (drift, wrong, told, expected)
+        # 20 us at each end of 55 s: 0.5 ppm; with two of 12 offsets wrong the median shifts by less than 2 ppm.
+        assert abs(told["sample_rate_hz"] / 1000 - 1 - drift) < 3e-6, (drift, wrong, told)
+        assert bool(told.get("warnings")) == (drift > 100e-6), told
+    three = [(500, 17.5), (506, 17.501), (512, 17.503)]
+    assert imported(one_stream(times_s, 1000, offsets=three))["sample_rate_hz"] == 1000
+    noise = list(zip(stamps, 17.5 + rng.permutation([-1e-3, 1e-3] * 6)))
+    told = imported(one_stream(times_s, 1000, offsets=noise))
+    assert told["sample_rate_hz"] == 1000 and "warnings" not in told, told
+    many = np.arange(500, 560, 0.02)  # 3,000 offsets are reduced to medians
+    told = imported(one_stream(times_s, 1000, offsets=list(zip(many, 17.5 - 40e-6 * (many - 500)))))
+    assert abs(told["sample_rate_hz"] - 1000 / (1 - 40e-6)) < 1e-6, told
+
+
 def a_reset_clock_is_refused_with_its_time():
     times_s = 500 + np.arange(30_000) / 1000
     jumped = [(t, 17.5 if t < 515 else -400) for t in np.arange(500, 530, 5.0)]
@@ -228,6 +255,6 @@ def damaged_files_are_refused():
 
 if __name__ == "__main__":
     for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, scattered_times_are_fitted,
-                 clock_offsets_give_the_recorders_rate, a_reset_clock_is_refused_with_its_time,
+                 clock_offsets_give_the_recorders_rate, wrong_offsets_change_no_rate_and_noise_is_no_drift, a_reset_clock_is_refused_with_its_time,
                  a_cut_file_is_read_to_its_last_whole_chunk_and_says_so, damaged_files_are_refused):
         tacto.in_folder(test)
