@@ -104,6 +104,7 @@ std::optional<ScatteredClock> ScatterFit::clock() const {
   std::uint64_t missing = 0;
   for (std::size_t k = 1; k < parts_.size(); ++k) {
     const double periods = (parts_[k].begin_s(period_s) - parts_[k - 1].end_s(period_s)) / period_s;
+    if (!(periods <= kLongestGap_samples)) return std::nullopt;
     const auto count = static_cast<std::uint64_t>(std::max(0.0, std::round(periods) - 1));
     if (count == 0) continue;
     missing += count;
@@ -147,6 +148,8 @@ Result<void> Search::survey() {
     even_.survey(times_s);
     for (const double time_s : times_s) {
       if (last_s && time_s < *last_s - kClockReset_s) return was_reset(where_, *last_s, time_s - *last_s);
+      if (last_s && (time_s - *last_s) * stream_.nominal_rate_hz > kLongestGap_samples)
+        return was_reset(where_, *last_s, time_s - *last_s);
       if (scatter_) scatter_->add(time_s);
       last_s = time_s;
     }
@@ -157,6 +160,7 @@ Result<void> Search::survey() {
 }
 
 Result<void> Search::locate() {
+  even_.allow_pauses();
   const auto place_of = [](std::uint64_t row) { return fmt::format("sample {}", row); };
   return schema::read_xdf(
       file_, stream_,
@@ -213,6 +217,10 @@ Result<StreamClock> Search::run() {
   const auto scattered = located || !scatter_ ? std::nullopt : scatter_->clock();
   if (located) {
     found_.clock = even_.clock();
+    if (even_.pauses() > 0)
+      found_.warnings.push_back(
+          fmt::format("{} of its pauses are no whole number of periods: their gaps are to the nearest sample",
+                      even_.pauses()));
   } else if (scattered) {
     use_scattered(*scattered);
   } else {

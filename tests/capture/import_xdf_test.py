@@ -141,6 +141,27 @@ def gaps_are_kept():
     assert imported(one_stream(uneven_s, 0, every=1), "--rate", "500Hz")["sample_rate_hz"] == 500
 
 
+def a_pause_of_any_length_is_a_gap():
+    """The rate is that of the even steps: not that of a line through all times."""
+    times_s = 1e5 + np.arange(20_000) / 1000
+    times_s[10_000:] += 0.1505  # 150.5 periods; the step is 151.5
+    times_s[15_000:] += 0.0017
+    told = imported(one_stream(times_s, 1000, every=1))
+    gaps = [(gap["frame"], gap["count"]) for gap in sidecar("x")["gaps"]]
+    assert told["sample_rate_hz"] == 1000 and [frame for frame, _ in gaps] == [10_000, 15_000], (told, gaps)
+    assert abs(gaps[0][1] - 150.5) <= 0.5 and gaps[1][1] == 2 and len(told["warnings"]) == 1, (gaps, told)
+    assert imported(one_stream(times_s, 0, every=1))["sample_rate_hz"] == 1000
+
+
+def a_jump_beyond_any_file_is_refused():
+    for nominal, code in ((1000, UNSUITABLE), (0, MALFORMED)):
+        for jump_s in (1e7, 1e18, 1e300):  # 1e10 samples and more
+            times_s = 100 + np.arange(ROWS) / 1000
+            times_s[1000:] += jump_s
+            error = imported(one_stream(times_s[:1001], nominal, every=1), code=code)
+            assert "100.999" in error["what"] or "sample 1000" in error["where"], error
+
+
 def scattered_times_are_fitted():
     """Times of LSL are those at which a program had the samples: here 2 ms (RMS) late or early, five periods, with a gap of 3 s."""
     rng = np.random.default_rng(4)
@@ -254,7 +275,7 @@ def damaged_files_are_refused():
 
 
 if __name__ == "__main__":
-    for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, scattered_times_are_fitted,
+    for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, a_pause_of_any_length_is_a_gap, a_jump_beyond_any_file_is_refused, scattered_times_are_fitted,
                  clock_offsets_give_the_recorders_rate, wrong_offsets_change_no_rate_and_noise_is_no_drift, a_reset_clock_is_refused_with_its_time,
                  a_cut_file_is_read_to_its_last_whole_chunk_and_says_so, damaged_files_are_refused):
         tacto.in_folder(test)
