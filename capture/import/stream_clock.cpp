@@ -155,7 +155,7 @@ Result<void> Search::survey() {
     }
     return {};
   };
-  TACTO_TRY(schema::read_xdf(file_, stream_, take, progress_));
+  TACTO_TRY(schema::read_xdf(file_, stream_, {}, take, progress_));
   return even_.end_survey(where_);
 }
 
@@ -163,7 +163,7 @@ Result<void> Search::locate() {
   even_.allow_pauses();
   const auto place_of = [](std::uint64_t row) { return fmt::format("sample {}", row); };
   return schema::read_xdf(
-      file_, stream_,
+      file_, stream_, {},
       [&](std::span<const double> times_s, std::span<const double>) {
         return even_.locate(times_s, place_of, where_);
       },

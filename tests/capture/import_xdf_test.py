@@ -91,6 +91,10 @@ def counts_above_2_24_and_beyond_2_53():
     counts[1234] = 2**53 + 1
     error = imported(start + samples(1, counts.astype("<i8"), np.arange(ROWS) / 1000) + footer(1, ROWS), channel="position=count*1um", code=UNSUITABLE)
     assert "count" in error["where"] and "1234" in error["where"] and str(2**53 + 1) in error["what"], error
+    both = np.column_stack([counts[:, 0], np.arange(ROWS)]).astype("<i8")
+    data = file_header() + header(1, "Encoder", 2, 1000, "int64") + samples(1, both, np.arange(ROWS) / 1000) + footer(1, ROWS)
+    imported(data, channel="position=ch2*1um")  # a channel that is not requested blocks nothing
+    assert np.array_equal(stored("x")[:, 0], np.arange(ROWS))
 
 
 def many_streams(values):
@@ -139,6 +143,15 @@ def gaps_are_kept():
     uneven_s = np.cumsum(np.random.default_rng(3).uniform(1e-3, 3e-3, ROWS))
     assert "sample" in imported(one_stream(uneven_s, 0, every=1), code=MALFORMED)["where"]
     assert imported(one_stream(uneven_s, 0, every=1), "--rate", "500Hz")["sample_rate_hz"] == 500
+
+
+def times_that_are_not_stated_do_not_add_up_rounding():
+    """Stamps of the Unix clock have steps of 0.24 us: added 30,000 times, periods of 0.1 ms would drift."""
+    values = np.arange(30_000, dtype="<i4").reshape(-1, 1)
+    data = file_header() + header(1, "F", 1, 10_000, "int32") + samples(1, values, 1.764e9 + np.arange(30_000) / 10_000, every=30_000) + footer(1, 30_000)
+    told = imported(data)
+    # The first and last time are rounded by half a step each, in 3 s.
+    assert abs(told["sample_rate_hz"] / 10_000 - 1) < 2.4e-7 / 3 and told["gaps"] == 0 and "warnings" not in told, told
 
 
 def a_pause_of_any_length_is_a_gap():
@@ -261,10 +274,13 @@ def damaged_files_are_refused():
                  head + chunk(3, one + b"\1\1\x00" + bytes(4)),                         # the first sample without a time
                  head + chunk(3, struct.pack("<I", 9) + b"\1\0"),                       # a stream without a header
                  head + header(1, "F", 1, 1000, "int32"),                               # two headers
-                 file_header() + header(1, "F", 0, 1000, "int32"), file_header() + header(1, "F", 1, -3, "int32"),
                  file_header() + chunk(2, one + b"<info><name>"), file_header() + chunk(5, bytes(16)), good + b"\2", b"XDF:"):
         assert imported(data, code=MALFORMED)["where"].startswith("trial.xdf")
-    imported(file_header() + header(1, "F", 5000, 1000, "int32"), code=UNSUITABLE)
+    for odd in (header(9, "O", 5000, 1000, "int32"), header(9, "O", 0, 1000, "int32"), header(9, "O", 1, -3, "int32")):
+        imported(file_header() + odd, code=UNSUITABLE)
+        assert imported(good + odd)["frames"] == ROWS  # the other streams can be read
+        rows = {row["name"]: row["not_imported"] for row in tacto.run_json("import", "trial.xdf")["streams"]}
+        assert rows["O"] and not rows["F"], rows
     imported(file_header("2.0") + header(1, "F", 1, 1000, "int32"), code=UNSUITABLE)
     assert imported(good + chunk(99, b"later"))["frames"] == ROWS  # the specification: unknown chunks are skipped
     holes = np.zeros((ROWS, 1), "<f4")
@@ -275,7 +291,7 @@ def damaged_files_are_refused():
 
 
 if __name__ == "__main__":
-    for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, a_pause_of_any_length_is_a_gap, a_jump_beyond_any_file_is_refused, scattered_times_are_fitted,
+    for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, times_that_are_not_stated_do_not_add_up_rounding, a_pause_of_any_length_is_a_gap, a_jump_beyond_any_file_is_refused, scattered_times_are_fitted,
                  clock_offsets_give_the_recorders_rate, wrong_offsets_change_no_rate_and_noise_is_no_drift, a_reset_clock_is_refused_with_its_time,
                  a_cut_file_is_read_to_its_last_whole_chunk_and_says_so, damaged_files_are_refused):
         tacto.in_folder(test)
