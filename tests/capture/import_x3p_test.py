@@ -6,6 +6,7 @@ import io
 import json
 import pathlib
 import random
+import re
 import zipfile
 
 import numpy as np
@@ -82,6 +83,30 @@ def each_type_along_rows_and_columns():
     profile = stored_matrix("D")[0]
     imported(x3p(main_xml("D", profile.tobytes(), feature="PRF", sizes=(COLUMNS, 1, 1)), profile.tobytes()))
     assert np.array_equal(heights(), (profile * 1e-9 + 5e-7).astype(np.float32))
+
+
+def heights_far_from_zero_keep_their_roughness():
+    rough_m = np.random.default_rng(3).normal(0, 20e-9, (ROWS, COLUMNS))
+    for far_m in (0.05, -0.05):
+        content = x3p(main_xml("D", rough_m.tobytes(), scale=1, offset=far_m), rough_m.tobytes())
+        imported(content, "--row", "1")
+        # A float of 60 nm has a step of 3.6e-15 m; a double of 50 mm one of 6.9e-18 m.
+        assert np.abs(heights() - (rough_m[0] - rough_m[0].mean())).max() < 1e-14
+        notes = json.loads(pathlib.Path("s.texture.json").read_text())["notes"]
+        mean_m = float(re.search(r"mean height of (\S+) m subtracted", notes)[1])
+        assert abs(mean_m - (rough_m[0].mean() + far_m)) < 1e-15, notes
+    imported(x3p(main_xml("D", rough_m.tobytes(), scale=1, offset=1e-6), rough_m.tobytes()), "--row", "1")
+    assert "subtracted" not in json.loads(pathlib.Path("s.texture.json").read_text())["notes"]
+
+
+def options_that_a_texture_does_not_store_are_refused():
+    matrix = stored_matrix("F")
+    content = x3p(main_xml("F", matrix.tobytes()), matrix.tobytes())
+    for more in (["--date", "2026-01-01"], ["--calibrated", "2026-01-01"], ["--humidity", "50%"], ["--speed", "5mm/s"], ["--no-position"],
+                 ["--mask-outliers"], ["--stream", "x"], ["--skip", "3"]):
+        assert imported(content, "--row", "1", *more, code=USAGE)["where"] == more[0]
+    for pitch in (b"5", b"1e-12"):
+        assert imported(x3p(main_xml("F", matrix.tobytes()).replace(b"2e-06", pitch), matrix.tobytes()), "--row", "1", code=UNSUITABLE)["where"] == "s.x3p"
 
 
 def tacto_points(content, points):
@@ -183,6 +208,7 @@ def judged(name, content, right):
 
 
 if __name__ == "__main__":
-    for test in (each_type_along_rows_and_columns, holes_are_refused_with_the_longest_section, lines_and_options_that_do_not_fit,
+    for test in (each_type_along_rows_and_columns, heights_far_from_zero_keep_their_roughness, options_that_a_texture_does_not_store_are_refused,
+                 holes_are_refused_with_the_longest_section, lines_and_options_that_do_not_fit,
                  folders_foreign_files_and_checksums, what_is_not_read_is_named, cuts_and_damage_are_never_silent):
         tacto.in_folder(test)
