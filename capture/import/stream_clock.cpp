@@ -35,7 +35,8 @@ Result<std::vector<schema::ClockPair>> clock_pairs(const std::string& where,
     if (!pairs.empty()) {
       const double step_s = time_s - pairs.back().device_s;
       const double jump_s = step_s - (pair.host_s - pairs.back().host_s);
-      if (step_s < 0 || std::abs(jump_s) > kClockReset_s) return was_reset(where, time_s, jump_s);
+      if (step_s < 0 || std::abs(jump_s) > kClockReset_s)
+        return was_reset(where, time_s, step_s < 0 ? step_s : jump_s);
     }
     pairs.push_back(pair);
   }

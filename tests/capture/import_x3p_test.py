@@ -154,6 +154,9 @@ def folders_foreign_files_and_checksums():
         assert np.array_equal(heights(), (matrix[0] * 1e-9 + 5e-7).astype(np.float32))
     assert "main.xml" in imported(x3p(xml.replace(b"tester", b"Tester"), points, sums=False, more=[("md5checksum.hex", hashlib.md5(xml).hexdigest())]),
                                   "--row", "1", code=MALFORMED)["where"]
+    written_otherwise = main_xml("D", points, scale="+1e-9", sizes=(f"+{COLUMNS}", ROWS, 1)).replace(b">bindata/", b">./bindata/")
+    imported(x3p(written_otherwise, points), "--row", "1")
+    assert np.array_equal(heights(), (matrix[0] * 1e-9 + 5e-7).astype(np.float32))
     changed = bytearray(points)
     changed[17] ^= 1
     assert "data.bin" in imported(x3p(xml, bytes(changed)), "--row", "1", code=MALFORMED)["where"]
@@ -171,7 +174,7 @@ def what_is_not_read_is_named():
     for xml in unsuitable:
         imported(x3p(xml, points), "--row", "1", code=UNSUITABLE)
     malformed = (main_xml("Q", points), main_xml("F", points, sizes=(COLUMNS, ROWS + 1, 1)), main_xml("F", points, sizes=(0, ROWS, 1)),
-                 main_xml("F", points, scale="x"), b"<a/>", b"no xml", main_xml("F", points).replace(b"data.bin", b"else.bin"),
+                 main_xml("F", points, scale="x"), main_xml("F", points, scale="0"), main_xml("F", points, scale="+-1"), b"<a/>", b"no xml", main_xml("F", points).replace(b"data.bin", b"else.bin"),
                  main_xml("F", points).replace(b"2e-06", b"-2e-06"))
     for xml in malformed:
         imported(x3p(xml, points), "--row", "1", code=MALFORMED)

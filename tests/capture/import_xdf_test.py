@@ -166,6 +166,33 @@ def a_pause_of_any_length_is_a_gap():
     assert imported(one_stream(times_s, 0, every=1))["sample_rate_hz"] == 1000
 
 
+def what_a_remedy_names_can_be_typed():
+    values = np.zeros((ROWS, 1), "<i4")
+    data = file_header() + header(1, "Fo'rce", 1, 1000, "int32")
+    for number in (2, 3):
+        data += header(number, "Same", 1, 1000, "int32") + samples(number, values + number, np.arange(ROWS) / 1000) + footer(number, ROWS)
+    error = imported(data + samples(1, values, np.arange(ROWS) / 1000), code=USAGE)
+    choices = [shlex.split(each)[1] for each in error["remedy"].split(": ", 1)[1].split(" or ")]
+    assert choices == ["Fo'rce", "2", "3"], error
+    for number, choice in enumerate(choices, 1):
+        imported(data + samples(1, values + 1, np.arange(ROWS) / 1000), "--stream", choice)
+        assert np.all(stored("x") == number)
+
+
+def the_error_of_a_file_is_not_hidden_without_an_output():
+    pathlib.Path("trial.xdf").write_bytes(file_header("2.0") + header(1, "F", 1, 1000, "int32"))
+    tacto.error_of("import", "trial.xdf", code=UNSUITABLE)
+
+
+def a_rate_that_no_wav_stores_is_named():
+    for period_s in (10, 1e-10):
+        error = imported(one_stream(np.arange(30) * period_s, 0, every=1), code=UNSUITABLE)
+        assert error["where"] == "trial.xdf", error
+        pathlib.Path("t.csv").write_text("t,f\n" + "".join(f"{i * period_s:.12g},{i}\n" for i in range(30)))
+        error = tacto.error_of("import", "t.csv", "-o", "x", "--force", "--time-column", "t*1s", "--channel", "signal=f", code=UNSUITABLE)
+        assert error["where"] == "t.csv" and not pathlib.Path("x.wav").exists(), error
+
+
 def a_jump_beyond_any_file_is_refused():
     for nominal, code in ((1000, UNSUITABLE), (0, MALFORMED)):
         for jump_s in (1e7, 1e18, 1e300):  # 1e10 samples and more
@@ -291,7 +318,8 @@ def damaged_files_are_refused():
 
 
 if __name__ == "__main__":
-    for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, times_that_are_not_stated_do_not_add_up_rounding, a_pause_of_any_length_is_a_gap, a_jump_beyond_any_file_is_refused, scattered_times_are_fitted,
+    for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, times_that_are_not_stated_do_not_add_up_rounding, a_pause_of_any_length_is_a_gap, a_jump_beyond_any_file_is_refused, what_a_remedy_names_can_be_typed,
+                 the_error_of_a_file_is_not_hidden_without_an_output, a_rate_that_no_wav_stores_is_named, scattered_times_are_fitted,
                  clock_offsets_give_the_recorders_rate, wrong_offsets_change_no_rate_and_noise_is_no_drift, a_reset_clock_is_refused_with_its_time,
                  a_cut_file_is_read_to_its_last_whole_chunk_and_says_so, damaged_files_are_refused):
         tacto.in_folder(test)
