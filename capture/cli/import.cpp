@@ -232,7 +232,8 @@ schema::Result<cli::Report> list_streams(const Source& source) {
   const auto chosen = open_source(source.file, 0, std::to_string(first->id));
   TACTO_TRY(chosen);
   const std::string name = std::filesystem::path(source.file).stem().string();
-  const bool unique = std::ranges::count(source.xdf->streams, first->name, &schema::XdfStream::name) == 1;
+  const bool unique = !first->name.empty() &&
+                      std::ranges::count(source.xdf->streams, first->name, &schema::XdfStream::name) == 1;
   const std::string stream = unique ? cli::shell_word(first->name) : std::to_string(first->id);
   const std::string option = source.xdf_stream ? "" : fmt::format("--stream {} ", stream);
   return report.add("next", fmt::format("tactograph import {} -o {} {}{}", cli::shell_word(source.file),
@@ -242,7 +243,9 @@ schema::Result<cli::Report> list_streams(const Source& source) {
 // What a MATLAB or XDF file has; no other file is opened without an output.
 schema::Result<cli::Report> list_contents(const ImportRequest& request) {
   const auto source = open_source(request.file);
-  if (!source && source.error().kind != schema::ErrorKind::unsuitable) return schema::forward_error(source);
+  const bool has_own_reader = is_profile_request(request) || is_height_map_request(request);
+  if (!source && (!has_own_reader || source.error().kind == schema::ErrorKind::not_found))
+    return schema::forward_error(source);
   if (!source || !(source->mat || source->xdf) || !request.channels.empty() || !request.stream.empty())
     return schema::fail(schema::ErrorKind::usage, "is required", "--output", "add -o and a name");
   if (source->xdf) return list_streams(*source);

@@ -9,10 +9,12 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <limits>
 #include <new>
 #include <numeric>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "capture/table/channel_spec.hpp"
 #include "capture/table/csv_number.hpp"
@@ -21,6 +23,7 @@
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/exchange/x3p_file.hpp"
 #include "data-schema/files/files.hpp"
+#include "data-schema/texture/texture_wav.hpp"
 #include "data-schema/version.hpp"
 
 namespace tacto::capture {
@@ -198,6 +201,52 @@ Result<void> check_no_channels(const ImportRequest& request) {
               request.file, "omit --channel, --pitch, --rate and --time-column");
 }
 
+// Options of recordings. A texture has no place for them.
+Result<void> check_options(const ImportRequest& request) {
+  const bool is_table = !is_xml(request.file) && !is_x3p(request.file);
+  const std::pair<std::string_view, bool> given[] = {{"--date", !request.recorded.empty()},
+                                                     {"--calibrated", !request.calibrated.empty()},
+                                                     {"--humidity", request.humidity_percent.has_value()},
+                                                     {"--speed", request.speed_mps.has_value()},
+                                                     {"--no-position", !request.integrate_speed},
+                                                     {"--mask-outliers", request.mask_outliers},
+                                                     {"--stream", !request.stream.empty()},
+                                                     {"--skip", request.skip_lines > 0 && !is_table}};
+  for (const auto& [option, is_given] : given)
+    if (is_given)
+      return fail(ErrorKind::usage, "is not stored with a height profile", std::string(option),
+                  "omit it; --notes can state it in words");
+  return {};
+}
+
+Result<void> check_pitch(double pitch_m, const std::string& file) {
+  constexpr double kLargestRate = std::numeric_limits<int>::max();  // of a WAV file, per metre
+  const double rate = schema::header_rate_of(pitch_m);
+  if (rate >= 1 && rate <= kLargestRate) return {};
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format("has a pitch of {:.4g} m: a texture's is {:.2g} m to 2 m", pitch_m, 1 / kLargestRate), file,
+      "check the unit of the position, or of --pitch");
+}
+
+// Heights far from zero lose their roughness in the 32 bits of a texture: then their mean is subtracted, if
+// the step of a float at the largest height is above 1 % of the RMS about the mean.
+void subtract_mean(schema::Texture& texture) {
+  constexpr double kCoarse = 0.01;
+  std::vector<double>& heights = texture.signal.values;
+  const auto count = static_cast<double>(heights.size());
+  const double mean_m = std::accumulate(heights.begin(), heights.end(), 0.0) / count;
+  double squares = 0, largest_m = 0;
+  for (const double height_m : heights) {
+    squares += (height_m - mean_m) * (height_m - mean_m);
+    largest_m = std::max(largest_m, std::abs(height_m));
+  }
+  const double step_m = largest_m * std::numeric_limits<float>::epsilon();
+  if (squares == 0 || step_m <= kCoarse * std::sqrt(squares / count)) return;
+  for (double& height_m : heights) height_m -= mean_m;
+  texture.notes += fmt::format("; mean height of {} m subtracted", mean_m);
+}
+
 Result<schema::Texture> texture_of(const HeightProfile& profile, const ImportRequest& request) {
   const auto sum = schema::sha256_of_file(request.file);
   TACTO_TRY(sum);
@@ -217,6 +266,7 @@ Result<schema::Texture> texture_of(const HeightProfile& profile, const ImportReq
   texture.notes = fmt::format("measured profile, imported from {} (SHA-256 {})", file, *sum);
   for (const std::string& text : {profile.notes, request.notes})
     if (!text.empty()) texture.notes += "; " + text;
+  subtract_mean(texture);
   texture.created = schema::creation_time();
   texture.creator = kCreator;
   return texture;
@@ -419,9 +469,11 @@ Result<HeightProfile> read_height_profile(const ImportRequest& request,
 Result<ImportedProfile> import_profile(const ImportRequest& request,
                                        const std::function<void(double)>& progress) {
   const std::string stem = schema::stem_of(request.name, ".texture");
+  TACTO_TRY(check_options(request));
   TACTO_TRY(check_free(stem, request.replace));
   auto profile = read_height_profile(request, progress);
   TACTO_TRY(profile);
+  TACTO_TRY(check_pitch(profile->pitch_m, request.file));
   const auto texture = texture_of(*profile, request);
   TACTO_TRY(texture);
   TACTO_TRY(schema::write_texture(stem, *texture));

@@ -56,8 +56,10 @@ struct ImportedProfile {
 };
 
 /// Reads the profile and writes STEM.texture.wav and STEM.texture.json: quantity height, metres, known band 0
-/// to half a cycle per sample. Errors: as read_height_profile(); usage, if the texture exists and not
-/// request.replace; cannot_write.
+/// to half a cycle per sample. The mean is subtracted, with a note, if the texture's 32 bits would round the
+/// heights by more than 1 % of their RMS. Errors: as read_height_profile(); usage, if the texture exists and
+/// not request.replace, or for an option that a texture does not store; unsuitable, for a pitch that no WAV
+/// can store; cannot_write.
 schema::Result<ImportedProfile> import_profile(const ImportRequest& request,
                                                const std::function<void(double)>& progress);
 

@@ -231,7 +231,7 @@ Result<void> Import::first_clock() {
   clock_known_ = true;
   header_.sample_rate_hz = clock_.clock().rate_hz;
   header_.gaps = clock_.clock().gaps;
-  return {};
+  return check_rate_of_times(header_.sample_rate_hz, request_.file);
 }
 
 Result<void> Import::read_stream_clock() {
@@ -241,7 +241,7 @@ Result<void> Import::read_stream_clock() {
   header_.gaps = clock->clock.gaps;
   header_.clock = clock->words;
   stream_clock_ = std::move(*clock);
-  return {};
+  return check_rate_of_times(header_.sample_rate_hz, request_.file);
 }
 
 std::vector<schema::Gap> Import::gaps_of_times() const {
@@ -303,7 +303,10 @@ Result<void> Import::mask_what_was_found() {
   auto mask = OutlierMask::of(std::move(rows), rows_, request_.file);
   TACTO_TRY(mask);
   mask_ = std::move(*mask);
-  if (plan_.time) header_.sample_rate_hz = clock_.clock().rate_hz;
+  if (plan_.time) {
+    header_.sample_rate_hz = clock_.clock().rate_hz;
+    TACTO_TRY(check_rate_of_times(header_.sample_rate_hz, request_.file));
+  }
   header_.gaps = mask_.gaps_with(gaps_of_times());
   clock_known_ = true;
   return {};
@@ -459,6 +462,7 @@ Result<Imported> Import::close() {
   if (plan_.time && !request_.mask_outliers) {
     header.sample_rate_hz = clock_.clock().rate_hz;
     header.gaps = clock_.clock().gaps;
+    TACTO_TRY(check_rate_of_times(header.sample_rate_hz, request_.file));
   }
   header.source_sha256 = sum_.hexadecimal();
   add_warnings(header);

@@ -37,9 +37,13 @@ Result<void> check_output(const ImportRequest& request) {
   return {};
 }
 
-Result<void> check_rate(const std::optional<double>& rate_hz) {
+bool is_storable(double rate_hz) {
   constexpr double kLargest = std::numeric_limits<int>::max();  // the limit of a WAV header
-  if (!rate_hz || (std::round(*rate_hz) >= 1 && *rate_hz <= kLargest)) return {};
+  return std::round(rate_hz) >= 1 && rate_hz <= kLargest;
+}
+
+Result<void> check_rate(const std::optional<double>& rate_hz) {
+  if (!rate_hz || is_storable(*rate_hz)) return {};
   return fail(ErrorKind::usage, fmt::format("a recording cannot have a rate of {:g} Hz", *rate_hz), "--rate",
               "give samples per second, for example --rate 10kHz");
 }
@@ -50,13 +54,18 @@ std::string typed(const Source& source, std::size_t column) {
   return name.empty() || std::ranges::count(source.columns, name) > 1 ? std::to_string(column + 1) : name;
 }
 
+std::string in_quotes(std::string_view text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 // The option that takes the rate from the table's times, if a column has a unit of time; else an example of
 // both.
 std::string clock_example(const Source& source) {
-  if (const auto column = time_column_of(source))
-    return fmt::format("--time-column '{}'", typed(source, *column));
-  return fmt::format("--rate, for example --rate 10kHz, or --time-column, for example --time-column '{}*1s'",
-                     typed(source, 0));
+  if (const auto column = time_column_of(source)) return "--time-column " + in_quotes(typed(source, *column));
+  return "--rate, for example --rate 10kHz, or --time-column, for example --time-column " +
+         in_quotes(typed(source, 0) + "*1s");
 }
 
 Result<void> check_clock(const ImportRequest& request, const Source& source) {
@@ -88,9 +97,10 @@ std::optional<std::size_t> column_in(const Source& source, schema::Dimension dim
 std::string channels_example(const Source& source) {
   const auto force = column_in(source, schema::Dimension::force);
   const auto position = column_in(source, schema::Dimension::length);
-  return fmt::format("--channel 'tangential_force={}'{}",
-                     force ? typed(source, *force) : typed(source, example_column(source)) + "*1N",
-                     position ? fmt::format(" --channel 'position={}'", typed(source, *position)) : "");
+  const std::string force_column =
+      force ? typed(source, *force) : typed(source, example_column(source)) + "*1N";
+  return "--channel " + in_quotes("tangential_force=" + force_column) +
+         (position ? " --channel " + in_quotes("position=" + typed(source, *position)) : "");
 }
 
 tl::unexpected<schema::Error> no_channels(const Source& source) {
@@ -179,6 +189,13 @@ Result<void> check_metadata(const ImportRequest& request) {
   return check_date(request.calibrated, "--calibrated");
 }
 
+// Its name if it is unique, otherwise its number.
+std::string typed_stream(const Source& source, const schema::XdfStream& stream) {
+  const auto& all = source.xdf->streams;
+  const bool unique = std::ranges::count(all, stream.name, &schema::XdfStream::name) == 1;
+  return unique && !stream.name.empty() ? in_quotes(stream.name) : std::to_string(stream.id);
+}
+
 Result<void> check_stream(const ImportRequest& request, const Source& source) {
   if (!request.stream.empty() && !source.xdf)
     return fail(ErrorKind::usage, "is for XDF files", "--stream", "omit it: this is another file");
@@ -186,7 +203,7 @@ Result<void> check_stream(const ImportRequest& request, const Source& source) {
   std::string names;
   for (const schema::XdfStream& stream : source.xdf->streams)
     if (stream.refusal.empty())
-      names += fmt::format("{}--stream '{}'", names.empty() ? "" : " or ", stream.name);
+      names += (names.empty() ? "--stream " : " or --stream ") + typed_stream(source, stream);
   if (!names.empty())
     return fail(ErrorKind::usage, "has several streams", source.file, "choose one: " + names);
   return fail(ErrorKind::unsuitable, "has no stream of numbers", source.file,
@@ -222,6 +239,14 @@ Result<ImportPlan> plan_import(const ImportRequest& request) {
   TACTO_TRY(time);
   plan.time = *time;
   return plan;
+}
+
+Result<void> check_rate_of_times(double rate_hz, const std::string& file) {
+  if (is_storable(rate_hz)) return {};
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format("its times give a rate of {:.4g} Hz: that of a recording is 1 Hz to 2 GHz", rate_hz), file,
+      "check the unit of the times, for example --time-column 't*1ms'; or give --rate");
 }
 
 std::string example_options(const Source& source) {

@@ -24,6 +24,9 @@ struct ImportPlan {
 /// except those in the data.
 schema::Result<ImportPlan> plan_import(const ImportRequest& request);
 
+/// Errors: unsuitable, for a rate that no recording can have.
+schema::Result<void> check_rate_of_times(double rate_hz, const std::string& file);
+
 /// Options for import as an example that can be typed: "--time-column 't_s' --channel
 /// 'tangential_force=f*1N'".
 std::string example_options(const Source& source);

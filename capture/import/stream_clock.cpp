@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "data-schema/recording/clock_fit.hpp"
+#include "capture/import/offset_drift.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -35,7 +35,8 @@ Result<std::vector<schema::ClockPair>> clock_pairs(const std::string& where,
     if (!pairs.empty()) {
       const double step_s = time_s - pairs.back().device_s;
       const double jump_s = step_s - (pair.host_s - pairs.back().host_s);
-      if (step_s < 0 || std::abs(jump_s) > kClockReset_s) return was_reset(where, time_s, jump_s);
+      if (step_s < 0 || std::abs(jump_s) > kClockReset_s)
+        return was_reset(where, time_s, step_s < 0 ? step_s : jump_s);
     }
     pairs.push_back(pair);
   }
@@ -104,6 +105,7 @@ std::optional<ScatteredClock> ScatterFit::clock() const {
   std::uint64_t missing = 0;
   for (std::size_t k = 1; k < parts_.size(); ++k) {
     const double periods = (parts_[k].begin_s(period_s) - parts_[k - 1].end_s(period_s)) / period_s;
+    if (!(periods <= kLongestGap_samples)) return std::nullopt;
     const auto count = static_cast<std::uint64_t>(std::max(0.0, std::round(periods) - 1));
     if (count == 0) continue;
     missing += count;
@@ -147,19 +149,22 @@ Result<void> Search::survey() {
     even_.survey(times_s);
     for (const double time_s : times_s) {
       if (last_s && time_s < *last_s - kClockReset_s) return was_reset(where_, *last_s, time_s - *last_s);
+      if (last_s && (time_s - *last_s) * stream_.nominal_rate_hz > kLongestGap_samples)
+        return was_reset(where_, *last_s, time_s - *last_s);
       if (scatter_) scatter_->add(time_s);
       last_s = time_s;
     }
     return {};
   };
-  TACTO_TRY(schema::read_xdf(file_, stream_, take, progress_));
+  TACTO_TRY(schema::read_xdf(file_, stream_, {}, take, progress_));
   return even_.end_survey(where_);
 }
 
 Result<void> Search::locate() {
+  even_.allow_pauses();
   const auto place_of = [](std::uint64_t row) { return fmt::format("sample {}", row); };
   return schema::read_xdf(
-      file_, stream_,
+      file_, stream_, {},
       [&](std::span<const double> times_s, std::span<const double>) {
         return even_.locate(times_s, place_of, where_);
       },
@@ -184,16 +189,25 @@ void Search::compare_with_nominal() {
 }
 
 void Search::move_to_recorders_clock(std::span<const schema::ClockPair> pairs) {
-  const auto fit = schema::fit_clock(pairs);
-  if (!fit) {
-    found_.words = "times of the stream, by its own clock (too few clock offsets, or too close in time)";
+  constexpr double kFastForACrystal_ppm = 100;
+  const auto fit = offset_drift(pairs);
+  if (!fit || !fit->is_certain()) {
+    found_.words = "times of the stream, by its own clock " +
+                   (fit ? fmt::format("(its drift of {:.3g} ppm is not certain: {:.3g} to {:.3g} ppm)",
+                                      fit->drift_ppm, fit->lowest_ppm, fit->highest_ppm)
+                        : "(too few clock offsets, or too close in time)");
     return;
   }
   found_.clock.rate_hz *= 1 + 1e-6 * fit->drift_ppm;
   found_.words = fmt::format(
       "times of the stream, by the recorder's clock: that of the stream is {:.3g} ppm {} ({} clock "
-      "offsets, scatter {:.3g} ms)",
-      std::abs(fit->drift_ppm), fit->drift_ppm < 0 ? "slower" : "faster", pairs.size(), 1e3 * fit->scatter_s);
+      "offsets, median deviation {:.3g} ms)",
+      std::abs(fit->drift_ppm), fit->drift_ppm < 0 ? "slower" : "faster", pairs.size(),
+      1e3 * fit->deviation_s);
+  if (std::abs(fit->drift_ppm) > kFastForACrystal_ppm)
+    found_.warnings.push_back(fmt::format(
+        "its clock is {:.3g} ppm {} than the recorder's: crystals deviate by less than {:g} ppm",
+        std::abs(fit->drift_ppm), fit->drift_ppm < 0 ? "slower" : "faster", kFastForACrystal_ppm));
 }
 
 Result<StreamClock> Search::run() {
@@ -204,14 +218,18 @@ Result<StreamClock> Search::run() {
   const auto scattered = located || !scatter_ ? std::nullopt : scatter_->clock();
   if (located) {
     found_.clock = even_.clock();
+    if (even_.pauses() > 0)
+      found_.warnings.push_back(
+          fmt::format("{} of its pauses are no whole number of periods: their gaps are to the nearest sample",
+                      even_.pauses()));
   } else if (scattered) {
     use_scattered(*scattered);
   } else {
     located.error().remedy = kWithoutTimes;
     return schema::forward_error(located);
   }
-  compare_with_nominal();
   move_to_recorders_clock(*pairs);
+  compare_with_nominal();
   return std::move(found_);
 }
 

@@ -22,16 +22,17 @@ inline constexpr double kLongestScatter_samples = 500;
 inline constexpr double kClockReset_s = 1;
 
 struct StreamClock {
-  UniformClock clock;  ///< by the recorder's clock, if there are enough offsets for fit_clock()
-  std::string words;   ///< where the rate is from, for the recording
-  std::vector<std::string> warnings;  ///< scatter; a rate far from the nominal one
+  UniformClock clock;                 ///< by the recorder's clock, if offset_drift() is certain
+  std::string words;                  ///< where the rate is from, for the recording
+  std::vector<std::string> warnings;  ///< scatter; a large drift; a rate far from the nominal one
 };
 
-/// The times are even, with missing whole periods (ClockFinder); or, if they scatter and the stream has a
-/// nominal rate, the rate is the slope of a least-squares line through times against sample numbers, one
-/// line for each part between gaps, all with the same slope. Errors: unsuitable, for a clock that was reset,
-/// with its time; malformed, for times that are not even in a stream without a nominal rate; as read_xdf().
-/// Reads the samples once, twice if they have gaps or scatter.
+/// The times are even, with missing whole periods and a few pauses (ClockFinder); or, if they scatter and the
+/// stream has a nominal rate, the rate is the slope of a least-squares line through times against sample
+/// numbers, one line for each part between gaps, all with the same slope. Errors: unsuitable, for a clock
+/// that was reset or jumped over more than kLongestGap_samples, with its time; malformed, for times that are
+/// not even in a stream without a nominal rate; as read_xdf(). Reads the samples once, twice if they have
+/// gaps or scatter.
 schema::Result<StreamClock> find_stream_clock(const std::string& file, const schema::XdfStream& stream,
                                               const std::function<void(double)>& progress);
 

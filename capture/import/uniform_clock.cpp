@@ -108,10 +108,22 @@ Result<void> ClockFinder::end_survey(const std::string& file) {
   return {};
 }
 
+// Counts it, too.
+bool ClockFinder::is_pause(double step) {
+  if (!pauses_allowed_ || step <= 1.5 * period_s_) return false;
+  pauses_s_ += step, pauses_ticks_ += std::round(step / period_s_);
+  return ++pauses_ <= 1 + count_ / 1000;
+}
+
 Result<void> ClockFinder::locate_step(double step, std::uint64_t row, const PlaceOf& place_of,
                                       const std::string& file) {
   const double ticks = std::max(1.0, std::round(step / period_s_));
-  if (std::abs(step / period_s_ - ticks) > kMostJitter)
+  if (!(ticks <= kLongestGap_samples))
+    return fail(ErrorKind::malformed,
+                fmt::format("the time jumps by {:.6g} s: at most {:g} samples may be missing", step,
+                            kLongestGap_samples),
+                fmt::format("{}: {}", file, place_of(row)), "import the part before or after it");
+  if (std::abs(step / period_s_ - ticks) > kMostJitter && !is_pause(step))
     return uneven(step, period_s_, fmt::format("{}: {}", file, place_of(row)));
   const auto missing = static_cast<std::uint64_t>(ticks) - 1;
   if (missing > 0) gaps_.push_back({row, row + missing_ + missing, missing});
@@ -138,8 +150,8 @@ Result<void> ClockFinder::locate(std::span<const double> time_s, const PlaceOf& 
 }
 
 UniformClock ClockFinder::clock() const {
-  const double ticks = static_cast<double>(count_ - 1 + missing_);
-  return {whole_where_close(ticks / (last_s_ - first_s_)), gaps_};
+  const double ticks = static_cast<double>(count_ - 1 + missing_) - pauses_ticks_;
+  return {whole_where_close(ticks / (last_s_ - first_s_ - pauses_s_)), gaps_};
 }
 
 }  // namespace tacto::capture

@@ -26,6 +26,9 @@ struct UniformClock {
 /// even.
 inline constexpr double kMostJitter = 0.25;
 
+/// A longer gap is a wrong time: at 10 kHz it would last a day.
+inline constexpr double kLongestGap_samples = 1e9;
+
 /// Finds the rate, and the gaps where whole periods are missing. One pass over the times is enough if all
 /// steps are even, otherwise two: survey() for all, then end_survey(); if second_pass_needed(), locate() for
 /// all again; then clock(). The period is the mean of the steps that are within half of the median step
@@ -38,8 +41,14 @@ class ClockFinder {
   schema::Result<void> end_survey(const std::string& file);
   bool second_pass_needed() const { return not_increasing_ || uneven_; }
 
-  /// Errors: malformed, for a time that does not increase, or a step that deviates by more than kMostJitter;
-  /// `where` names the row.
+  /// A program that pauses goes on after any time. From now on locate() takes a step that is no whole number
+  /// of periods as a gap to the nearest sample, if it is longer than 1.5 periods and there is at most one for
+  /// each thousand rows; the rate is that of the other steps.
+  void allow_pauses() { pauses_allowed_ = true; }
+  std::uint64_t pauses() const { return pauses_; }
+
+  /// Errors: malformed, for a time that does not increase, a step that deviates by more than kMostJitter, or
+  /// a gap above kLongestGap_samples; `where` names the row.
   schema::Result<void> locate(std::span<const double> time_s, const PlaceOf& place_of,
                               const std::string& file);
 
@@ -56,6 +65,7 @@ class ClockFinder {
   double median_step() const;
   double find_period() const;
   bool is_one_tick(double step) const;
+  bool is_pause(double step);
   schema::Result<void> locate_step(double step, std::uint64_t row, const PlaceOf& place_of,
                                    const std::string& file);
 
@@ -64,6 +74,9 @@ class ClockFinder {
   double first_s_ = 0, last_s_ = 0, previous_s_ = 0, period_s_ = 0;
   bool not_increasing_ = false, uneven_ = false;
   std::uint64_t missing_ = 0;
+  bool pauses_allowed_ = false;
+  std::uint64_t pauses_ = 0;
+  double pauses_s_ = 0, pauses_ticks_ = 0;
   std::vector<schema::Gap> gaps_;
 };
 

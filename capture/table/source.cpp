@@ -68,8 +68,7 @@ Result<void> choose(const Source& source, std::span<const std::size_t> columns, 
   for (std::size_t i = 0; i < piece.size(); i += channels)
     for (const std::size_t column : columns) {
       const double value = piece[i + column];
-      const bool passed_on = source.xdf && source.unknown_as_nan && std::isnan(value);
-      if (!std::isfinite(value) && !passed_on) return not_finite(source, first + i / channels, column, value);
+      if (!std::isfinite(value)) return not_finite(source, first + i / channels, column, value);
       rows.push_back(value);
     }
   return {};
@@ -208,16 +207,17 @@ Result<Source> open_xdf(const std::string& file, std::size_t skip, const std::st
 
 Result<void> read_xdf_source(const Source& source, std::span<const std::size_t> columns,
                              const RowHandler& take, const std::function<void(double)>& progress) {
-  std::vector<double> rows;
   std::uint64_t done = 0;
   const auto take_block = [&](std::span<const double> times_s,
                               std::span<const double> numbers) -> Result<void> {
-    TACTO_TRY(choose(source, columns, done, numbers, rows));
-    TACTO_TRY(take({rows, columns.size(), done}));
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      if (std::isinf(numbers[i]) || (std::isnan(numbers[i]) && !source.unknown_as_nan))
+        return not_finite(source, done + i / columns.size(), columns[i % columns.size()], numbers[i]);
+    TACTO_TRY(take({numbers, columns.size(), done}));
     done += times_s.size();
     return {};
   };
-  TACTO_TRY(schema::read_xdf(source.file, *source.xdf_stream, take_block, progress));
+  TACTO_TRY(schema::read_xdf(source.file, *source.xdf_stream, columns, take_block, progress));
   if (done > 0) return {};
   return fail(ErrorKind::malformed, "contains no samples",
               fmt::format("{}: stream '{}'", source.file, source.xdf_stream->name), source.xdf->cut);

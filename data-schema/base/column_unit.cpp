@@ -12,11 +12,13 @@ struct Spelling {
 };
 
 constexpr Spelling kSpellings[] = {
-    {"sec", "s"},       {"secs", "s"},      {"seconds", "s"},    {"Seconds", "s"},    {"Sekunden", "s"},
-    {"msec", "ms"},     {"Volt", "V"},      {"Volts", "V"},      {"volts", "V"},      {"Newton", "N"},
-    {"Newtons", "N"},   {"newtons", "N"},   {"Meter", "m"},      {"Meters", "m"},     {"meters", "m"},
-    {"m/s2", "m/s^2"},  {"m/s/s", "m/s^2"}, {"m/s**2", "m/s^2"}, {"mm/s2", "mm/s^2"}, {"mm/s/s", "mm/s^2"},
-    {"mm/sec", "mm/s"}, {"m/sec", "m/s"},   {"micron", "um"},    {"microns", "um"},
+    {"sec", "s"},         {"secs", "s"},       {"seconds", "s"},    {"Seconds", "s"},
+    {"Sekunden", "s"},    {"msec", "ms"},      {"Volt", "V"},       {"Volts", "V"},
+    {"volts", "V"},       {"Newton", "N"},     {"Newtons", "N"},    {"newtons", "N"},
+    {"Meter", "m"},       {"Meters", "m"},     {"meters", "m"},     {"m/s2", "m/s^2"},
+    {"m/s/s", "m/s^2"},   {"m/s**2", "m/s^2"}, {"mm/s2", "mm/s^2"}, {"mm/s/s", "mm/s^2"},
+    {"mm/sec", "mm/s"},   {"m/sec", "m/s"},    {"micron", "um"},    {"microns", "um"},
+    {"\u212B", "\u00C5"},  // the sign of the angstrom: another character that looks the same
 };
 
 // Whether a pair of matching brackets encloses the whole text.

@@ -169,7 +169,9 @@ struct MainXml {
   Result<Number> number(const char* path) const {
     const std::string_view written = text(path);
     Number value{};
-    const auto [end, error] = std::from_chars(written.data(), written.data() + written.size(), value);
+    const bool plus = written.starts_with('+') && !written.starts_with("+-");  // from_chars takes none
+    const auto [end, error] =
+        std::from_chars(written.data() + (plus ? 1 : 0), written.data() + written.size(), value);
     if (error == std::errc() && end == written.data() + written.size() && std::isfinite(double(value)))
       return value;
     return broken(fmt::format("'{}' is not a number", written.substr(0, 40)), path);
@@ -254,6 +256,8 @@ Result<Matrix> read_matrix(const MainXml& xml) {
   TACTO_TRY(scale);
   const auto offset_m = xml.number_or("Record1/Axes/CZ/Offset", 0);
   TACTO_TRY(offset_m);
+  if (*scale == 0)
+    return xml.broken("an increment of 0 makes all heights equal", "Record1/Axes/CZ/Increment");
   matrix.scale = *scale, matrix.offset_m = *offset_m;
   TACTO_TRY(read_sizes(xml, matrix));
   std::uint64_t bytes = 0;
@@ -294,11 +298,16 @@ Result<LineOfPoints> chosen_line(const MainXml& xml, const Matrix& matrix, const
   return LineOfPoints{name, number - 1, matrix.columns, matrix.rows, "CY"};
 }
 
+// Of a link inside the archive.
+std::string linked_name(const MainXml& xml, std::string_view link) {
+  return xml.folder + std::string(link.starts_with("./") ? link.substr(2) : link);
+}
+
 // The mask: a bit for each point, the lowest of a byte first; empty if the file has none.
 Result<std::string> read_mask(MainXml& xml, const Matrix& matrix) {
   const std::string_view link = xml.text("Record3/DataLink/ValidPointsLink");
   if (link.empty()) return std::string();
-  const std::string name = xml.folder + std::string(link);
+  const std::string name = linked_name(xml, link);
   auto mask = xml.archive.read(name, kMostX3pBytes, (matrix.columns * matrix.rows + 7) / 8);
   TACTO_TRY(mask);
   TACTO_TRY(xml.check_sum(*mask, xml.text("Record3/DataLink/MD5ChecksumValidPoints"), name));
@@ -310,7 +319,7 @@ Result<std::string> read_points(MainXml& xml, const Matrix& matrix) {
   if (link.empty())
     return xml.unsuitable("has its points as text in main.xml",
                           "store them in binary form in the program that made it");
-  const std::string name = xml.folder + std::string(link);
+  const std::string name = linked_name(xml, link);
   auto points = xml.archive.read(name, kMostX3pBytes, matrix.columns * matrix.rows * matrix.type.bytes);
   TACTO_TRY(points);
   TACTO_TRY(xml.check_sum(*points, xml.text("Record3/DataLink/MD5ChecksumPointData"), name));
@@ -355,7 +364,7 @@ std::string described(const MainXml& xml) {
 
 Result<void> check_own_sum(MainXml& xml, std::string_view content) {
   const std::string_view link = xml.text("Record4/ChecksumFile");
-  const std::string name = xml.folder + std::string(link.empty() ? "md5checksum.hex" : link);
+  const std::string name = linked_name(xml, link.empty() ? "md5checksum.hex" : link);
   const auto names = xml.archive.names();
   TACTO_TRY(names);
   if (link.empty() && std::ranges::find(*names, name) == names->end())

@@ -232,7 +232,7 @@ void add_labels(XdfStream& stream, const pugi::xml_node& info) {
     if (stream.labels[k].empty()) stream.labels[k] = fmt::format("ch{}", k + 1);
 }
 
-Result<void> add_stream(XdfChunks& chunks, XdfStream& stream, const std::string& path) {
+Result<void> add_stream(XdfChunks& chunks, XdfStream& stream) {
   pugi::xml_document document;
   const auto info = info_of(chunks, document);
   TACTO_TRY(info);
@@ -241,19 +241,18 @@ Result<void> add_stream(XdfChunks& chunks, XdfStream& stream, const std::string&
   stream.format = info->child_value("channel_format");
   const auto channels = number_in<std::uint64_t>(info->child_value("channel_count"));
   const auto rate_hz = number_in<double>(info->child_value("nominal_srate"));
-  if (!channels || *channels == 0) return chunks.broken("its channel_count is not a whole number above 0");
-  if (!rate_hz || !(*rate_hz >= 0) || std::isinf(*rate_hz))
-    return chunks.broken("its nominal_srate is not a rate in Hz, or 0");
-  if (*channels > kMostXdfChannels)
-    return fail(ErrorKind::unsuitable,
-                fmt::format("has {} channels; at most {} are read", *channels, kMostXdfChannels),
-                fmt::format("{}: stream '{}'", path, stream.name));
-  stream.channels = *channels;
-  stream.nominal_rate_hz = *rate_hz;
   if (stream.format == "string")
     stream.refusal = "is text";
   else if (number_format(stream.format) == nullptr)
     stream.refusal = fmt::format("has the unknown format '{}'", stream.format);
+  else if (!channels || *channels == 0)
+    stream.refusal = "has a channel_count that is not a whole number above 0";
+  else if (*channels > kMostXdfChannels)
+    stream.refusal = fmt::format("has {} channels; at most {} are read", *channels, kMostXdfChannels);
+  else if (!rate_hz || !(*rate_hz >= 0) || std::isinf(*rate_hz))
+    stream.refusal = "has a nominal_srate that is not a rate in Hz, or 0";
+  if (channels && *channels <= kMostXdfChannels) stream.channels = *channels;
+  if (rate_hz && std::isfinite(*rate_hz)) stream.nominal_rate_hz = *rate_hz;
   add_labels(stream, *info);
   return {};
 }
@@ -307,7 +306,7 @@ Result<void> add_chunk(XdfChunks& chunks, XdfContents& contents, const std::stri
   if (tag == kStreamHeader) {
     if (known) return chunks.broken(fmt::format("the stream {} has two headers", *id));
     contents.streams.emplace_back().id = *id;
-    return add_stream(chunks, contents.streams.back(), path);
+    return add_stream(chunks, contents.streams.back());
   }
   if (!known) return chunks.broken(fmt::format("the stream {} has no header before this", *id));
   if (tag == kSamples) return count_samples(chunks, *stream);
@@ -318,37 +317,48 @@ Result<void> add_chunk(XdfChunks& chunks, XdfContents& contents, const std::stri
 class XdfSamples {
  public:
   XdfSamples(const std::string& path, const XdfStream& stream, const NumberFormat& format,
-             const XdfHandler& take)
-      : path_(path), stream_(stream), format_(format), take_(take), raw_(stream.channels * format.bytes) {}
+             std::span<const std::size_t> channels, const XdfHandler& take)
+      : path_(path),
+        stream_(stream),
+        format_(format),
+        channels_(channels),
+        take_(take),
+        raw_(stream.channels * format.bytes) {}
 
   Result<void> read(XdfChunks& chunks);
   Result<void> pass_on();
 
  private:
-  Result<double> time(XdfChunks& chunks) const;
+  Result<double> time(XdfChunks& chunks);
   Result<void> add_numbers();
 
   const std::string& path_;
   const XdfStream& stream_;
   const NumberFormat& format_;
+  std::span<const std::size_t> channels_;
   const XdfHandler& take_;
   std::vector<char> raw_;  // of one sample
   std::vector<double> times_s_, numbers_;
   std::uint64_t done_ = 0;
-  double last_s_ = 0;
+  double stamp_s_ = 0, after_stamp_ = 0;  // the last stated time, and the samples since
 };
 
-Result<double> XdfSamples::time(XdfChunks& chunks) const {
+// Periods are counted from the last stated time: their sum would round at each sample.
+Result<double> XdfSamples::time(XdfChunks& chunks) {
   const auto width = chunks.take<std::uint8_t>();
   TACTO_TRY(width);
-  if (*width == sizeof(double)) return chunks.take<double>();
+  if (*width == sizeof(double)) {
+    const auto stamp_s = chunks.take<double>();
+    if (stamp_s) stamp_s_ = *stamp_s, after_stamp_ = 0;
+    return stamp_s;
+  }
   if (*width != 0) return chunks.broken(fmt::format("a time has 0 or 8 bytes, not {}", *width));
-  if (done_ > 0 && stream_.nominal_rate_hz > 0) return last_s_ + 1 / stream_.nominal_rate_hz;
+  if (done_ > 0 && stream_.nominal_rate_hz > 0) return stamp_s_ + ++after_stamp_ / stream_.nominal_rate_hz;
   return chunks.broken(fmt::format("sample {} of the stream '{}' has no time", done_, stream_.name));
 }
 
 Result<void> XdfSamples::add_numbers() {
-  for (std::size_t k = 0; k < stream_.channels; ++k) {
+  for (const std::size_t k : channels_) {
     const char* const at = raw_.data() + k * format_.bytes;
     numbers_.push_back(format_.number_at(at));
     if (std::isnan(numbers_.back()) && format_.name == "int64")
@@ -369,11 +379,10 @@ Result<void> XdfSamples::read(XdfChunks& chunks) {
     TACTO_TRY(time_s);
     if (!std::isfinite(*time_s))
       return chunks.broken(fmt::format("the time of sample {} is not finite", done_));
-    last_s_ = *time_s;
-    times_s_.push_back(last_s_);
+    times_s_.push_back(*time_s);
     TACTO_TRY(chunks.take(raw_.data(), raw_.size()));
     TACTO_TRY(add_numbers());
-    if (numbers_.size() >= kBlockNumbers) TACTO_TRY(pass_on());
+    if (times_s_.size() + numbers_.size() >= kBlockNumbers) TACTO_TRY(pass_on());
   }
   if (chunks.left() > 0)
     return chunks.broken(fmt::format("the chunk has {} bytes more than its samples", chunks.left()));
@@ -411,14 +420,14 @@ Result<XdfContents> xdf_contents(const std::string& path) {
   return contents;
 }
 
-Result<void> read_xdf(const std::string& path, const XdfStream& stream, const XdfHandler& take,
-                      const std::function<void(double)>& progress) {
+Result<void> read_xdf(const std::string& path, const XdfStream& stream, std::span<const std::size_t> channels,
+                      const XdfHandler& take, const std::function<void(double)>& progress) {
   auto chunks = XdfChunks::open(path);
   TACTO_TRY(chunks);
   const NumberFormat* const format = number_format(stream.format);
-  if (format == nullptr)
+  if (format == nullptr || !stream.refusal.empty())
     return fail(ErrorKind::unsuitable, stream.refusal, fmt::format("{}: stream '{}'", path, stream.name));
-  XdfSamples samples(path, stream, *format, take);
+  XdfSamples samples(path, stream, *format, channels, take);
   for (;;) {
     const auto more = chunks->next();
     TACTO_TRY(more);

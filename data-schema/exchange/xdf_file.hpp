@@ -44,19 +44,19 @@ bool is_xdf(std::string_view beginning);
 /// The streams of a file, without their numbers. Format: sccn/xdf, "Specifications", version 1.0; chunks of
 /// unknown types are skipped. A file that was cut is read up to its last whole chunk. Sizes are compared with
 /// the file's length before memory is allocated. Errors: not_found; malformed, with chunk and byte;
-/// unsuitable, for another version or more than kMostXdfChannels channels.
+/// unsuitable, for another version. A stream with an odd header only has a refusal.
 Result<XdfContents> xdf_contents(const std::string& path);
 
-/// Receives consecutive samples: their times by the stream's clock, and the numbers of all channels, sample
-/// by sample.
+/// Receives consecutive samples: their times by the stream's clock, and the numbers of the chosen channels,
+/// sample by sample.
 using XdfHandler =
     std::function<Result<void>(std::span<const double> times_s, std::span<const double> numbers)>;
 
-/// Reads the samples of a stream of xdf_contents(), every number exactly. The time of a sample that has none
-/// is one nominal period after the one before it. `progress` receives 0 to 1. Errors: as xdf_contents();
-/// those of `take`; malformed, for a missing time; unsuitable, for an integer beyond 2^53, which has no exact
-/// double. Memory: 1 MiB, for a file of any length.
-Result<void> read_xdf(const std::string& path, const XdfStream& stream, const XdfHandler& take,
-                      const std::function<void(double)>& progress);
+/// Reads these channels (from 0) of a stream of xdf_contents(), every number exactly. The time of a sample
+/// that has none is whole nominal periods after the last stated one. `progress` receives 0 to 1. Errors: as
+/// xdf_contents(); those of `take`; malformed, for a missing time; unsuitable, for an integer beyond 2^53,
+/// which has no exact double. Memory: 1 MiB, for a file of any length.
+Result<void> read_xdf(const std::string& path, const XdfStream& stream, std::span<const std::size_t> channels,
+                      const XdfHandler& take, const std::function<void(double)>& progress);
 
 }  // namespace tacto::schema

@@ -57,10 +57,13 @@ Result<NamedDocument> open_named(std::string_view kind, const std::string& name)
     return placed(parse_document(preset->content, std::string(preset->name), kind), name);
   const std::string path = existing_path(kind, name);
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored))
+  if (!std::filesystem::exists(path, ignored)) {
+    const auto presets = preset_names(kind);
+    const std::string listed =
+        presets.empty() ? "" : fmt::format("the presets are {}; ", fmt::join(presets, ", "));
     return fail(ErrorKind::not_found, fmt::format("there is no such {}", kind), name,
-                fmt::format("the presets are {}; a file is NAME{}", fmt::join(preset_names(kind), ", "),
-                            ending_of_kind(kind)));
+                fmt::format("{}a file is NAME{}", listed, ending_of_kind(kind)));
+  }
   return placed(open_document(path, kind), path);
 }
 

@@ -59,8 +59,8 @@ def a_missing_row_is_refused_all_the_same():
 def units_of_the_heading_and_the_preamble():
     x_um, z_nm = made()
     preamble = "Dektak XT\nStylus force,3,mg\n\nScan \xb5m,133\n"
-    for encoding in ("utf-8", "latin-1"):
-        table(x_um, 10 * z_nm, unit="\xc5", preamble=preamble, encoding=encoding)
+    for encoding, sign in (("utf-8", "\xc5"), ("latin-1", "\xc5"), ("utf-8", "\u212b")):
+        table(x_um, 10 * z_nm, unit=sign, preamble=preamble, encoding=encoding)
         told = imported("--notes", "second scan")
         assert abs(told["highest_m"] - z_nm.max() * 1e-9) < 1e-12, told
         notes = json.loads(pathlib.Path("p.texture.json").read_text())["notes"]

@@ -6,6 +6,7 @@ import io
 import json
 import pathlib
 import random
+import re
 import zipfile
 
 import numpy as np
@@ -84,6 +85,30 @@ def each_type_along_rows_and_columns():
     assert np.array_equal(heights(), (profile * 1e-9 + 5e-7).astype(np.float32))
 
 
+def heights_far_from_zero_keep_their_roughness():
+    rough_m = np.random.default_rng(3).normal(0, 20e-9, (ROWS, COLUMNS))
+    for far_m in (0.05, -0.05):
+        content = x3p(main_xml("D", rough_m.tobytes(), scale=1, offset=far_m), rough_m.tobytes())
+        imported(content, "--row", "1")
+        # A float of 60 nm has a step of 3.6e-15 m; a double of 50 mm one of 6.9e-18 m.
+        assert np.abs(heights() - (rough_m[0] - rough_m[0].mean())).max() < 1e-14
+        notes = json.loads(pathlib.Path("s.texture.json").read_text())["notes"]
+        mean_m = float(re.search(r"mean height of (\S+) m subtracted", notes)[1])
+        assert abs(mean_m - (rough_m[0].mean() + far_m)) < 1e-15, notes
+    imported(x3p(main_xml("D", rough_m.tobytes(), scale=1, offset=1e-6), rough_m.tobytes()), "--row", "1")
+    assert "subtracted" not in json.loads(pathlib.Path("s.texture.json").read_text())["notes"]
+
+
+def options_that_a_texture_does_not_store_are_refused():
+    matrix = stored_matrix("F")
+    content = x3p(main_xml("F", matrix.tobytes()), matrix.tobytes())
+    for more in (["--date", "2026-01-01"], ["--calibrated", "2026-01-01"], ["--humidity", "50%"], ["--speed", "5mm/s"], ["--no-position"],
+                 ["--mask-outliers"], ["--stream", "x"], ["--skip", "3"]):
+        assert imported(content, "--row", "1", *more, code=USAGE)["where"] == more[0]
+    for pitch in (b"5", b"1e-12"):
+        assert imported(x3p(main_xml("F", matrix.tobytes()).replace(b"2e-06", pitch), matrix.tobytes()), "--row", "1", code=UNSUITABLE)["where"] == "s.x3p"
+
+
 def tacto_points(content, points):
     imported(content, "--row", "7", "--points", points)
     return heights()
@@ -129,6 +154,9 @@ def folders_foreign_files_and_checksums():
         assert np.array_equal(heights(), (matrix[0] * 1e-9 + 5e-7).astype(np.float32))
     assert "main.xml" in imported(x3p(xml.replace(b"tester", b"Tester"), points, sums=False, more=[("md5checksum.hex", hashlib.md5(xml).hexdigest())]),
                                   "--row", "1", code=MALFORMED)["where"]
+    written_otherwise = main_xml("D", points, scale="+1e-9", sizes=(f"+{COLUMNS}", ROWS, 1)).replace(b">bindata/", b">./bindata/")
+    imported(x3p(written_otherwise, points), "--row", "1")
+    assert np.array_equal(heights(), (matrix[0] * 1e-9 + 5e-7).astype(np.float32))
     changed = bytearray(points)
     changed[17] ^= 1
     assert "data.bin" in imported(x3p(xml, bytes(changed)), "--row", "1", code=MALFORMED)["where"]
@@ -146,7 +174,7 @@ def what_is_not_read_is_named():
     for xml in unsuitable:
         imported(x3p(xml, points), "--row", "1", code=UNSUITABLE)
     malformed = (main_xml("Q", points), main_xml("F", points, sizes=(COLUMNS, ROWS + 1, 1)), main_xml("F", points, sizes=(0, ROWS, 1)),
-                 main_xml("F", points, scale="x"), b"<a/>", b"no xml", main_xml("F", points).replace(b"data.bin", b"else.bin"),
+                 main_xml("F", points, scale="x"), main_xml("F", points, scale="0"), main_xml("F", points, scale="+-1"), b"<a/>", b"no xml", main_xml("F", points).replace(b"data.bin", b"else.bin"),
                  main_xml("F", points).replace(b"2e-06", b"-2e-06"))
     for xml in malformed:
         imported(x3p(xml, points), "--row", "1", code=MALFORMED)
@@ -183,6 +211,7 @@ def judged(name, content, right):
 
 
 if __name__ == "__main__":
-    for test in (each_type_along_rows_and_columns, holes_are_refused_with_the_longest_section, lines_and_options_that_do_not_fit,
+    for test in (each_type_along_rows_and_columns, heights_far_from_zero_keep_their_roughness, options_that_a_texture_does_not_store_are_refused,
+                 holes_are_refused_with_the_longest_section, lines_and_options_that_do_not_fit,
                  folders_foreign_files_and_checksums, what_is_not_read_is_named, cuts_and_damage_are_never_silent):
         tacto.in_folder(test)

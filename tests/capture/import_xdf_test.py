@@ -14,6 +14,7 @@ import sys
 import xml.etree.ElementTree
 
 import numpy as np
+import scipy.stats
 import tacto
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "fuzz"))
@@ -90,6 +91,10 @@ def counts_above_2_24_and_beyond_2_53():
     counts[1234] = 2**53 + 1
     error = imported(start + samples(1, counts.astype("<i8"), np.arange(ROWS) / 1000) + footer(1, ROWS), channel="position=count*1um", code=UNSUITABLE)
     assert "count" in error["where"] and "1234" in error["where"] and str(2**53 + 1) in error["what"], error
+    both = np.column_stack([counts[:, 0], np.arange(ROWS)]).astype("<i8")
+    data = file_header() + header(1, "Encoder", 2, 1000, "int64") + samples(1, both, np.arange(ROWS) / 1000) + footer(1, ROWS)
+    imported(data, channel="position=ch2*1um")  # a channel that is not requested blocks nothing
+    assert np.array_equal(stored("x")[:, 0], np.arange(ROWS))
 
 
 def many_streams(values):
@@ -140,6 +145,63 @@ def gaps_are_kept():
     assert imported(one_stream(uneven_s, 0, every=1), "--rate", "500Hz")["sample_rate_hz"] == 500
 
 
+def times_that_are_not_stated_do_not_add_up_rounding():
+    """Stamps of the Unix clock have steps of 0.24 us: added 30,000 times, periods of 0.1 ms would drift."""
+    values = np.arange(30_000, dtype="<i4").reshape(-1, 1)
+    data = file_header() + header(1, "F", 1, 10_000, "int32") + samples(1, values, 1.764e9 + np.arange(30_000) / 10_000, every=30_000) + footer(1, 30_000)
+    told = imported(data)
+    # The first and last time are rounded by half a step each, in 3 s.
+    assert abs(told["sample_rate_hz"] / 10_000 - 1) < 2.4e-7 / 3 and told["gaps"] == 0 and "warnings" not in told, told
+
+
+def a_pause_of_any_length_is_a_gap():
+    """The rate is that of the even steps: not that of a line through all times."""
+    times_s = 1e5 + np.arange(20_000) / 1000
+    times_s[10_000:] += 0.1505  # 150.5 periods; the step is 151.5
+    times_s[15_000:] += 0.0017
+    told = imported(one_stream(times_s, 1000, every=1))
+    gaps = [(gap["frame"], gap["count"]) for gap in sidecar("x")["gaps"]]
+    assert told["sample_rate_hz"] == 1000 and [frame for frame, _ in gaps] == [10_000, 15_000], (told, gaps)
+    assert abs(gaps[0][1] - 150.5) <= 0.5 and gaps[1][1] == 2 and len(told["warnings"]) == 1, (gaps, told)
+    assert imported(one_stream(times_s, 0, every=1))["sample_rate_hz"] == 1000
+
+
+def what_a_remedy_names_can_be_typed():
+    values = np.zeros((ROWS, 1), "<i4")
+    data = file_header() + header(1, "Fo'rce", 1, 1000, "int32")
+    for number in (2, 3):
+        data += header(number, "Same", 1, 1000, "int32") + samples(number, values + number, np.arange(ROWS) / 1000) + footer(number, ROWS)
+    error = imported(data + samples(1, values, np.arange(ROWS) / 1000), code=USAGE)
+    choices = [shlex.split(each)[1] for each in error["remedy"].split(": ", 1)[1].split(" or ")]
+    assert choices == ["Fo'rce", "2", "3"], error
+    for number, choice in enumerate(choices, 1):
+        imported(data + samples(1, values + 1, np.arange(ROWS) / 1000), "--stream", choice)
+        assert np.all(stored("x") == number)
+
+
+def the_error_of_a_file_is_not_hidden_without_an_output():
+    pathlib.Path("trial.xdf").write_bytes(file_header("2.0") + header(1, "F", 1, 1000, "int32"))
+    tacto.error_of("import", "trial.xdf", code=UNSUITABLE)
+
+
+def a_rate_that_no_wav_stores_is_named():
+    for period_s in (10, 1e-10):
+        error = imported(one_stream(np.arange(30) * period_s, 0, every=1), code=UNSUITABLE)
+        assert error["where"] == "trial.xdf", error
+        pathlib.Path("t.csv").write_text("t,f\n" + "".join(f"{i * period_s:.12g},{i}\n" for i in range(30)))
+        error = tacto.error_of("import", "t.csv", "-o", "x", "--force", "--time-column", "t*1s", "--channel", "signal=f", code=UNSUITABLE)
+        assert error["where"] == "t.csv" and not pathlib.Path("x.wav").exists(), error
+
+
+def a_jump_beyond_any_file_is_refused():
+    for nominal, code in ((1000, UNSUITABLE), (0, MALFORMED)):
+        for jump_s in (1e7, 1e18, 1e300):  # 1e10 samples and more
+            times_s = 100 + np.arange(ROWS) / 1000
+            times_s[1000:] += jump_s
+            error = imported(one_stream(times_s[:1001], nominal, every=1), code=code)
+            assert "100.999" in error["what"] or "sample 1000" in error["where"], error
+
+
 def scattered_times_are_fitted():
     """Times of LSL are those at which a program had the samples: here 2 ms (RMS) late or early, five periods, with a gap of 3 s."""
     rng = np.random.default_rng(4)
@@ -168,6 +230,32 @@ def clock_offsets_give_the_recorders_rate():
     assert abs(told["sample_rate_hz"] - 1000 / (1 - 40e-6)) < 1e-6, told
     assert "faster" in told["clock"] and " 40 ppm" in told["clock"], told
     assert imported(one_stream(times_s, 1000, offsets=offsets[:2]))["sample_rate_hz"] == 1000  # too few to fit
+
+
+def wrong_offsets_change_no_rate_and_noise_is_no_drift():
+    """The median of the slopes, and Sen's interval, also by SciPy."""
+    times_s = 500 + np.arange(60_000) / 1000
+    rng = np.random.default_rng(6)
+    stamps = np.arange(500, 560, 5.0)
+    for drift, wrong in ((40e-6, ()), (40e-6, (3,)), (40e-6, (0, 11)), (0, (7,)), (300e-6, (5,))):
+        ahead_s = 17.5 - drift * (stamps - 500) + rng.normal(0, 2e-5, stamps.size)
+        ahead_s[list(wrong)] += 0.7
+        told = imported(one_stream(times_s, 1000, offsets=list(zip(stamps, ahead_s))))
+        host_s = stamps + ahead_s
+        slope, _, low, high = scipy.stats.theilslopes(stamps - host_s, host_s, 0.95)
+        expected = 1000 * (1 + slope) if low * high > 0 else 1000
+        assert abs(told["sample_rate_hz"] / expected - 1) < 1e-9, (drift, wrong, told, expected)
+        # 20 us at each end of 55 s: 0.5 ppm; with two of 12 offsets wrong the median shifts by less than 2 ppm.
+        assert abs(told["sample_rate_hz"] / 1000 - 1 - drift) < 3e-6, (drift, wrong, told)
+        assert bool(told.get("warnings")) == (drift > 100e-6), told
+    three = [(500, 17.5), (506, 17.501), (512, 17.503)]
+    assert imported(one_stream(times_s, 1000, offsets=three))["sample_rate_hz"] == 1000
+    noise = list(zip(stamps, 17.5 + rng.permutation([-1e-3, 1e-3] * 6)))
+    told = imported(one_stream(times_s, 1000, offsets=noise))
+    assert told["sample_rate_hz"] == 1000 and "warnings" not in told, told
+    many = np.arange(500, 560, 0.02)  # 3,000 offsets are reduced to medians
+    told = imported(one_stream(times_s, 1000, offsets=list(zip(many, 17.5 - 40e-6 * (many - 500)))))
+    assert abs(told["sample_rate_hz"] - 1000 / (1 - 40e-6)) < 1e-6, told
 
 
 def a_reset_clock_is_refused_with_its_time():
@@ -213,10 +301,13 @@ def damaged_files_are_refused():
                  head + chunk(3, one + b"\1\1\x00" + bytes(4)),                         # the first sample without a time
                  head + chunk(3, struct.pack("<I", 9) + b"\1\0"),                       # a stream without a header
                  head + header(1, "F", 1, 1000, "int32"),                               # two headers
-                 file_header() + header(1, "F", 0, 1000, "int32"), file_header() + header(1, "F", 1, -3, "int32"),
                  file_header() + chunk(2, one + b"<info><name>"), file_header() + chunk(5, bytes(16)), good + b"\2", b"XDF:"):
         assert imported(data, code=MALFORMED)["where"].startswith("trial.xdf")
-    imported(file_header() + header(1, "F", 5000, 1000, "int32"), code=UNSUITABLE)
+    for odd in (header(9, "O", 5000, 1000, "int32"), header(9, "O", 0, 1000, "int32"), header(9, "O", 1, -3, "int32")):
+        imported(file_header() + odd, code=UNSUITABLE)
+        assert imported(good + odd)["frames"] == ROWS  # the other streams can be read
+        rows = {row["name"]: row["not_imported"] for row in tacto.run_json("import", "trial.xdf")["streams"]}
+        assert rows["O"] and not rows["F"], rows
     imported(file_header("2.0") + header(1, "F", 1, 1000, "int32"), code=UNSUITABLE)
     assert imported(good + chunk(99, b"later"))["frames"] == ROWS  # the specification: unknown chunks are skipped
     holes = np.zeros((ROWS, 1), "<f4")
@@ -227,7 +318,8 @@ def damaged_files_are_refused():
 
 
 if __name__ == "__main__":
-    for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, scattered_times_are_fitted,
-                 clock_offsets_give_the_recorders_rate, a_reset_clock_is_refused_with_its_time,
+    for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, times_that_are_not_stated_do_not_add_up_rounding, a_pause_of_any_length_is_a_gap, a_jump_beyond_any_file_is_refused, what_a_remedy_names_can_be_typed,
+                 the_error_of_a_file_is_not_hidden_without_an_output, a_rate_that_no_wav_stores_is_named, scattered_times_are_fitted,
+                 clock_offsets_give_the_recorders_rate, wrong_offsets_change_no_rate_and_noise_is_no_drift, a_reset_clock_is_refused_with_its_time,
                  a_cut_file_is_read_to_its_last_whole_chunk_and_says_so, damaged_files_are_refused):
         tacto.in_folder(test)
