@@ -121,11 +121,12 @@ std::optional<Remedy> wider_filter(const JudgedLayer& layer, const schema::Force
 // The damper that `adaptive` of all layers there would add; it is computed for nothing held, or for the hand.
 Remedy adaptive_viscosity(const JudgedLayer& layer, const DesignRequest& request) {
   const char* const name = "adaptive viscosity";
-  const auto& [stiffness, damping, bodies] = layer.total;
-  const auto added =
-      playback::added_damping({stiffness, damping, damping}, request.device, request.rate_hz, request.hand);
+  VirtualLoad with = layer.total;
+  const double damping = with.damping_n_s_per_m;
+  const auto added = playback::added_damping({with.stiffness_n_per_m, damping, damping}, request.device,
+                                             request.rate_hz, request.hand);
   if (!added) return {name, "none", "none suffices: " + added.error().what, std::nullopt};
-  const VirtualLoad with{stiffness, damping + *added, bodies};
+  with.damping_n_s_per_m += *added;
   if (!layer.loop.carries(request.judged, with)) return {name, "none", "none suffices", std::nullopt};
   return {name, "none", "adds " + cli::cell_text("_n_s_per_m", *added),
           layer.loop.limit(request.judged, with)};

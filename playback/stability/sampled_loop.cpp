@@ -31,6 +31,11 @@ class SquareMatrix {
       }
     return result;
   }
+  SquareMatrix scaled(double factor) const {
+    SquareMatrix result = *this;
+    for (double& value : result.values_) value *= factor;
+    return result;
+  }
   double norm() const {
     double sum = 0;
     for (const double value : values_) sum += value * value;
@@ -71,6 +76,8 @@ struct ScaledLoop {
     hand_stiffness = held.stiffness_n_per_m * by_place;
     load.stiffness_n_per_m *= by_place;
     load.damping_n_s_per_m *= by_speed;
+    load.integral_n_per_m_s *= by_place * timing.period_s;
+    load.integral_leak_per_s *= timing.period_s;
     for (CoupledBody& body : load.bodies) {
       body.mass_kg /= mass;
       body.own_damping_n_s_per_m *= by_speed;
@@ -84,11 +91,11 @@ PlaceAndSpeed after_one(double mass, double damping, double stiffness, double ti
   return firmware_host::LinearMotion{mass, damping, stiffness, 1, 0}.after({}, time);
 }
 
-constexpr std::size_t kPlace = 0, kSpeed = 1, kStep = 2, kFirstBody = 3;
+constexpr std::size_t kPlace = 0, kSpeed = 1, kStep = 2, kIntegral = 3, kFirstBody = 4;
 
 // All bodies are free.
 SquareMatrix state_matrix(const ScaledLoop& loop) {
-  const auto& [stiffness, damping, bodies] = loop.load;
+  const auto& [stiffness, damping, bodies, integral, leak] = loop.load;
   const auto whole = static_cast<std::size_t>(loop.delay_ticks);
   const std::size_t first_force = kFirstBody + 2 * bodies.size(), size = first_force + whole + 1;
   const double part = loop.delay_ticks - static_cast<double>(whole);
@@ -97,7 +104,9 @@ SquareMatrix state_matrix(const ScaledLoop& loop) {
   SquareMatrix matrix(size);
 
   std::vector<double> force(size);  // of this tick, by the state
-  force[kPlace] = -stiffness;
+  if (integral > 0) matrix.at(kIntegral, kPlace) = integral, matrix.at(kIntegral, kIntegral) = 1 - leak;
+  force[kPlace] = -stiffness - matrix.at(kIntegral, kPlace);
+  force[kIntegral] = -matrix.at(kIntegral, kIntegral);
   force[kStep] = -damping;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     force[kFirstBody + 2 * i] -= bodies[i].stiffness_n_per_m;
@@ -118,7 +127,7 @@ SquareMatrix state_matrix(const ScaledLoop& loop) {
   speed[kSpeed] = 1 - loop.viscous * h - loop.hand_stiffness * g;
   add_force(speed, whole, h1);
   add_force(speed, whole + 1, h - h1);
-  if (stiffness > 0 || loop.hand_stiffness > 0) {
+  if (stiffness > 0 || loop.hand_stiffness > 0 || integral > 0) {
     std::copy_n(step, size, matrix.row(kPlace));
     matrix.at(kPlace, kPlace) += 1;
   }
@@ -155,6 +164,18 @@ bool is_stable(const HeldMass& held, const TickTiming& timing, const SampledLoad
   at_rest.stiffness_n_per_m += resting->stiffness_n_per_m;
   at_rest.damping_n_s_per_m += resting->damping_n_s_per_m;
   return is_stable(held, timing, free) && is_stable(held, timing, at_rest);
+}
+
+double growth_per_tick(const HeldMass& held, const TickTiming& timing, const SampledLoad& load) {
+  SquareMatrix power = state_matrix({held, timing, load});
+  double logarithm = 0, share = 1;  // of the tick that the power is scaled by
+  for (int i = 0; i < kSquarings; ++i, share /= 2) {
+    const double norm = power.norm();
+    if (!(norm > 0)) return 0;
+    logarithm += share * std::log(norm);
+    power = power.scaled(1 / norm).squared();
+  }
+  return std::exp(logarithm);
 }
 
 }  // namespace tacto::playback

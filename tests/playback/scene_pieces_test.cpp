@@ -465,15 +465,25 @@ TEST(ScenePiecesTest, AnUnstableIntegralIsRefused) {
   }
 }
 
-// Without an integral the wall is a sampled spring, whose limit has a closed form.
+// Without an integral the wall is a sampled spring with a damper, whose limit is computed without
+// eigenvalues.
 TEST(ScenePiecesTest, GrowthIsOneAtTheLimitOfASpring) {
-  const schema::Device arm = *schema::read_device("arm");
-  Piece wall = plane_at(0, 0, 0, {0, 0, 1});
-  const double limit = stiffness_limit_of(arm, 1000, std::nullopt, 0, true);
-  wall.stiffness_n_per_m = limit * (1 - 1e-4);
-  EXPECT_LE(wall_growth(wall, arm, 1000, std::nullopt), 1);
-  wall.stiffness_n_per_m = limit * (1 + 1e-4);
-  EXPECT_GT(wall_growth(wall, arm, 1000, std::nullopt), 1);
+  schema::Hand hand;
+  hand.mass_kg = 0.1, hand.damping_n_s_per_m = 2, hand.stiffness_n_per_m = 500;
+  for (const double delay_s : {0.0, 2e-4, 1e-3, 2.5e-3})
+    for (const double damping : {0.0, 4.0, 20.0})
+      for (const auto& held : {std::optional<schema::Hand>(), std::optional(hand)}) {
+        schema::Device arm = *schema::read_device("arm");
+        arm.delay_s = delay_s;
+        Piece wall = plane_at(0, 0, 0, {0, 0, 1});
+        wall.damping_n_s_per_m = damping;
+        const double limit = stiffness_limit_of(arm, 1000, held, damping, true);
+        ASSERT_GT(limit, 0);
+        wall.stiffness_n_per_m = limit * (1 - 1e-4);
+        EXPECT_LE(wall_growth(wall, arm, 1000, held), 1) << delay_s << " " << damping;
+        wall.stiffness_n_per_m = limit * (1 + 1e-4);
+        EXPECT_GT(wall_growth(wall, arm, 1000, held), 1) << delay_s << " " << damping;
+      }
 }
 
 // What an emulated board reads of a place that is no number is the least count; the firmware answers such a

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <utility>
 
+#include "playback/stability/sampled_loop.hpp"
+
 namespace tacto::playback {
 
 using core::SceneLayerKind;
@@ -95,74 +97,23 @@ Result<void> check_wall(const Piece& piece, const schema::Device& device, double
               where + "/integral_n_per_m_s", "choose a smaller integral, more damping or less stiffness");
 }
 
-using Matrix = std::vector<std::vector<double>>;
-
-Matrix squared(const Matrix& m) {
-  Matrix product(m.size(), std::vector<double>(m.size()));
-  for (std::size_t i = 0; i < m.size(); ++i)
-    for (std::size_t j = 0; j < m.size(); ++j)
-      for (std::size_t k = 0; k < m.size(); ++k) product[i][j] += m[i][k] * m[k][j];
-  return product;
-}
-
-// By ||m^n||^(1/n), n = 2^40: what is not of the largest eigenvalue is gone.
-double largest_eigenvalue(Matrix m) {
-  double logarithm = 0, share = 1;
-  for (int i = 0; i < 40; ++i) {
-    double norm = 0;
-    for (const auto& row : m)
-      for (const double value : row) norm = std::max(norm, std::abs(value));
-    if (!(norm > 0)) return 0;
-    for (auto& row : m)
-      for (double& value : row) value /= norm;
-    logarithm += share * std::log(norm);
-    share /= 2;
-    m = squared(m);
-  }
-  return std::exp(logarithm);
-}
-
-// Of place, speed, integral and the forces that are on their way.
-Matrix wall_motion(const Piece& wall, const schema::DeviceAxis& axis, const schema::Hand& hand,
-                   double delay_s, double tick_s) {
-  const double m = axis.mass_kg + hand.mass_kg, b = axis.viscous_n_s_per_m + hand.damping_n_s_per_m;
-  const double z = b * tick_s / m, e = std::exp(-z);
-  const double place_by_speed = z > 1e-9 ? -std::expm1(-z) * m / b : tick_s;
-  const double place_by_force = z > 1e-4 ? (tick_s - place_by_speed) / b : tick_s * tick_s / (2 * m);
-  const auto late = static_cast<std::size_t>(std::ceil(delay_s / tick_s - 1e-9));
-  constexpr std::size_t kPlace = 0, kSpeed = 1, kIntegral = 2, kForces = 3;
-  Matrix motion(kForces + late, std::vector<double>(kForces + late));
-  std::vector<double> force(kForces + late), integral(kForces + late);
-  integral[kPlace] = wall.integral_n_per_m_s * tick_s;
-  integral[kIntegral] = wall.integral_n_per_m_s > 0 ? 1 - wall.integral_leak_per_s * tick_s : 0;
-  force[kPlace] = -wall.stiffness_n_per_m - integral[kPlace];
-  force[kSpeed] = -wall.damping_n_s_per_m;
-  force[kIntegral] = -integral[kIntegral];
-  std::vector<double> acting = force;
-  if (late > 0) {
-    acting.assign(acting.size(), 0);
-    acting[kForces + late - 1] = 1;
-    motion[kForces] = force;
-    for (std::size_t i = 1; i < late; ++i) motion[kForces + i][kForces + i - 1] = 1;
-  }
-  motion[kIntegral] = integral;
-  motion[kPlace][kPlace] = 1, motion[kPlace][kSpeed] = place_by_speed, motion[kSpeed][kSpeed] = e;
-  for (std::size_t i = 0; i < acting.size(); ++i) {
-    motion[kPlace][i] += place_by_force * acting[i];
-    motion[kSpeed][i] += place_by_speed / m * acting[i];
-  }
-  return motion;
-}
-
 }  // namespace
 
 double wall_growth(const Piece& piece, const schema::Device& device, double rate_hz,
                    const std::optional<schema::Hand>& hand) {
+  const schema::Hand held = hand.value_or(schema::Hand());
   double most = 0;
   for (const schema::DeviceAxis& axis : device.axes)
     if (axis.mass_kg > 0)
-      most = std::max(most, largest_eigenvalue(wall_motion(piece, axis, hand.value_or(schema::Hand()),
-                                                           device.delay_s, 1 / rate_hz)));
+      most = std::max(
+          most, growth_per_tick({axis.mass_kg + held.mass_kg, axis.viscous_n_s_per_m + held.damping_n_s_per_m,
+                                 held.stiffness_n_per_m},
+                                {1 / rate_hz, device.delay_s * rate_hz},
+                                {piece.stiffness_n_per_m,
+                                 piece.damping_n_s_per_m,
+                                 {},
+                                 piece.integral_n_per_m_s,
+                                 piece.integral_leak_per_s}));
   return most;
 }
 

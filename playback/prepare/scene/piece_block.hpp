@@ -16,9 +16,8 @@ schema::Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const s
                                              const schema::Device& device, double rate_hz,
                                              const std::optional<schema::Hand>& hand);
 
-/// By how much a motion on this wall grows per tick, beside an axis of the device that nothing pushes: the
-/// largest absolute eigenvalue of the motion from tick to tick, with spring, damper, integral, and the delay
-/// rounded up to whole ticks; above 1 it is unstable. Of a hand its mass and damping are counted. Coulomb
+/// growth_per_tick() of this wall on an axis of the device, above 1 it is unstable: with spring, integral and
+/// a damper that acts on the difference of two places. A hand adds its mass, damping and stiffness. Coulomb
 /// friction is left out, and the force limit. Of all axes the largest; 0 if the device states no mass.
 double wall_growth(const schema::Piece& piece, const schema::Device& device, double rate_hz,
                    const std::optional<schema::Hand>& hand);
