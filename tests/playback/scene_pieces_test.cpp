@@ -369,6 +369,42 @@ TEST(ScenePiecesTest, ARandomHandFallsThroughNoQuadric) {
   }
 }
 
+// A hole with a floor holds the ghost by both; the nearest place is known in closed form. Its wall bends
+// towards the ghost: the force has to be that of a place on the wall, not of one behind it.
+TEST(ScenePiecesTest, InAHoleWithAFloorTheForceIsThatOfTheNearestPlace) {
+  constexpr double kHole_m = 0.01;
+  Piece hole = piece_at(PieceShape::quadric, 0, 0, 0);
+  hole.coefficients = {-1 / (kHole_m * kHole_m), -1 / (kHole_m * kHole_m), 0, 0, 0, 0, 0, 0, 0, 1};
+  PiecesOnArm arm(scene_of({hole, plane_at(0, 0, -0.01, {0, 0, 1})}));
+  double worst_m = 0;
+  for (int tick = 0; tick < 4000; ++tick) {
+    const double radius_m = 5e-6 * tick, angle = 2e-3 * tick, z_m = std::max(-0.011, -1e-4 * tick);
+    const Space3 wanted = {radius_m * std::cos(angle), radius_m * std::sin(angle), z_m};
+    const auto counts = arm.counts_at(wanted);
+    const Space3 hand = {counts[0] * kPieceStep_m, counts[1] * kPieceStep_m, counts[2] * kPieceStep_m};
+    const Space3 force_n = arm.at(wanted);
+    const double r_m = std::hypot(hand[0], hand[1]), outwards = r_m > kHole_m ? kHole_m / r_m - 1 : 0;
+    const Space3 expected_m = {outwards * hand[0], outwards * hand[1], std::max(0.0, -0.01 - hand[2])};
+    for (std::size_t k = 0; k < 3; ++k)
+      worst_m = std::max(worst_m, std::abs(force_n[k] / kPieceStiffness - expected_m[k]));
+  }
+  EXPECT_LT(worst_m, 1e-6);  // as deep as GhostPoint lets the ghost be
+}
+
+// The way of a far jump leads over two surfaces whose normals are nearly opposite, where Cramer's rule loses
+// digits: the hand is deep in the floor, and there is a force in each tick.
+TEST(ScenePiecesTest, AfterAJumpThereIsAForceInTheSameTick) {
+  PiecesOnArm arm(scene_of({plane_at(0, 0, -0.01, {0, 0.3, 1}), sphere_at(0, 0, 0, 0.008)}));
+  arm.at({0.03, 0, 0.01});
+  arm.at({0.0013, 0.0033, -0.0072});
+  arm.at({0.00072, 0.00189, -0.00403});
+  const Space3 force_n = arm.at({-0.00316, -0.02674, -0.02402});
+  const double normal = std::hypot(0.3, 1.0), depth_m = (0.02674 * 0.3 + 0.02402 - 0.01) / normal;
+  EXPECT_NEAR(force_n[0], 0, 1e-3);
+  EXPECT_NEAR(force_n[1], kPieceStiffness * depth_m * 0.3 / normal, 1e-3);
+  EXPECT_NEAR(force_n[2], kPieceStiffness * depth_m / normal, 1e-3);
+}
+
 TEST(ScenePiecesTest, SinglePrecisionIsNearDoublePrecision) {
   for (const auto contact : {schema::PieceContact::ghost, schema::PieceContact::add}) {
     std::vector<Piece> pieces = {plane_at(0, 0, 0.0125, {0.1, 0, 1}), sphere_at(0.02, 0, 0, 0.015),

@@ -148,6 +148,12 @@ float return_to(const PieceTable& quadric, SpaceVector place, SpaceVector way, f
   return end < kNoEntry * -a ? end / -a : kNoEntry;
 }
 
+float bend_of(const PieceTable& quadric, SpaceVector place, SpaceVector way) noexcept {
+  const float* const q = quadric.form;
+  const float bend = -2 * dot(second_order(q, way), way);
+  return bend > 0 ? bend / length(gradient_of(q, place)) : 0;
+}
+
 bool nearest_on(SceneLayerKind kind, const PieceTable& table, SpaceVector hand, SpaceVector start,
                 SpaceVector& nearest) noexcept {
   if (kind == SceneLayerKind::quadric) return nearest_on_quadric(table.form, hand, start, nearest);
