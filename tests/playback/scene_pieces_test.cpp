@@ -405,6 +405,20 @@ TEST(ScenePiecesTest, AfterAJumpThereIsAForceInTheSameTick) {
   EXPECT_NEAR(force_n[2], kPieceStiffness * depth_m / normal, 1e-3);
 }
 
+// Of an ellipsoid with half axes a > b the place of its short axis is the nearest as long as the hand is near
+// the centre: depth = sqrt((p - h)^2) with p = a^2 h / (a^2 - b^2) along the long axes, in closed form.
+TEST(ScenePiecesTest, AddGivesTheNearestFaceOfAQuadricNearItsCentre) {
+  constexpr double kLong_m = 0.01, kShort_m = 0.005;
+  PiecesOnArm arm(scene_of({ellipsoid_at(0, 0, 0, {kLong_m, kLong_m, kShort_m})}, schema::PieceContact::add));
+  for (int count = 1; count < 700; ++count) {
+    const double x_m = count * kPieceStep_m;
+    const double along_m = kLong_m * kLong_m * x_m / (kLong_m * kLong_m - kShort_m * kShort_m);
+    const double up_m = kShort_m * std::sqrt(1 - std::pow(along_m / kLong_m, 2));
+    const double depth_m = std::hypot(along_m - x_m, up_m);
+    EXPECT_NEAR(length_of(arm.at({x_m, 0, 0})), kPieceStiffness * depth_m, 1e-4) << count;
+  }
+}
+
 TEST(ScenePiecesTest, SinglePrecisionIsNearDoublePrecision) {
   for (const auto contact : {schema::PieceContact::ghost, schema::PieceContact::add}) {
     std::vector<Piece> pieces = {plane_at(0, 0, 0.0125, {0.1, 0, 1}), sphere_at(0.02, 0, 0, 0.015),

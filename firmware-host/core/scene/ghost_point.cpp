@@ -324,8 +324,11 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
       if (holding.piece[j] == i) touch.depth_m = holding.depth_m[j], normal = holding.normal[j];
     if (adds && !beyond && at.distance_m < 0) {
       SpaceVector nearest;
-      const bool found = nearest_on(kind_of(scene, i), table, from, from - at.distance_m * normal, nearest);
-      touch.depth_m = found ? length(nearest - from) : -at.distance_m;
+      const SceneLayerKind kind = kind_of(scene, i);
+      const bool quadric = kind == SceneLayerKind::quadric;
+      const bool found = quadric ? nearest_face(table, from, nearest)
+                                 : nearest_on(kind, table, from, from - at.distance_m * normal, nearest);
+      touch.depth_m = found ? length(nearest - from) : quadric ? 0 : -at.distance_m;
       if (found && touch.depth_m > 0) normal = (1 / touch.depth_m) * (nearest - from);
     }
     touch.speed_mps = dot(hand.speed_mps, normal);
