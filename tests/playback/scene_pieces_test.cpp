@@ -419,6 +419,25 @@ TEST(ScenePiecesTest, AddGivesTheNearestFaceOfAQuadricNearItsCentre) {
   }
 }
 
+TEST(ScenePiecesTest, AQuadricDoesNotDependOnTheScaleOfItsCoefficients) {
+  constexpr double kBall_m = 0.01;
+  for (const double scale : {1e4, 1.0, 1e-6, 1e-9}) {
+    for (const auto contact : {schema::PieceContact::ghost, schema::PieceContact::add}) {
+      Piece ball = piece_at(PieceShape::quadric, 0, 0, 0);
+      ball.coefficients = {scale, scale, scale, 0, 0, 0, 0, 0, 0, -kBall_m * kBall_m * scale};
+      PiecesOnArm arm(scene_of({ball}, contact));
+      for (int i = 0; i < 1200; ++i) {
+        const double turn = 5e-3 * i, r_m = i < 100 ? 0.02 - 1.2e-4 * i : 0.008;
+        const Space3 wanted = {r_m * std::cos(turn), r_m * std::sin(turn), 0};
+        const auto counts = arm.counts_at(wanted);
+        const double depth_m = kBall_m - std::hypot(counts[0], counts[1]) * kPieceStep_m;
+        EXPECT_NEAR(length_of(arm.at(wanted)), kPieceStiffness * std::max(0.0, depth_m), 1e-4)
+            << scale << " " << i;
+      }
+    }
+  }
+}
+
 TEST(ScenePiecesTest, SinglePrecisionIsNearDoublePrecision) {
   for (const auto contact : {schema::PieceContact::ghost, schema::PieceContact::add}) {
     std::vector<Piece> pieces = {plane_at(0, 0, 0.0125, {0.1, 0, 1}), sphere_at(0.02, 0, 0, 0.015),
