@@ -606,6 +606,12 @@ TEST(ScenePiecesTest, WhatCannotBeIsRefused) {
   EXPECT_EQ(refused_at(R"("shape": "sphere", "radius_m": 1, "thickness_m": 1)"), "s#/pieces/0/thickness_m");
   EXPECT_EQ(refused_at(R"("shape": "plane", "direction": [0, 0, 0])"), "s#/pieces/0/direction");
   EXPECT_EQ(refused_at(R"("shape": "plane", "integral_n_per_m_s": 5)"), "s#/pieces/0/integral_n_per_m_s");
+  EXPECT_EQ(refused_at(R"("shape": "sphere", "radius_m": 1, "direction": [1, 0, 0])"),
+            "s#/pieces/0/direction");
+  EXPECT_EQ(refused_at(R"("shape": "plane", "coefficients": [1, 1, 1, 0, 0, 0, 0, 0, 0, -1])"),
+            "s#/pieces/0/coefficients");
+  EXPECT_EQ(refused_at(R"("shape": "plane", "integral_bound_n": 1)"), "s#/pieces/0/integral_bound_n");
+  EXPECT_EQ(refused_at(R"("shape": "plane", "integral_leak_per_s": 1)"), "s#/pieces/0/integral_leak_per_s");
   EXPECT_NE(refused_at(R"("shape": "sphere")"), "read");  // without a radius
   EXPECT_NE(refused_at(R"("shape": "plane", "dampng": 1)"), "read");
 }
