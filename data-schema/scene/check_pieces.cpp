@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>
+#include <utility>
 
 #include "data-schema/scene/scene.hpp"
 
@@ -60,6 +61,10 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
   };
   if (piece.radius_m != 0 && !round) return refused("radius_m", "sphere, cylinder");
   if (piece.thickness_m != 0 && piece.shape != PieceShape::plane) return refused("thickness_m", "plane");
+  const bool directed = piece.shape == PieceShape::plane || piece.shape == PieceShape::cylinder;
+  if (!directed && piece.direction != Piece().direction) return refused("direction", "plane, cylinder");
+  if (piece.coefficients != Piece().coefficients && piece.shape != PieceShape::quadric)
+    return refused("coefficients", "quadric");
   const auto& d = piece.direction;
   if (!(std::hypot(d[0], d[1], d[2]) > 1e-9))
     return fail(ErrorKind::unsuitable, "a direction of length 0", where + "/direction",
@@ -67,6 +72,11 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
   if (piece.integral_n_per_m_s > 0 && !(piece.integral_bound_n > 0))
     return fail(ErrorKind::unsuitable, "an integral without a bound grows without an end",
                 where + "/integral_n_per_m_s", "give integral_bound_n, the largest force of the integral");
+  for (const auto& [member, value] : {std::pair{"integral_bound_n", piece.integral_bound_n},
+                                      std::pair{"integral_leak_per_s", piece.integral_leak_per_s}})
+    if (value > 0 && !(piece.integral_n_per_m_s > 0))
+      return fail(ErrorKind::unsuitable, fmt::format("{} of a piece without an integral", member),
+                  fmt::format("{}/{}", where, member), "give integral_n_per_m_s too, or leave it out");
   return piece.shape == PieceShape::quadric ? check_quadric(piece, where) : Result<void>();
 }
 

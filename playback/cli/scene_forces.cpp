@@ -144,6 +144,7 @@ Report report_of(const ForceRendering& asked, const schema::Device& device, cons
   report.add("peak_limited_ticks", r.limits.amplitude)
       .add("slew_limited_ticks", r.limits.slew)
       .add("rms_limited_ticks", r.limits.energy);
+  if (r.in_space) report.add("other_side_ticks", r.other_side_ticks);
   return report.add("largest_rounding_n", r.largest_rounding_n).add("delay_s", device.delay_s);
 }
 

@@ -23,6 +23,8 @@ using schema::Result;
 namespace {
 
 constexpr double kMostTicks = 1 << 26;
+// Of the force: a larger difference of two forces of pieces is not rounding, but another side of a piece.
+constexpr double kOtherSide = 1e-3, kOtherSide_n = 0.1;
 
 // The places along the path, at each tick; 0 along an axis without a path.
 std::vector<double> places_along(const FingerPath* path, double rate_hz, std::size_t ticks) {
@@ -77,14 +79,20 @@ void run_kernel(PlaneRendering& rendering, const PreparedScene& scene, const cor
     const core::ForceOutput output = kernel.tick(counts.data(), true);
     const ExactScene::Output reference = exact.tick(counts);
     rendering.limits.add(output.flags);
-    double square = 0;
+    double square = 0, other_square = 0, most_rounding_n = 0;
     for (std::size_t i = 0; i < counts.size(); ++i) {
       force_n[i] = output.force_n[i];
       rendering.axes[i].force_n.push_back(output.force_n[i]);
       square += force_n[i] * force_n[i];
-      rendering.largest_rounding_n =
-          std::max(rendering.largest_rounding_n, std::abs(force_n[i] - reference.force_n[i]));
+      const double difference_n = force_n[i] - reference.force_n[i];
+      most_rounding_n = std::max(most_rounding_n, std::abs(difference_n));
+      other_square += difference_n * difference_n;
     }
+    if (rendering.in_space &&
+        std::sqrt(other_square) > kOtherSide * std::max(kOtherSide_n, std::sqrt(square)))
+      ++rendering.other_side_ticks;
+    else
+      rendering.largest_rounding_n = std::max(rendering.largest_rounding_n, most_rounding_n);
     rendering.largest_force_n = std::max(rendering.largest_force_n, std::sqrt(square));
     motion.move_on(tick, force_n);
   }

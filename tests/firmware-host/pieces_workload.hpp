@@ -9,7 +9,7 @@
 
 namespace tacto::tests {
 
-inline constexpr uint32_t kPiecesFingerprint = 317246980;
+inline constexpr uint32_t kPiecesFingerprint = 3058390590;
 
 /// A floor, a plate on edge, a ball, a pipe and an ellipsoid, and a hand that is pushed through them at up to
 /// 60 counts per tick; walls with dampers, arrest and integral; all limits are reached.

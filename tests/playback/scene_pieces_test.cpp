@@ -369,6 +369,75 @@ TEST(ScenePiecesTest, ARandomHandFallsThroughNoQuadric) {
   }
 }
 
+// A hole with a floor holds the ghost by both; the nearest place is known in closed form. Its wall bends
+// towards the ghost: the force has to be that of a place on the wall, not of one behind it.
+TEST(ScenePiecesTest, InAHoleWithAFloorTheForceIsThatOfTheNearestPlace) {
+  constexpr double kHole_m = 0.01;
+  Piece hole = piece_at(PieceShape::quadric, 0, 0, 0);
+  hole.coefficients = {-1 / (kHole_m * kHole_m), -1 / (kHole_m * kHole_m), 0, 0, 0, 0, 0, 0, 0, 1};
+  PiecesOnArm arm(scene_of({hole, plane_at(0, 0, -0.01, {0, 0, 1})}));
+  double worst_m = 0;
+  for (int tick = 0; tick < 4000; ++tick) {
+    const double radius_m = 5e-6 * tick, angle = 2e-3 * tick, z_m = std::max(-0.011, -1e-4 * tick);
+    const Space3 wanted = {radius_m * std::cos(angle), radius_m * std::sin(angle), z_m};
+    const auto counts = arm.counts_at(wanted);
+    const Space3 hand = {counts[0] * kPieceStep_m, counts[1] * kPieceStep_m, counts[2] * kPieceStep_m};
+    const Space3 force_n = arm.at(wanted);
+    const double r_m = std::hypot(hand[0], hand[1]), outwards = r_m > kHole_m ? kHole_m / r_m - 1 : 0;
+    const Space3 expected_m = {outwards * hand[0], outwards * hand[1], std::max(0.0, -0.01 - hand[2])};
+    for (std::size_t k = 0; k < 3; ++k)
+      worst_m = std::max(worst_m, std::abs(force_n[k] / kPieceStiffness - expected_m[k]));
+  }
+  EXPECT_LT(worst_m, 1e-6);  // as deep as GhostPoint lets the ghost be
+}
+
+// The way of a far jump leads over two surfaces whose normals are nearly opposite, where Cramer's rule loses
+// digits: the hand is deep in the floor, and there is a force in each tick.
+TEST(ScenePiecesTest, AfterAJumpThereIsAForceInTheSameTick) {
+  PiecesOnArm arm(scene_of({plane_at(0, 0, -0.01, {0, 0.3, 1}), sphere_at(0, 0, 0, 0.008)}));
+  arm.at({0.03, 0, 0.01});
+  arm.at({0.0013, 0.0033, -0.0072});
+  arm.at({0.00072, 0.00189, -0.00403});
+  const Space3 force_n = arm.at({-0.00316, -0.02674, -0.02402});
+  const double normal = std::hypot(0.3, 1.0), depth_m = (0.02674 * 0.3 + 0.02402 - 0.01) / normal;
+  EXPECT_NEAR(force_n[0], 0, 1e-3);
+  EXPECT_NEAR(force_n[1], kPieceStiffness * depth_m * 0.3 / normal, 1e-3);
+  EXPECT_NEAR(force_n[2], kPieceStiffness * depth_m / normal, 1e-3);
+}
+
+// Of an ellipsoid with half axes a > b the place of its short axis is the nearest as long as the hand is near
+// the centre: depth = sqrt((p - h)^2) with p = a^2 h / (a^2 - b^2) along the long axes, in closed form.
+TEST(ScenePiecesTest, AddGivesTheNearestFaceOfAQuadricNearItsCentre) {
+  constexpr double kLong_m = 0.01, kShort_m = 0.005;
+  PiecesOnArm arm(scene_of({ellipsoid_at(0, 0, 0, {kLong_m, kLong_m, kShort_m})}, schema::PieceContact::add));
+  for (int count = 1; count < 700; ++count) {
+    const double x_m = count * kPieceStep_m;
+    const double along_m = kLong_m * kLong_m * x_m / (kLong_m * kLong_m - kShort_m * kShort_m);
+    const double up_m = kShort_m * std::sqrt(1 - std::pow(along_m / kLong_m, 2));
+    const double depth_m = std::hypot(along_m - x_m, up_m);
+    EXPECT_NEAR(length_of(arm.at({x_m, 0, 0})), kPieceStiffness * depth_m, 1e-4) << count;
+  }
+}
+
+TEST(ScenePiecesTest, AQuadricDoesNotDependOnTheScaleOfItsCoefficients) {
+  constexpr double kBall_m = 0.01;
+  for (const double scale : {1e4, 1.0, 1e-6, 1e-9}) {
+    for (const auto contact : {schema::PieceContact::ghost, schema::PieceContact::add}) {
+      Piece ball = piece_at(PieceShape::quadric, 0, 0, 0);
+      ball.coefficients = {scale, scale, scale, 0, 0, 0, 0, 0, 0, -kBall_m * kBall_m * scale};
+      PiecesOnArm arm(scene_of({ball}, contact));
+      for (int i = 0; i < 1200; ++i) {
+        const double turn = 5e-3 * i, r_m = i < 100 ? 0.02 - 1.2e-4 * i : 0.008;
+        const Space3 wanted = {r_m * std::cos(turn), r_m * std::sin(turn), 0};
+        const auto counts = arm.counts_at(wanted);
+        const double depth_m = kBall_m - std::hypot(counts[0], counts[1]) * kPieceStep_m;
+        EXPECT_NEAR(length_of(arm.at(wanted)), kPieceStiffness * std::max(0.0, depth_m), 1e-4)
+            << scale << " " << i;
+      }
+    }
+  }
+}
+
 TEST(ScenePiecesTest, SinglePrecisionIsNearDoublePrecision) {
   for (const auto contact : {schema::PieceContact::ghost, schema::PieceContact::add}) {
     std::vector<Piece> pieces = {plane_at(0, 0, 0.0125, {0.1, 0, 1}), sphere_at(0.02, 0, 0, 0.015),
@@ -547,6 +616,12 @@ TEST(ScenePiecesTest, WhatCannotBeIsRefused) {
   EXPECT_EQ(refused_at(R"("shape": "sphere", "radius_m": 1, "thickness_m": 1)"), "s#/pieces/0/thickness_m");
   EXPECT_EQ(refused_at(R"("shape": "plane", "direction": [0, 0, 0])"), "s#/pieces/0/direction");
   EXPECT_EQ(refused_at(R"("shape": "plane", "integral_n_per_m_s": 5)"), "s#/pieces/0/integral_n_per_m_s");
+  EXPECT_EQ(refused_at(R"("shape": "sphere", "radius_m": 1, "direction": [1, 0, 0])"),
+            "s#/pieces/0/direction");
+  EXPECT_EQ(refused_at(R"("shape": "plane", "coefficients": [1, 1, 1, 0, 0, 0, 0, 0, 0, -1])"),
+            "s#/pieces/0/coefficients");
+  EXPECT_EQ(refused_at(R"("shape": "plane", "integral_bound_n": 1)"), "s#/pieces/0/integral_bound_n");
+  EXPECT_EQ(refused_at(R"("shape": "plane", "integral_leak_per_s": 1)"), "s#/pieces/0/integral_leak_per_s");
   EXPECT_NE(refused_at(R"("shape": "sphere")"), "read");  // without a radius
   EXPECT_NE(refused_at(R"("shape": "plane", "dampng": 1)"), "read");
 }

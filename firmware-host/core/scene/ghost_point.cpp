@@ -32,6 +32,7 @@ struct Plane {
   uint32_t piece = 0;
   float distance_m = 0;
   SpaceVector normal;
+  SpaceVector at;  ///< the point, from the origin of the piece
 };
 
 struct Planes {
@@ -79,42 +80,42 @@ bool allowed(const Planes& planes, SpaceVector way) noexcept {
 bool held_by(const Planes& planes, const uint32_t* set, uint32_t count, SpaceVector straight,
              Goal& goal) noexcept {
   constexpr float kLeastVolume = 1e-6F;
-  float lack[kMostHolding] = {}, g01 = 0, g02 = 0, g12 = 0;
+  constexpr int kTurns = 2;  // the second one adds what the first one lost by rounding
+  float g01 = 0, g02 = 0, g12 = 0;
   SpaceVector n[kMostHolding];
-  for (uint32_t i = 0; i < count; ++i) {
-    n[i] = planes.at[set[i]].normal;
-    lack[i] = -planes.at[set[i]].distance_m - dot(n[i], straight);
-  }
   Goal found{straight, count, {}, {}};
-  float* const push = found.push_m;
+  for (uint32_t i = 0; i < count; ++i) n[i] = planes.at[set[i]].normal, found.plane[i] = set[i];
   if (count > 1) g01 = dot(n[0], n[1]);
   if (count > 2) g02 = dot(n[0], n[2]), g12 = dot(n[1], n[2]);
-  if (count == 1) {
-    push[0] = lack[0];
-  } else if (count == 2) {
-    const float volume = 1 - g01 * g01;
-    if (!(volume > kLeastVolume)) return false;
-    push[0] = (lack[0] - g01 * lack[1]) / volume;
-    push[1] = (lack[1] - g01 * lack[0]) / volume;
-  } else {
-    const float c0 = 1 - g12 * g12, c1 = g02 * g12 - g01, c2 = g01 * g12 - g02;
-    const float volume = c0 + g01 * c1 + g02 * c2;
-    if (!(volume > kLeastVolume)) return false;
-    push[0] = (c0 * lack[0] + c1 * lack[1] + c2 * lack[2]) / volume;
-    push[1] = (c1 * lack[0] + (1 - g02 * g02) * lack[1] + (g01 * g02 - g12) * lack[2]) / volume;
-    push[2] = (c2 * lack[0] + (g01 * g02 - g12) * lack[1] + (1 - g01 * g01) * lack[2]) / volume;
+  const float c0 = 1 - g12 * g12, c1 = g02 * g12 - g01, c2 = g01 * g12 - g02;
+  const float volume = count < 2 ? 1 : count < 3 ? 1 - g01 * g01 : c0 + g01 * c1 + g02 * c2;
+  if (!(volume > kLeastVolume)) return false;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    float lack[kMostHolding] = {}, push[kMostHolding] = {};
+    for (uint32_t i = 0; i < count; ++i) lack[i] = -planes.at[set[i]].distance_m - dot(n[i], found.way);
+    if (count == 1) {
+      push[0] = lack[0];
+    } else if (count == 2) {
+      push[0] = (lack[0] - g01 * lack[1]) / volume;
+      push[1] = (lack[1] - g01 * lack[0]) / volume;
+    } else {
+      push[0] = (c0 * lack[0] + c1 * lack[1] + c2 * lack[2]) / volume;
+      push[1] = (c1 * lack[0] + (1 - g02 * g02) * lack[1] + (g01 * g02 - g12) * lack[2]) / volume;
+      push[2] = (c2 * lack[0] + (g01 * g02 - g12) * lack[1] + (1 - g01 * g01) * lack[2]) / volume;
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+      found.push_m[i] += push[i];
+      if (!(found.push_m[i] >= 0)) return false;
+      found.way = found.way + push[i] * n[i];
+    }
+    if (!allowed(planes, found.way)) continue;
+    goal = found;
+    return true;
   }
-  for (uint32_t i = 0; i < count; ++i) {
-    if (!(push[i] >= 0)) return false;
-    found.plane[i] = set[i];
-    found.way = found.way + push[i] * n[i];
-  }
-  if (!allowed(planes, found.way)) return false;
-  goal = found;
-  return true;
+  return false;
 }
 
-// None of the sets fits by rounding alone: then it stays.
+// None of the sets fits by rounding alone: then it stays, held by the plane that is crossed most.
 Goal nearest_allowed(const Planes& planes, SpaceVector straight) noexcept {
   Goal goal;
   if (allowed(planes, straight)) return {straight, 0, {}, {}};
@@ -128,6 +129,10 @@ Goal nearest_allowed(const Planes& planes, SpaceVector straight) noexcept {
     for (uint32_t j = i + 1; j < n; ++j)
       for (uint32_t k = j + 1; k < n; ++k)
         if (const uint32_t set[] = {i, j, k}; held_by(planes, set, 3, straight, goal)) return goal;
+  for (uint32_t i = 0; i < n; ++i) {
+    const float lack_m = -planes.at[i].distance_m - dot(planes.at[i].normal, straight);
+    if (lack_m > goal.push_m[0]) goal = {{}, 1, {i}, {lack_m}};
+  }
   return goal;
 }
 
@@ -155,6 +160,24 @@ float most_force_n(const ForceSetup& setup, SpaceVector normal) noexcept {
     if (axis.peak_n < most_n * size) most_n = axis.peak_n / size;
   }
   return most_n;
+}
+
+// The way of a goal on surfaces that bend towards it. The straight one is too long there: along it the
+// squared distance from the hand has the second derivative 1 + sum of push x curvature, on a plane 1. The
+// part back to the surfaces stays.
+SpaceVector shortened(const SceneView& scene, const Planes& planes, const Goal& goal) noexcept {
+  const float squared = dot(goal.way, goal.way);
+  SpaceVector back;
+  float bent = 0;
+  for (uint32_t i = 0; i < goal.count; ++i) {
+    const Plane& plane = planes.at[goal.plane[i]];
+    back = back - plane.distance_m * plane.normal;
+    if (kind_of(scene, plane.piece) == SceneLayerKind::quadric)
+      bent += goal.push_m[i] * bend_of(piece_of(scene, plane.piece), plane.at, goal.way);
+  }
+  if (!(bent > 0) || !(squared > 0)) return goal.way;
+  const float share = squared / (squared + bent);
+  return share * goal.way + (1 - share) * back;
 }
 
 bool is_inside(const SceneView& scene, const SpacePlace& place, const float (&step_m)[3]) noexcept {
@@ -218,17 +241,17 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
   bool outside = false;
   uint32_t touched = 0;
   static_assert(kMostPieces <= 32);
-  for (int pass = 0; pass < kGhostPasses; ++pass) {
+  for (int pass = 0; pass <= kGhostPasses; ++pass) {  // the last one moves no more, and gives the force
     const SpaceVector straight = difference(hand, ghost_, step_m);
     Planes planes;
     float nearest_m = kFarthestInSpace_m;
     for (uint32_t i = 0; i < scene.layer_count; ++i) {
       const PieceTable& table = piece_of(scene, i);
-      const PieceSurface at =
-          surface_at(kind_of(scene, i), table, difference(ghost_, origin_of(table), step_m));
+      const SpaceVector from = difference(ghost_, origin_of(table), step_m);
+      const PieceSurface at = surface_at(kind_of(scene, i), table, from);
       nearest_m = at.distance_m < nearest_m ? at.distance_m : nearest_m;
       if (at.distance_m <= kTouch_m) touched |= UINT32_C(1) << i;
-      if (touched >> i & 1) planes.add({i, at.distance_m, normal_or(at.normal, straight)});
+      if (touched >> i & 1) planes.add({i, at.distance_m, normal_or(at.normal, straight), from});
     }
     const Goal goal = nearest_allowed(planes, straight);
     holding.count = goal.count;
@@ -240,7 +263,8 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
     }
     if (nearest_m >= -kInside_m) last = ghost_, of_last = holding, outside = true;
     if (goal.count == 1 && settle_on(scene, hand, step_m, touched, holding)) break;
-    SpaceVector way = goal.way;
+    if (pass == kGhostPasses) break;
+    SpaceVector way = shortened(scene, planes, goal);
     // A surface that bends towards the ghost: a shorter step, so that it stays near.
     for (int halved = 0; halved < 4; ++halved) {
       float deepest_m = 0;
@@ -300,8 +324,11 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
       if (holding.piece[j] == i) touch.depth_m = holding.depth_m[j], normal = holding.normal[j];
     if (adds && !beyond && at.distance_m < 0) {
       SpaceVector nearest;
-      const bool found = nearest_on(kind_of(scene, i), table, from, from - at.distance_m * normal, nearest);
-      touch.depth_m = found ? length(nearest - from) : -at.distance_m;
+      const SceneLayerKind kind = kind_of(scene, i);
+      const bool quadric = kind == SceneLayerKind::quadric;
+      const bool found = quadric ? nearest_face(table, from, nearest)
+                                 : nearest_on(kind, table, from, from - at.distance_m * normal, nearest);
+      touch.depth_m = found ? length(nearest - from) : quadric ? 0 : -at.distance_m;
       if (found && touch.depth_m > 0) normal = (1 / touch.depth_m) * (nearest - from);
     }
     touch.speed_mps = dot(hand.speed_mps, normal);

@@ -8,7 +8,7 @@
 
 namespace tacto::core {
 
-inline constexpr int kGhostPasses = 12;           ///< of a tick, at most
+inline constexpr int kGhostPasses = 12;           ///< moves of a tick, at most
 inline constexpr uint32_t kMostTouched = 6;       ///< pieces that hold the ghost or may hold it: the nearest
 inline constexpr uint32_t kMostHolding = 3;       ///< planes that hold it
 inline constexpr float kFarthestInSpace_m = 100;  ///< beyond, a hand touches nothing
@@ -25,11 +25,13 @@ struct SpaceHand {
 /// curved piece it goes to the place of the surface nearest to the hand at once (nearest_on()), if that is
 /// less than about 37 degrees of the normal away and nothing is between. So it passes through no surface:
 /// what it touches it leaves outwards only, and what it does not touch is met in closed form. Rounding leaves
-/// it at most 1e-6 m inside of a piece; there it is moved out. Where the passes end deeper (a quadric that
-/// bends towards it, and a hand that is far away), it stays at the last place outside, and goes on in the
-/// next tick. The force is the sum over the holding planes of wall_force() along the normal, the depth of
-/// each its share of the way from hand to ghost (the multiplier of its plane): of equal stiffness K together
-/// K (ghost - hand). `contact: add`: each piece by itself, from its nearest face.
+/// it at most 1e-6 m inside of a piece; there it is moved out. On a quadric that bends towards the ghost a
+/// step is shorter, by the curvature, so that the passes come to an end there, too. Where the passes end
+/// deeper (a quadric that bends towards it, and a hand that is far away), it stays at the last place outside,
+/// and goes on in the next tick. The force is the sum over the holding planes of wall_force() along the
+/// normal, the depth of each its share of the way from hand to ghost (the multiplier of its plane): of equal
+/// stiffness K together K (ghost - hand) once the ghost has come to rest; while it is on its way, the planes
+/// where it is give the force. `contact: add`: each piece by itself, from its nearest face.
 class GhostPoint {
  public:
   /// Without a place: the next hand is the ghost.

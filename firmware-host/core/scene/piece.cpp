@@ -7,6 +7,7 @@ namespace tacto::core {
 namespace {
 
 constexpr float kNoEntry = 2;
+constexpr float kNoExit = 1e30F;
 constexpr float kLeastArm = 1e-3F;  // of the radius: nearer to a centre the direction is one of rounding
 
 SpaceVector direction_of(const PieceTable& table) noexcept {
@@ -89,6 +90,44 @@ bool nearest_on_quadric(const float* q, SpaceVector hand, SpaceVector start, Spa
          dot(beside, beside) <= bound * bound;
 }
 
+// The first root of c + 2 b s + a s^2 from below, for c < 0.
+float exit_root(float a, float b, float c) noexcept {
+  const float square = b * b - a * c;
+  if (!(square >= 0)) return kNoExit;
+  const float root = __builtin_sqrtf(square);
+  if (b >= 0) return root + b > 0 ? -c / (root + b) : kNoExit;
+  return a > 0 ? (root - b) / a : kNoExit;
+}
+
+// The nearest of the places that it is given.
+struct NearestFace {
+  SpaceVector hand;
+  SpaceVector place;
+  float squared_m2 = kNoExit;
+
+  void try_place(SpaceVector p) noexcept {
+    const SpaceVector way = p - hand;
+    const float squared = dot(way, way);
+    if (squared < squared_m2) squared_m2 = squared, place = p;
+  }
+  // The way out of the solid from a place in it.
+  void try_way(const float* q, SpaceVector from, SpaceVector way) noexcept {
+    const float a = dot(second_order(q, way), way), b = 0.5F * dot(gradient_of(q, from), way);
+    const float part = exit_root(a, b, value_of(q, from));
+    if (part < kNoExit) try_place(from + part * way);
+  }
+};
+
+// p with (1 + 2 lambda A) p = hand - lambda b, if the matrix is positive definite.
+bool place_of(const float* q, SpaceVector hand, float lambda, SpaceVector& p) noexcept {
+  const Symmetric m{1 + 2 * lambda * q[0], 1 + 2 * lambda * q[1], 1 + 2 * lambda * q[2],
+                    lambda * q[3],         lambda * q[4],         lambda * q[5]};
+  const float size = determinant(m);
+  if (!(m.xx > 0) || !(m.xx * m.yy - m.xy * m.xy > 0) || !(size > 0)) return false;
+  p = (1 / size) * adjugate_times(m, hand - lambda * first_order(q));
+  return is_finite(dot(p, p));
+}
+
 }  // namespace
 
 PieceSurface surface_at(SceneLayerKind kind, const PieceTable& table, SpaceVector place) noexcept {
@@ -148,6 +187,12 @@ float return_to(const PieceTable& quadric, SpaceVector place, SpaceVector way, f
   return end < kNoEntry * -a ? end / -a : kNoEntry;
 }
 
+float bend_of(const PieceTable& quadric, SpaceVector place, SpaceVector way) noexcept {
+  const float* const q = quadric.form;
+  const float bend = -2 * dot(second_order(q, way), way);
+  return bend > 0 ? bend / length(gradient_of(q, place)) : 0;
+}
+
 bool nearest_on(SceneLayerKind kind, const PieceTable& table, SpaceVector hand, SpaceVector start,
                 SpaceVector& nearest) noexcept {
   if (kind == SceneLayerKind::quadric) return nearest_on_quadric(table.form, hand, start, nearest);
@@ -161,6 +206,49 @@ bool nearest_on(SceneLayerKind kind, const PieceTable& table, SpaceVector hand, 
   const float radius_m = length(arm);
   if (!(radius_m > kLeastArm * table.form[kPieceSize])) return false;
   nearest = hand + ((table.form[kPieceSize] - radius_m) / radius_m) * arm;
+  return true;
+}
+
+// While 1 + 2 lambda A is positive definite, q(p(lambda)) falls with lambda: so its root is one, and it is
+// the nearest place of all (the condition of a trust region). In a centre, or on an axis, there is no root:
+// the last p is then in the solid, and the surface is as near on both sides along the direction that becomes
+// singular.
+bool nearest_face(const PieceTable& quadric, SpaceVector hand, SpaceVector& nearest) noexcept {
+  constexpr int kDoublings = 32, kHalvings = 24;
+  const float* const q = quadric.form;
+  const SpaceVector axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  NearestFace face{hand, hand};
+  for (const SpaceVector& axis : axes) {
+    face.try_way(q, hand, axis);
+    face.try_way(q, hand, -1 * axis);
+  }
+  const SpaceVector slope = gradient_of(q, hand);
+  const float start = -value_of(q, hand) / dot(slope, slope);
+  float in = 0, out = start < kNoExit ? start : 1;
+  SpaceVector inside = hand, p;
+  for (int i = 0; i < kDoublings; ++i, in = out, inside = p, out *= 2)
+    if (!place_of(q, hand, -out, p) || !(value_of(q, p) < 0)) break;
+  for (int i = 0; i < kHalvings; ++i) {
+    const float middle = 0.5F * (in + out);
+    if (place_of(q, hand, -middle, p) && value_of(q, p) < 0)
+      in = middle, inside = p;
+    else
+      out = middle;
+  }
+  face.try_way(q, inside, gradient_of(q, inside));
+  const Symmetric m{1 - 2 * in * q[0], 1 - 2 * in * q[1], 1 - 2 * in * q[2],
+                    -in * q[3],        -in * q[4],        -in * q[5]};
+  for (const SpaceVector& axis : axes) {
+    const SpaceVector column = adjugate_times(m, axis);
+    const float size = length(column);
+    if (!(size > 0)) continue;
+    const SpaceVector singular = (1 / size) * column;
+    face.try_way(q, inside, singular);
+    face.try_way(q, inside, -1 * singular);
+  }
+  if (!(face.squared_m2 < kNoExit)) return false;
+  if (nearest_on_quadric(q, hand, face.place, p)) face.try_place(p);
+  nearest = face.place;
   return true;
 }
 

@@ -62,6 +62,10 @@ float entry_of(SceneLayerKind kind, const PieceTable& table, SpaceVector place, 
 /// in the tick.
 float return_to(const PieceTable& quadric, SpaceVector place, SpaceVector way, float height_m) noexcept;
 
+/// The curvature of a quadric along `way` times the square of the way, where it bends towards a point
+/// outside; else 0. Safe in the tick.
+float bend_of(const PieceTable& quadric, SpaceVector place, SpaceVector way) noexcept;
+
 /// Steps of Newton's method for the place of a quadric that is nearest to a hand.
 inline constexpr int kQuadricSteps = 8;
 
@@ -70,6 +74,10 @@ inline constexpr int kQuadricSteps = 8;
 /// they did not lead to a place on the surface. Safe in the tick.
 bool nearest_on(SceneLayerKind kind, const PieceTable& table, SpaceVector hand, SpaceVector start,
                 SpaceVector& nearest) noexcept;
+
+/// The place of a quadric's surface that is nearest to a hand in the solid, of all. False if no way leads out.
+/// Safe in the tick.
+bool nearest_face(const PieceTable& quadric, SpaceVector hand, SpaceVector& nearest) noexcept;
 
 /// Behind the numbers of a piece, 0 in a block.
 struct WallState {

@@ -67,7 +67,11 @@ Result<core::PieceTable> table_of_piece(const Piece& piece, double point_radius_
     table.rest_m[i] = static_cast<float>(place_m[i] - counts * step_m[i]);
   }
   if (piece.shape == PieceShape::quadric) {
-    std::ranges::transform(piece.coefficients, table.form, [](double c) { return static_cast<float>(c); });
+    // In units of the largest one: the kernel's least gradient is an absolute one.
+    const auto [least, most] = std::ranges::minmax(piece.coefficients);
+    const double scale = std::max(-least, most);
+    std::ranges::transform(piece.coefficients, table.form,
+                           [&](double c) { return static_cast<float>(c / scale); });
     return table;
   }
   for (int i = 0; i < 3; ++i) table.form[core::kPieceDirection + i] = static_cast<float>(n[i]);

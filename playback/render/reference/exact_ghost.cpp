@@ -13,7 +13,8 @@ using schema::PieceShape;
 
 namespace {
 
-constexpr double kNear_m = 1e-9;    // nearer, a piece is touched
+constexpr double kNear_m = 1e-9;  // nearer, a piece is touched
+constexpr double kBends_m = 1e-13;
 constexpr int kPasses = 300;        // of a tick
 constexpr int kSweeps = 2000;       // of Hildreth's iteration
 constexpr int kEntrySamples = 128;  // of a way
@@ -56,8 +57,8 @@ ExactGhost::Surface ExactGhost::surface_at(const Piece& piece, const SpaceMetres
     const SpaceMetres slope = {2 * c[0] * x + c[3] * y + c[5] * z + c[6],
                                2 * c[1] * y + c[3] * x + c[4] * z + c[7],
                                2 * c[2] * z + c[4] * y + c[5] * x + c[8]};
-    const double size = size_of(slope);
-    return size > 1e-12 ? Surface{value / size, sum_of({}, 1 / size, slope)} : Surface{value, {}};
+    const double size = size_of(slope), scale = size_of({c[0], c[1], c[2]}) + size_of({c[6], c[7], c[8]});
+    return size > 1e-12 * scale ? Surface{value / size, sum_of({}, 1 / size, slope)} : Surface{value, {}};
   }
   SpaceMetres arm = p;
   if (piece.shape == PieceShape::cylinder) {
@@ -118,16 +119,66 @@ std::vector<ExactGhost::Held> ExactGhost::follow(const SpaceMetres& hand_m) {
       if (entry < part) part = entry, met = i;
     }
     if (met < pieces.size()) touched[met] = true;
+    // On a surface that bends towards the ghost the whole way may lead back and forth without an end.
+    for (std::size_t i = 0; i < pieces.size() && met == pieces.size(); ++i)
+      if (held[i].depth_m > 0 && surface_at(pieces[i], sum_of(ghost_m_, 1, way)).distance_m < -kBends_m)
+        part = 0.5;
     ghost_m_ = sum_of(ghost_m_, part, way);
     if (met == pieces.size() && size_of(way) < 1e-13) break;
   }
   return held;
 }
 
+// Of many directions the one with the shortest way, and then by ever smaller turns of it.
+ExactGhost::Held ExactGhost::shortest_way_out(const Piece& piece, const SpaceMetres& hand_m) const {
+  constexpr int kDirections = 500, kTurns = 4000;
+  constexpr double kFar_m = 1e9, kGolden = 2.399963229728653, kLeastTurn = 1e-12;
+  const SpaceMetres from = sum_of(hand_m, -1, {piece.x_m, piece.y_m, piece.z_m});
+  const auto& c = piece.coefficients;
+  const auto second = [&](const SpaceMetres& a, const SpaceMetres& b) {
+    return c[0] * a[0] * b[0] + c[1] * a[1] * b[1] + c[2] * a[2] * b[2] +
+           (c[3] * (a[0] * b[1] + a[1] * b[0]) + c[4] * (a[1] * b[2] + a[2] * b[1]) +
+            c[5] * (a[0] * b[2] + a[2] * b[0])) /
+               2;
+  };
+  const SpaceMetres first = {c[6], c[7], c[8]};
+  const auto way_out = [&](const SpaceMetres& u) {
+    const double a = second(u, u), b = second(from, u) + inner(first, u) / 2,
+                 value = second(from, from) + inner(first, from) + c[9], square = b * b - a * value;
+    if (!(square >= 0)) return kFar_m;
+    const double end = b >= 0 ? b + std::sqrt(square) : a > 0 ? -a * value / (std::sqrt(square) - b) : 0;
+    return end > 0 ? -value / end : kFar_m;
+  };
+  Held best{{0, 0, 1}, kFar_m};
+  const auto take = [&](const SpaceMetres& u) {
+    const double way_m = way_out(u);
+    if (!(way_m < best.depth_m)) return false;
+    best = {u, way_m};
+    return true;
+  };
+  for (int i = 0; i < kDirections; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kDirections, r = std::sqrt(1 - z * z);
+    take({r * std::cos(kGolden * i), r * std::sin(kGolden * i), z});
+  }
+  double turn = 0.2;
+  for (int i = 0; i < kTurns && turn > kLeastTurn; ++i) {
+    bool nearer = false;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (const double by : {turn, -turn}) {
+        SpaceMetres u = best.normal;
+        u[axis] += by;
+        nearer = take(unit_of(u)) || nearer;
+      }
+    if (!nearer) turn /= 2;
+  }
+  return best.depth_m < kFar_m ? best : Held{best.normal, 0};
+}
+
 ExactGhost::Held ExactGhost::nearest_face(const Piece& piece, const SpaceMetres& hand_m) const {
   SpaceMetres at = hand_m;
   Surface surface = surface_at(piece, at);
   if (surface.distance_m >= 0) return {surface.normal, 0};
+  if (piece.shape == PieceShape::quadric) return shortest_way_out(piece, hand_m);
   for (int i = 0; i < kPasses; ++i) {
     const double depth_m = -surface.distance_m + inner(surface.normal, sum_of(at, -1, hand_m));
     at = sum_of(hand_m, depth_m, surface.normal);

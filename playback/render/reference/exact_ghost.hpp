@@ -40,6 +40,7 @@ class ExactGhost {
   Surface surface_at(const schema::Piece& piece, const SpaceMetres& place_m) const;
   double entry_of(const schema::Piece& piece, const SpaceMetres& from_m, const SpaceMetres& way_m) const;
   std::vector<Held> follow(const SpaceMetres& hand_m);
+  Held shortest_way_out(const schema::Piece& piece, const SpaceMetres& hand_m) const;
   Held nearest_face(const schema::Piece& piece, const SpaceMetres& hand_m) const;
   double wall_force(const schema::Piece& piece, Wall& wall, const Held& held, double outside_m,
                     double speed_mps) const;
