@@ -106,6 +106,9 @@ Result<Report> run_new_study(const NewStudyOptions& o) {
   TACTO_TRY(study);
   auto report = warn_and_report(*study);
   TACTO_TRY(report);
+  std::vector<std::string> keys;
+  for (const auto& [key, word] : protocol->choices) keys.push_back(fmt::format("{}: {}", key, word));
+  report->add("answer_keys", keys);
   return report->add("written", std::vector<std::string>{schema::protocol_path(study->stem),
                                                          schema::key_path(study->stem), study->stem + "/"});
 }
