@@ -111,6 +111,9 @@ Result<Report> run_new_study(const NewStudyOptions& o) {
   TACTO_TRY(study);
   auto report = warn_and_report(*study);
   TACTO_TRY(report);
+  std::vector<std::string> keys;
+  for (const auto& [key, word] : protocol->choices) keys.push_back(fmt::format("{}: {}", key, word));
+  report->add("answer_keys", keys);
   return report->add("written", std::vector<std::string>{schema::protocol_path(study->stem),
                                                          schema::key_path(study->stem), study->stem + "/"});
 }
@@ -142,12 +145,19 @@ Result<Report> run_check_study(const CheckStudyOptions& o) {
   return report->add("valid", true);
 }
 
+// Trials that have no answer, and will get none.
+void add_lost_trials(Report& report, const TrialQueue& queue) {
+  if (queue.abandoned() > 0) report.add("abandoned", queue.abandoned());
+  if (queue.timed_out() > 0) report.add("after_time_limit", queue.timed_out());
+}
+
 // Counts only: no screen names a stimulus.
 Report report_of_run(const Run& run) {
   Report report;
   report.add("run", run.stem).add("complete", run.queue.has_ended());
   report.add("trials", run.queue.trials()).add("delivered_and_answered", run.queue.counted());
   report.add("attempts", run.queue.attempts().size());
+  add_lost_trials(report, run.queue);
   if (!run.journal.plan.observer.empty()) report.add("simulated", observer_in_words(run));
   std::vector<std::string> written = {schema::journal_path(run.stem), run.stem + "/"};
   if (run.queue.has_ended()) written.push_back(run.stem + ".trials.tsv");
@@ -211,10 +221,14 @@ Result<Report> run_resume_study(const RunStudyOptions& o) {
                           [&](RunRequest request) { return resume_run(o.what, std::move(request)); });
 }
 
-std::string proof_in_words(const Proof& proof) {
+std::string proof_in_words(const Proof& proof, const TrialQueue& queue) {
   std::string words = fmt::format("{} of {} trials delivered", proof.delivered, proof.trials);
   if (proof.placed > 0)
     words += fmt::format(", {} with real samples, of which there is only the operator's word", proof.placed);
+  if (queue.abandoned() > 0)
+    words += fmt::format(", {} abandoned after too many attempts that were not delivered", queue.abandoned());
+  if (queue.timed_out() > 0)
+    words += fmt::format("; {} more were left out by the time limit of a block", queue.timed_out());
   if (proof.stretch_error)
     words += fmt::format("; predicted stretch within {:.2g} of the nominal one", *proof.stretch_error);
   if (proof.ratio_error)
@@ -292,7 +306,7 @@ Result<Report> run_prove_run(const ProveOptions& o) {
   cli::Progress progress("proving");
   const Proof proof = prove(*run, [&](double part) { progress.update(part); });
   Report report;
-  report.add("verdict", proof_in_words(proof)).add("proven", proof.holds());
+  report.add("verdict", proof_in_words(proof, run->queue)).add("proven", proof.holds());
   report.add("complete", run->queue.has_ended())
       .add("trials", proof.trials)
       .add("delivered", proof.delivered);
@@ -301,6 +315,7 @@ Result<Report> run_prove_run(const ProveOptions& o) {
       .add("interrupted", proof.interrupted)
       .add("sessions", proof.sessions)
       .add("same_to_the_bit", proof.same_to_the_bit);
+  add_lost_trials(report, run->queue);
   if (run->study.protocol.task == schema::Task::identification) report.add("real_samples", proof.placed);
   if (proof.stretch_error) report.add("stretch_error", *proof.stretch_error);
   if (proof.ratio_error) report.add("ratio_error", *proof.ratio_error);
@@ -489,6 +504,9 @@ cli::Action declare_resume_study(CLI::App& app) {
   app.add_option("RUN", options->what, "STUDY-P07, or its journal")->required();
   app.add_option("-d,--device", options->device, "Device; default: that of the run");
   app.add_option("--answers", options->answers, kAnswersHelp);
+  app.footer(
+      "The trial that was interrupted is the next one again. The file of --answers holds all answers and "
+      "labels of the run, from its first trial on: those that the run has are not read again.");
   return [options] { return run_resume_study(*options); };
 }
 

@@ -36,16 +36,29 @@ int choice_number(std::string_view answer, const schema::Protocol& protocol) {
   return found == protocol.choices.end() ? 0 : static_cast<int>(found - protocol.choices.begin()) + 1;
 }
 
-// K1, K2 ...
-bool is_label(const std::string& line) {
-  return line.size() > 1 && line.front() == 'K' &&
-         line.find_first_not_of("0123456789", 1) == std::string::npos;
-}
-
 tl::unexpected<schema::Error> wrong_label(const std::string& typed, const std::string& label,
                                           const std::string& where) {
   return schema::fail(ErrorKind::malformed, fmt::format("'{}' is not the sample {}", typed, label), where,
                       fmt::format("place sample {}", label));
+}
+
+std::string without_spaces(const std::string& text) {
+  const auto first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+// A key of the label that is being typed, and its echo. Backspace removes the last character; other control
+// characters are ignored.
+void type(char key, std::string& typed) {
+  constexpr char kBackspace = '\b', kDelete = '\x7f';
+  if (key == kBackspace || key == kDelete) {
+    if (typed.empty()) return;
+    typed.pop_back();
+    fmt::print(stderr, "\b \b");
+  } else if (static_cast<unsigned char>(key) >= ' ') {
+    typed += key;
+    fmt::print(stderr, "{}", key);
+  }
 }
 
 }  // namespace
@@ -88,10 +101,15 @@ void ParticipantScreen::show_end() const {
   show(protocol_.texts.end);
 }
 
-// The next of these keys that is pressed from now on; 0: the run ends.
-char ParticipantScreen::wait_for(std::string_view keys) {
+// Keys that were pressed before the prompt are no answer to it.
+void ParticipantScreen::drain_keys() {
   while (keys_.next() != 0) {
   }
+}
+
+// The next of these keys that is pressed from now on; 0: the run ends.
+char ParticipantScreen::wait_for(std::string_view keys) {
+  drain_keys();
   while (!stop_asked_()) {
     const char key = keys_.next();
     if (key != 0 && keys.find(key) != std::string_view::npos) return key;
@@ -102,6 +120,7 @@ char ParticipantScreen::wait_for(std::string_view keys) {
 
 // Until the operator types this label and Enter; false: the run ends.
 Result<bool> ParticipantScreen::wait_for_label(const std::string& label) {
+  drain_keys();
   show(fmt::format("{} {}", protocol_.texts.place, label));
   std::string typed;
   while (!stop_asked_()) {
@@ -109,12 +128,11 @@ Result<bool> ParticipantScreen::wait_for_label(const std::string& label) {
     if (key == 0) {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     } else if (key != '\n' && key != '\r') {
-      typed += key;
-      fmt::print(stderr, "{}", key);
-    } else if (typed == label) {
+      type(key, typed);
+    } else if (without_spaces(typed) == label) {
       return true;
     } else {
-      show(schema::message(wrong_label(typed, label, "").value()));
+      show(schema::message(wrong_label(without_spaces(typed), label, "").value()));
       typed.clear();
     }
   }
@@ -133,7 +151,7 @@ Result<Participant> answers_from(const std::string& file, const schema::Protocol
     const std::string where = fmt::format("{}: line {}", file, ++number);
     if (const int choice = choice_number(line, protocol); choice != 0) {
       answers.push_back(choice);
-    } else if (is_label(line)) {
+    } else if (schema::is_label(line)) {
       labels.emplace_back(line, where);
     } else {
       std::vector<std::string> words;

@@ -22,6 +22,7 @@ class ParticipantScreen {
   void show_end() const;
 
  private:
+  void drain_keys();
   char wait_for(std::string_view keys);
   schema::Result<bool> wait_for_label(const std::string& label);
 

@@ -9,6 +9,7 @@
 
 #include "playback/player/play.hpp"
 #include "playback/player/player_device.hpp"
+#include "playback/prepare/displacement_limit.hpp"
 #include "playback/prepare/upload.hpp"
 
 namespace tacto::analysis {
@@ -56,7 +57,7 @@ playback::PlayOptions options_of(const schema::Protocol& protocol, const Interva
 }
 
 // From opening the device until it has the texture: what an interval needs before it can begin, but its
-// session's file. Errors: of opening the device, of make_program, of the upload.
+// session's file. Errors: of opening the device, of make_program, of check_displacement, of the upload.
 Result<double> load_time_s(const Study& study, const std::string& code, const std::string& device_uri) {
   const SteadyClock::time_point begun = SteadyClock::now();
   const auto device = playback::open_player_device(device_uri, {});
@@ -71,7 +72,14 @@ Result<double> load_time_s(const Study& study, const std::string& code, const st
   prepare.most_samples = device->client->description().welcome.profile_samples;
   const auto program = playback::make_program(options.program, transducer->name, prepare);
   TACTO_TRY(program);
-  if (!device->device->is_real_time()) return 0.0;
+  auto near = playback::check_displacement(program->tray_peak_m, 1, program->prepared.gain_m_per_n,
+                                           program->default_gain_m_per_n, program->session.transducer);
+  if (!near) near.error().where = schema::protocol_path(study.stem) + "#/gain_m_per_n";
+  TACTO_TRY(near);
+  if (!device->device->is_real_time()) {
+    TACTO_TRY(playback::check_upload(*device->client, program->prepared));
+    return 0.0;
+  }
   TACTO_TRY(playback::upload(*device->client, program->prepared));
   return Seconds(SteadyClock::now() - begun).count();
 }

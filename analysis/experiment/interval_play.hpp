@@ -40,8 +40,8 @@ struct SlowestLoad {
 };
 
 /// Whether the device can play every stimulus, at the largest gain, each of them loaded once, as an interval
-/// loads it. Errors: those of opening the device, of make_program, of the upload; unsuitable: the lead is
-/// shorter than the slowest load.
+/// loads it. Errors: those of opening the device, of make_program, of the upload; unsuitable: a stimulus
+/// exceeds the transducer's displacement limit, the lead is shorter than the slowest load.
 schema::Result<SlowestLoad> check_on_device(const Study& study, const std::string& device_uri);
 
 }  // namespace tacto::analysis

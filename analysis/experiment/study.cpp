@@ -9,6 +9,7 @@
 #include <numbers>
 #include <set>
 
+#include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/trial_order.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/base/quantity.hpp"
@@ -50,12 +51,13 @@ schema::Texture standard_texture(const schema::Protocol& protocol) {
   return texture;
 }
 
-// What is played, without what names the surface: people look into files.
+// What is played, without what names the surface: people look into files. Of the words about the emulated
+// device only its name and seed are kept; the surface is named behind them.
 schema::Texture coded(const schema::Texture& texture) {
   schema::Texture stimulus;
   stimulus.signal = texture.signal;
   stimulus.valid_band = texture.valid_band;
-  stimulus.simulated = texture.simulated;
+  stimulus.simulated = texture.simulated.substr(0, texture.simulated.find(": "));
   stimulus.created = schema::creation_time();
   stimulus.creator = kCreator;
   return stimulus;
@@ -111,6 +113,21 @@ Result<void> check_free(const Study& study, schema::Existing existing) {
   for (const schema::CodedStimulus& stimulus : study.key.stimuli)
     TACTO_TRY(schema::check_texture_free(study.stimulus(stimulus.code), existing));
   return {};
+}
+
+// A study is written over one of the same stem only: not over another folder, nor under runs, which could
+// not be analysed without its key.
+Result<void> check_stem_of(const Study& study) {
+  if (!schema::is_file(schema::protocol_path(study.stem))) {
+    if (std::error_code none; std::filesystem::is_directory(study.stem, none))
+      return fail(ErrorKind::usage, "is a folder that belongs to no study", study.stem,
+                  "choose another stem with -o, or remove the folder");
+    return schema::check_stem(study.stem);
+  }
+  const auto runs = runs_of(study);
+  if (runs.empty()) return {};
+  return fail(ErrorKind::cannot_write, "is a study with runs, which belong to its key",
+              schema::protocol_path(study.stem), "choose another stem with -o");
 }
 
 Result<void> check_key(const Study& study, const std::string& path) {
@@ -229,10 +246,10 @@ Result<schema::Protocol> amplitude_protocol(const std::string& seed, const Named
 
 Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,
                           const NamedTextures& textures, schema::Existing existing) {
-  TACTO_TRY(schema::check_stem(stem));
   const auto protocol_text = schema::protocol_text(protocol);
   TACTO_TRY(protocol_text);
   Study study{stem, protocol, {stimuli_by_code(protocol), {}}};
+  TACTO_TRY(check_stem_of(study));
   TACTO_TRY(check_free(study, existing));
   TACTO_TRY(write_stimuli(study, textures, existing));
   for (schema::CodedStimulus& stimulus : study.key.stimuli) {

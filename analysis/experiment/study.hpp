@@ -45,7 +45,8 @@ schema::Result<schema::Protocol> identification_protocol(const std::string& seed
 schema::Result<schema::Protocol> amplitude_protocol(const std::string& seed, const NamedTextures& textures);
 
 /// Makes the stimuli (spatial/transform; or of `textures`, without what names their surface) and writes all
-/// files. Errors: usage, if there is one of them and it is to be kept; cannot_write; those of stretching.
+/// files. Errors: usage, if there is one of them and it is to be kept, or a folder of another kind;
+/// cannot_write, also if the study has runs; those of stretching.
 schema::Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,
                                   const NamedTextures& textures, schema::Existing existing);
 

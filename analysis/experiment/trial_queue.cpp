@@ -63,7 +63,7 @@ std::size_t TrialQueue::counted() const {
 
 std::size_t TrialQueue::placed() const {
   return static_cast<std::size_t>(
-      std::ranges::count_if(attempts_, [](const Attempt& each) { return each.placed.has_value(); }));
+      std::ranges::count_if(attempts_, [](const Attempt& each) { return each.placed && each.answered; }));
 }
 
 std::size_t TrialQueue::answers() const {
@@ -76,9 +76,8 @@ Result<void> TrialQueue::begin(const schema::AttemptBegun& begun) {
   if (open_ || begun.attempt != number || queue_.empty() || queue_.front().name() != begun.trial ||
       queue_.front().block != begun.block)
     return does_not_follow(fmt::format("attempt {} at trial {}", begun.attempt, begun.trial));
-  if (!attempts_.empty() && attempts_.back().trial.block != begun.block) tried_.clear();
+  if (!attempts_.empty() && attempts_.back().trial.block != begun.block) failed_.clear();
   attempts_.push_back({begun, queue_.front(), {}, {}, {}});
-  ++tried_[begun.trial];
   queue_.pop_front();
   open_ = true;
   return {};
@@ -91,17 +90,22 @@ Result<Attempt*> TrialQueue::open_attempt(int number) {
 
 void TrialQueue::close() {
   const Attempt& attempt = attempts_.back();
-  if (!attempt.counts() && tried_[attempt.begun.trial] < most_attempts_)
-    queue_.insert(std::ranges::find_if(
-                      queue_, [&](const StudyTrial& each) { return each.block > attempt.trial.block; }),
-                  attempt.trial);
   open_ = false;
+  if (attempt.counts()) return;
+  const bool failed = attempt.judged && !attempt.judged->delivered;
+  if (failed && ++failed_[attempt.begun.trial] >= most_attempts_) {
+    ++abandoned_;
+    return;
+  }
+  const auto next_block =
+      std::ranges::find_if(queue_, [&](const StudyTrial& each) { return each.block > attempt.trial.block; });
+  queue_.insert(attempt.answered ? next_block : queue_.begin(), attempt.trial);
 }
 
 Result<void> TrialQueue::end_block(int block) {
   if (open_ || queue_.empty() || queue_.front().block != block)
     return does_not_follow(fmt::format("the end of block {}", block));
-  while (!queue_.empty() && queue_.front().block == block) queue_.pop_front(), --trials_;
+  while (!queue_.empty() && queue_.front().block == block) queue_.pop_front(), --trials_, ++timed_out_;
   return {};
 }
 

@@ -24,9 +24,10 @@ struct Attempt {
   bool counts() const { return answered && (placed || (judged && judged->delivered)); }
 };
 
-/// Trials in order, without the rest of a block whose time is over; one that was not delivered, or has no
-/// answer because the run was interrupted, comes again at the end of its block, up to `most_attempts` times
-/// in all.
+/// Trials in order, without the rest of a block whose time is over. One that has no answer because the run
+/// was interrupted comes again at once, as often as that happens: so a file of answers fits as it did before.
+/// One that was answered but not delivered comes again at the end of its block. After `most_attempts`
+/// attempts that were judged not delivered a trial is abandoned.
 class TrialQueue {
  public:
   TrialQueue(std::vector<StudyTrial> order, int most_attempts);
@@ -43,8 +44,11 @@ class TrialQueue {
   std::size_t trials() const { return trials_; }
   std::size_t counted() const;
   std::size_t answers() const;
-  /// Attempts with a real sample in place.
+  /// Answered attempts with a real sample in place.
   std::size_t placed() const;
+  std::size_t abandoned() const { return abandoned_; }
+  /// Trials left out because the time of their block was over.
+  std::size_t timed_out() const { return timed_out_; }
 
  private:
   schema::Result<void> begin(const schema::AttemptBegun& begun);
@@ -53,9 +57,9 @@ class TrialQueue {
   schema::Result<void> end_block(int block);
 
   std::deque<StudyTrial> queue_;
-  std::map<std::string, int> tried_;  // of this block
+  std::map<std::string, int> failed_;  // attempts of each trial of this block that were not delivered
   std::vector<Attempt> attempts_;
-  std::size_t trials_;
+  std::size_t trials_, abandoned_ = 0, timed_out_ = 0;
   int most_attempts_;
   bool open_ = false, ended_ = false;
 };

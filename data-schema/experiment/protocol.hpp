@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data-schema/base/error.hpp"
@@ -91,13 +92,16 @@ struct Protocol {
 
 /// By stem, NAME.protocol.json or a JSON file with another name. Errors: not_found; malformed, with the
 /// place: also an unknown member (with the nearest known one), one that the task lacks or does not have,
-/// levels that do not rise or include 0, a comparison that is no standard, doubled keys or words, a word that
-/// is another answer's key, a path that leaves the texture, limits of speed that exclude the pace;
-/// unsupported_version.
+/// levels that do not rise or include 0, a comparison that is no standard, doubled keys or words, a word
+/// that is another answer's key or could be a label, words that are not the standards in order, a path that
+/// leaves the texture, limits of speed that exclude the pace; unsupported_version.
 Result<Protocol> read_protocol(const std::string& name);
 
 /// The text of the file. Errors: unsuitable, by the schema.
 Result<std::string> protocol_text(const Protocol& protocol);
+
+/// Whether this is the code of a stimulus, on a real sample its label: K and digits.
+bool is_label(std::string_view line);
 
 /// The protocol and the key of a study of this stem.
 std::string protocol_path(const std::string& study);

@@ -196,6 +196,27 @@ Result<void> check_answers(const Protocol& protocol, const std::string& path) {
                       "give one for each interval, for each standard, or for each rating from -3 to 3");
 }
 
+// A line of a file of answers is a word, a key or a label (K3): each has one meaning.
+Result<void> check_words(const Protocol& protocol, const std::string& path) {
+  const bool identifies = protocol.task == Task::identification;
+  for (std::size_t i = 0; i < protocol.choices.size(); ++i) {
+    const std::string place = fmt::format("answers/choices/{}/word", i), &word = protocol.choices[i].word;
+    if (identifies && word != protocol.standards[i])
+      return malformed_at(path, place.c_str(),
+                          fmt::format("'{}' is not standard {}, '{}'", word, i + 1, protocol.standards[i]),
+                          "name the choices after the standards, in their order");
+    for (std::size_t j = 0; j < protocol.choices.size(); ++j)
+      if (j != i && protocol.choices[j].key == word)
+        return malformed_at(path, place.c_str(),
+                            fmt::format("'{}' is also the key of '{}'", word, protocol.choices[j].word),
+                            "choose another word or key; a texture's name is that of its file");
+    if (is_label(word))
+      return malformed_at(path, place.c_str(), fmt::format("'{}' could be the label of a sample", word),
+                          "choose a word that is not K and a number; a texture's name is that of its file");
+  }
+  return {};
+}
+
 Result<void> check_names(const Protocol& protocol, const std::string& path) {
   if (protocol.task != Task::two_interval &&
       (protocol.task == Task::amplitude) != (protocol.standards.size() == 1))
@@ -249,6 +270,7 @@ Result<void> check_protocol(const Protocol& protocol, const std::string& path) {
   TACTO_TRY(check_levels(protocol, path));
   TACTO_TRY(check_names(protocol, path));
   TACTO_TRY(check_answers(protocol, path));
+  TACTO_TRY(check_words(protocol, path));
   return check_pace(protocol, path);
 }
 
@@ -267,6 +289,11 @@ Result<Document> open_known(const std::string& path, std::string_view kind) {
 
 const char* word_of(Task task) {
   return kTaskWords[static_cast<int>(task)];
+}
+
+bool is_label(std::string_view line) {
+  return line.size() > 1 && line.front() == 'K' &&
+         line.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
 std::string protocol_path(const std::string& study) {

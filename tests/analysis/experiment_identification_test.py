@@ -98,14 +98,15 @@ def labels_are_typed():
     assert [entry["event"] for entry in journal("faces-P02")][-1] == "begun"
     pathlib.Path("answers.txt").write_text("\n".join(answers[:6]))
     assert tacto.run_json("experiment", "resume", "faces-P02", *command)["complete"] is False
-    # The trials that were begun without a label come again at the block's end, the first one after the second.
-    again = labels[2:] + labels[:2]
+    # The trial that was begun without its label is the next one again, so the corrected file of the whole run fits.
+    again = labels
     pathlib.Path("answers.txt").write_text("\n".join(answers[:6] + [line for label in again for line in (label, "2")]))
     assert tacto.run_json("experiment", "resume", "faces-P02", *command)["complete"] is True
     entries = journal("faces-P02")
     assert entries[0]["order"] == 2 and [entry["label"] for entry in entries if entry["event"] == "placed"] == again
     assert [entry["choice"] for entry in entries if entry["event"] == "answered"] == [1, 2, 3, 4, 5, 1] + [2] * 6
-    assert tacto.run_json("experiment", "prove", "faces-P02")["proven"] is True
+    proof = tacto.run_json("experiment", "prove", "faces-P02")
+    assert proof["proven"] is True and "abandoned" not in proof
 
 
 def a_killed_run_is_resumed():
@@ -208,7 +209,15 @@ def a_block_ends_after_its_time():
     new_study("short", 2, longest_s=1e-9)
     done = tacto.run_json("experiment", "run", "short", "-d", "sim:", "--participant", "P21", "--observer", "template")
     assert done["complete"] is True and done["trials"] == 0 == done["delivered_and_answered"], done
+    assert done["after_time_limit"] == 12 == tacto.run_json("experiment", "prove", "short-P21")["after_time_limit"]
     assert [entry["event"] for entry in journal("short-P21")] == ["plan", "block_over", "block_over", "end"]
+
+
+def what_is_never_delivered_is_abandoned():
+    new_study("once", 2, most_attempts=1)
+    done = tacto.run_json("experiment", "run", "once", "-d", "sim:", "--participant", "P31", "--observer", "template,hurry=100%")
+    assert done["abandoned"] == 6 and (done["trials"], done["delivered_and_answered"]) == (12, 6)
+    assert tacto.run_json("experiment", "prove", "once-P31")["abandoned"] == 6
 
 
 def study():
@@ -221,6 +230,7 @@ def study():
     a_swapped_stimulus_is_refused()
     totals_are_those_of_the_paper()
     a_block_ends_after_its_time()
+    what_is_never_delivered_is_abandoned()
 
 
 if __name__ == "__main__":

@@ -53,6 +53,8 @@ class TextRun {
 
   // The time of block 1 is over after so many attempts.
   int attempts_in_time = 1000;
+  // Attempts before this one are interrupted while they are presented.
+  int first_presented = 1;
 
   // Begins a run, or resumes what is whole in `journal`. Errors: of parse_journal.
   Result<void> go_on(const std::string& journal) {
@@ -87,7 +89,8 @@ class TextRun {
     steps.is_over = [this](const StudyTrial& trial) {
       return trial.block == 1 && static_cast<int>(queue_.attempts().size()) >= attempts_in_time;
     };
-    steps.present = [](const Attempt& attempt) -> Result<std::optional<schema::JournalEntry>> {
+    steps.present = [this](const Attempt& attempt) -> Result<std::optional<schema::JournalEntry>> {
+      if (attempt.begun.attempt < first_presented) return std::nullopt;
       if (attempt.trial.real) return schema::SamplePlaced{attempt.begun.attempt, attempt.trial.code};
       const bool delivered = attempt.begun.attempt % 7 != 0;
       return schema::DeliveryJudged{attempt.begun.attempt, delivered, {}, {}};
@@ -167,6 +170,8 @@ TEST(ExperimentRun, AJournalOfTwoBlocksCutAtEachByteIsResumed) {
     const std::size_t trials = in_time == 3 ? 8 : 10;
     ASSERT_EQ(whole.queue().trials(), trials);
     ASSERT_EQ(whole.queue().counted(), trials);
+    ASSERT_EQ(whole.queue().timed_out(), 10 - trials);
+    ASSERT_EQ(whole.queue().abandoned(), 0u);
     ASSERT_EQ(whole.queue().placed(), trials - 5);
     ASSERT_EQ(whole.queue().attempts().size(), trials + 1);  // attempt 7 is played, and not delivered
     ASSERT_EQ(lines_with(text, R"("event":"block_over")"), in_time == 3 ? 1u : 0u);
@@ -179,11 +184,36 @@ TEST(ExperimentRun, AJournalOfTwoBlocksCutAtEachByteIsResumed) {
       ASSERT_EQ(resumed.text().substr(0, whole_lines), text.substr(0, whole_lines)) << bytes;
       ASSERT_TRUE(resumed.queue().has_ended()) << bytes;
       const auto counted = counted_trials(resumed.queue());
-      // An interrupted real sample comes again at its block's end, where the time may be over.
+      // An interrupted real sample comes again, and then the time may be over.
       ASSERT_LE(counted.size(), trials) << bytes;
       ASSERT_GE(counted.size(), in_time == 3 ? trials - 1 : trials) << bytes;
       for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
     }
+  }
+}
+
+// Only what was judged not delivered uses up an attempt, and an interrupted trial is the next one again.
+TEST(ExperimentRun, InterruptionsUseUpNoAttempt) {
+  for (const int interrupted : {0, 5}) {
+    schema::Protocol protocol = ten_trials();
+    protocol.most_attempts = 1;
+    TextRun run(protocol);
+    run.first_presented = interrupted + 1;
+    for (int i = 0; i <= interrupted; ++i) {
+      ASSERT_FALSE(run.queue().has_ended());
+      const auto went_on = run.go_on(std::string(run.text()));
+      ASSERT_TRUE(went_on) << schema::message(went_on.error());
+    }
+    ASSERT_TRUE(run.queue().has_ended());
+    const auto& attempts = run.queue().attempts();
+    ASSERT_EQ(attempts.size(), 10u + static_cast<std::size_t>(interrupted));
+    for (std::size_t i = 0; i < static_cast<std::size_t>(interrupted); ++i)
+      EXPECT_EQ(attempts[i].begun.trial, attempts[5].begun.trial);
+    // One attempt is played and not delivered: 7, or 14 after the interruptions.
+    EXPECT_EQ(run.queue().abandoned(), 1u);
+    EXPECT_EQ(run.queue().counted(), 9u);
+    EXPECT_EQ(run.queue().placed(), 5u);
+    EXPECT_EQ(run.queue().timed_out(), 0u);
   }
 }
 

@@ -62,6 +62,8 @@ TEST_F(ProtocolFile, EachFaultHasItsPlace) {
   expect_fault("/answers/choices/1/key", "f", "/answers");
   expect_fault("/answers/begin_key", "j", "/answers");
   expect_fault("/answers/choices/1/word", "first", "/answers/choices/1/word");
+  expect_fault("/answers/choices/1/word", "f", "/answers/choices/1/word");
+  expect_fault("/answers/choices/1/word", "K12", "/answers/choices/1/word");
   expect_fault("/answers/choices/0/key", "ff", "/answers/choices/0/key");
   expect_fault("/answers/choices/2", {{"key", "k"}, {"word", "third"}}, "/answers/choices");
   expect_fault("/standards", {"A", "B"}, "/standards");
@@ -87,6 +89,7 @@ nlohmann::json identification(nlohmann::json body, const nlohmann::json& change)
     "task": "identification", "standards": ["A", "B"], "comparisons": ["B"], "conditions": ["virtual", "real"],
     "most_trials": 100, "longest_s": 900.0})"));
   body["texts"]["place"] = "p";
+  body["answers"]["choices"][0]["word"] = "A", body["answers"]["choices"][1]["word"] = "B";
   body.merge_patch(change);
   return body;
 }
@@ -142,6 +145,7 @@ TEST_F(ProtocolFile, AnIdentificationReadsBackAndEachFaultHasItsPlace) {
                                       {R"({"comparisons": ["C"]})", "/comparisons/0"},
                                       {R"({"comparisons": ["B", "B"]})", "/comparisons/1"},
                                       {R"({"standards": ["A", "B", "C"]})", "/answers/choices"},
+                                      {R"({"standards": ["B", "A"]})", "/answers/choices/0/word"},
                                       {R"({"conditions": ["real", "real"]})", "/conditions"},
                                       {R"({"longest_s": null})", "/longest_s"},
                                       {R"({"levels": [0.5, 0.7]})", "/levels"}}) {
