@@ -181,12 +181,6 @@ Result<void> check_answers(const Protocol& protocol, const std::string& path) {
       return malformed_at(path, fmt::format("answers/choices/{}/word", words.size()).c_str(),
                           "two answers have the same word", "give them different words");
   }
-  for (const AnswerWord& one : protocol.choices)
-    for (const AnswerWord& other : protocol.choices)
-      if (one.word != other.word && one.word == other.key)
-        return malformed_at(path, "answers/choices",
-                            fmt::format("the word {} is the key of {}", one.word, other.word),
-                            "choose another key: a line of --answers is a word or a key");
   const std::size_t expected = protocol.task == Task::two_interval ? 2
                                : protocol.task == Task::amplitude  ? 2 * kLargestRating + 1
                                                                    : protocol.standards.size();
