@@ -121,7 +121,7 @@ TEST_F(ProtocolFile, AnAmplitudeReadsBackAndEachFaultHasItsPlace) {
         {{{"largest_ratio", 1.0}}, "/largest_ratio"},
         {{{"longest_s", 900.0}}, "/longest_s"},
         {{{"answers", {{"choices", {choices[0], choices[1]}}}}}, "/answers/choices"},
-        {{{"answers", {{"choices", key_is_a_word}}}}, "/answers/choices"}}) {
+        {{{"answers", {{"choices", key_is_a_word}}}}, "/answers/choices/4/word"}}) {
     const auto refused = read(change);
     ASSERT_FALSE(refused) << change;
     EXPECT_EQ(refused.error().kind, ErrorKind::malformed) << change;
