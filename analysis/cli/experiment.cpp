@@ -135,12 +135,15 @@ Report brief_report(const Findings& findings) {
   std::vector<Report> rows(findings.groups.size() - 1);
   for (std::size_t row = 0; row < rows.size(); ++row)
     add_by(rows[row], findings.groups.front(), findings.groups[row + 1]);
-  return report.add("fits", std::move(rows));
+  return report.add(findings.pictures.empty() ? "people" : "fits", std::move(rows));
 }
 
 Result<std::string> picture_svg(const Findings& findings) {
   if (findings.pictures.size() == 1)
     return spatial::to_svg(figure_of(findings.pictures.front(), findings.simulated));
+  if (findings.pictures.empty())
+    return schema::fail(ErrorKind::usage, "there is no picture", "--output",
+                        "name a page (.html) or results (.results.json)");
   return schema::fail(ErrorKind::usage, fmt::format("there are {} pictures", findings.pictures.size()),
                       "--output", "name a page (.html), which shows all");
 }
@@ -268,6 +271,8 @@ Report identification_report(const IdentificationAnswers& all, const std::string
   Report report;
   report.add("verdict", verdict);
   if (!all.simulated.empty()) report.add("simulated", all.simulated);
+  if (all.abandoned > 0) report.add("abandoned", all.abandoned);
+  if (all.timed_out > 0) report.add("after_time_limit", all.timed_out);
   std::vector<Report> people, conditions;
   for (const BlockAnswers& each : all.blocks) {
     Report& row = people.emplace_back();

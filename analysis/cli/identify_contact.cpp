@@ -44,10 +44,12 @@ Report fits_report(const ContactFits& found, std::size_t taps) {
                        "(RMS, {} taps){}",
                        best.left_out_n, taps,
                        fits.size() == 1 ? "" : fmt::format(", the smallest error of {} fits", fits.size())));
-  for (const std::string& column : found.unused_columns)
-    cli::warn(fmt::format(
-        "column {} is constant or a linear function of the columns before it: no fit has it", column));
-  if (!found.unused_columns.empty()) report.add("columns_not_fitted", found.unused_columns);
+  std::vector<std::string> unused;
+  for (const UnusedColumn& column : found.unused_columns) {
+    cli::warn(fmt::format("column {} {}: no fit has it", column.name, column.why));
+    unused.push_back(column.name);
+  }
+  if (!unused.empty()) report.add("columns_not_fitted", unused);
   std::vector<Report> rows;
   for (const ContactFit& fit : fits) warn_of_negative_mass(fit);
   for (const ContactFit& fit : fits)

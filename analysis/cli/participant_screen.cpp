@@ -49,7 +49,7 @@ std::string without_spaces(const std::string& text) {
 
 // A key of the label that is being typed, and its echo. Backspace removes the last character; other control
 // characters are ignored.
-void type(char key, std::string& typed) {
+void take_typed(char key, std::string& typed) {
   constexpr char kBackspace = '\b', kDelete = '\x7f';
   if (key == kBackspace || key == kDelete) {
     if (typed.empty()) return;
@@ -128,7 +128,7 @@ Result<bool> ParticipantScreen::wait_for_label(const std::string& label) {
     if (key == 0) {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     } else if (key != '\n' && key != '\r') {
-      type(key, typed);
+      take_typed(key, typed);
     } else if (without_spaces(typed) == label) {
       return true;
     } else {

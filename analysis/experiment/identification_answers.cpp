@@ -79,6 +79,7 @@ IdentificationAnswers identification_answers(const std::vector<Run>& runs) {
   std::vector<std::string> simulated;
   for (const Run& run : runs) {
     add_simulated(simulated, run);
+    all.abandoned += run.queue.abandoned(), all.timed_out += run.queue.timed_out();
     for (const Attempt& attempt : run.queue.attempts()) {
       if (!attempt.counts()) continue;
       BlockAnswers& block = block_of(all, run, attempt.trial);
@@ -144,6 +145,13 @@ Findings findings_of(const IdentificationAnswers& all) {
          information_in_words(over.information) + (over.people > 1 ? ", mean over people" : "")});
     findings.figures.push_back({over.condition + ", answers", matrix_in_words(all, over.matrix)});
   }
+  if (all.abandoned > 0)
+    findings.figures.push_back(
+        {"abandoned",
+         fmt::format("{} trials, after too many attempts that were not delivered", all.abandoned)});
+  if (all.timed_out > 0)
+    findings.figures.push_back(
+        {"after the time limit", fmt::format("{} trials, which were left out", all.timed_out)});
   findings.figures.front().value = fmt::format("{}", fmt::join(verdicts, "; "));
   findings.groups = people_table(all);
   findings.simulated = all.simulated;

@@ -24,6 +24,7 @@ struct BlockAnswers {
 struct IdentificationAnswers {
   std::vector<std::string> comparisons, standards;
   std::vector<BlockAnswers> blocks;
+  std::size_t abandoned = 0, timed_out = 0;  ///< trials without an answer, as TrialQueue counts them
   std::string simulated;
 };
 

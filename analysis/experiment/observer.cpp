@@ -47,7 +47,9 @@ Result<void> set(Observer& observer, const std::string& name, const std::string&
   }
   if (name == "noise" && observer.identifies) {
     const auto noise_db = schema::parse_quantity(value, schema::Dimension::level);
-    if (!noise_db || !(*noise_db >= 0)) return bad_observer("noise is not a level from 0dB, such as 12dB");
+    if (!noise_db || !(*noise_db >= 0))
+      return fail(ErrorKind::usage, "noise is not a level from 0 dB", "--observer",
+                  "give for example template,noise=12dB,seed=1");
     observer.noise_db = *noise_db;
     return {};
   }

@@ -115,6 +115,14 @@ Result<void> check_free(const Study& study, schema::Existing existing) {
   return {};
 }
 
+// What the schema's pattern of seeds and names says.
+Result<void> check_plain(const std::string& text, const char* option) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-";
+  if (!text.empty() && text.size() <= 64 && text.find_first_not_of(kPlain) == std::string::npos) return {};
+  return fail(ErrorKind::usage, fmt::format("'{}' has other characters than a protocol may contain", text),
+              option, "use 1 to 64 of A to Z, a to z, 0 to 9, _ . -; a texture's name is that of its file");
+}
+
 // A study is written over one of the same stem only: not over another folder, nor under runs, which could
 // not be analysed without its key.
 Result<void> check_stem_of(const Study& study) {
@@ -246,6 +254,8 @@ Result<schema::Protocol> amplitude_protocol(const std::string& seed, const Named
 
 Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,
                           const NamedTextures& textures, schema::Existing existing) {
+  TACTO_TRY(check_plain(protocol.seed, "--seed"));
+  for (const std::string& name : protocol.standards) TACTO_TRY(check_plain(name, "--textures"));
   const auto protocol_text = schema::protocol_text(protocol);
   TACTO_TRY(protocol_text);
   Study study{stem, protocol, {stimuli_by_code(protocol), {}}};

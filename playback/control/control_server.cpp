@@ -38,9 +38,13 @@ const schema::Error kNotGreeted{ErrorKind::usage, "the first request must be hel
                                 hello_text() + " first"};
 const schema::Error kSilent{ErrorKind::usage, "no hello came within 5 s of connecting", "request",
                             hello_text() + " first"};
-const schema::Error kUnknown{
-    ErrorKind::usage, "by TCP the first request must be hello with the token", "request",
-    hello_text(R"(,"token":"...")") + ": the token is the first line of the file that tcp_token_file names"};
+// By TCP.
+const std::string kHelloWithToken =
+    hello_text(R"(,"token":"...")") + ": the token is the first line of the file that tcp_token_file names";
+const schema::Error kUnknown{ErrorKind::usage, "by TCP the first request must be hello with the token",
+                             "request", kHelloWithToken};
+const schema::Error kSilentStranger{kSilent.kind, kSilent.what, kSilent.where, kHelloWithToken};
+const schema::Error kWrongToken{ErrorKind::usage, "the token is wrong", "request", kHelloWithToken};
 const schema::Error kTooManyStrangers{ErrorKind::unsuitable, "too many connections have not given the token",
                                       "request", "send hello with the token as soon as it is connected"};
 const schema::Error kOnlyWatches{ErrorKind::usage, "a connection that watches accepts no requests", "request",
@@ -156,7 +160,8 @@ void ControlServer::accept_from(int listening, bool by_tcp) {
 void ControlServer::disconnect_expired() {
   const Time now = place_.now();
   for (ControlClient& one : clients_) {
-    if (is_stranger(one) && !one.leaves_at && now > one.since + kGreetsWithin) disconnect(one, kSilent);
+    if (is_stranger(one) && !one.leaves_at && now > one.since + kGreetsWithin)
+      disconnect(one, kSilentStranger);
     if (!one.gone && one.for_stop && now > one.since + kStopPlaceFor) disconnect(one, full());
     if (one.gone || !one.leaves_at || now < *one.leaves_at) continue;
     one.send(one.last_line);
@@ -173,7 +178,8 @@ std::optional<schema::Error> ControlServer::refusal_of(const ControlClient& clie
   const bool greets = request && request->verb == ControlVerb::hello;
   if (is_stranger(client)) {
     if (!request && request.error().kind == ErrorKind::unsupported_version) return request.error();
-    if (!greets || !is_token(request->token, place_.loopback->token)) return kUnknown;
+    if (!greets || request->token.empty()) return kUnknown;
+    if (!is_token(request->token, place_.loopback->token)) return kWrongToken;
   }
   if (!request) return request.error();
   if (client.watching) return kOnlyWatches;

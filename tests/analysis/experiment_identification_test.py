@@ -5,8 +5,13 @@ a run that is killed, confusions against NumPy, a swapped stimulus, export and p
 import csv
 import hashlib
 import json
+import os
 import pathlib
+import pty
+import re
+import shutil
 import subprocess
+import time
 
 import numpy as np
 
@@ -51,7 +56,9 @@ def a_study_is_made_of_textures():
     assert [key()[f"K{i}"] for i in range(1, 6)] == by_sum
     for code, name in key().items():  # the texture's samples, and nothing that names it
         sidecar = json.loads(pathlib.Path(f"faces/{code}.texture.json").read_text())
-        assert not {"surface", "source", "notes"} & set(sidecar) and sidecar["simulated"]
+        assert not {"surface", "source", "notes"} & set(sidecar)
+        # Without the words about the surface, which name it, the stimuli say the same: the emulated device and its seed.
+        assert sidecar["simulated"].endswith("emulated device, seed 1"), sidecar["simulated"]
         assert np.array_equal(tacto.texture(f"faces/{code}")[1], tacto.texture(name)[1]), name
     checked = tacto.run_json("experiment", "check", "faces", "-d", "sim:")
     assert checked["valid"] is True and checked["trials"] == 12 and checked["task"] == "identification"
@@ -62,6 +69,13 @@ def a_study_is_made_of_textures():
     tacto.run(*new, "--textures", "A,B,F", code=3)
     tacto.run("experiment", "new", "stretch", "-o", "other", "--textures", "A,B", code=2)
     tacto.run(*new, "--textures", "A,B", "--comparisons", "C", code=2)
+    for name in ("1", "K12", "0", "Bäume"):
+        shutil.copy("A.texture.json", f"{name}.texture.json"), shutil.copy("A.texture.wav", f"{name}.texture.wav")
+    assert tacto.run_json(*new[:-1], "digit", "--textures", "1,B")["answer_keys"] == ["1: 1", "2: B"]
+    for textures in ("0,1", "A,K12"):  # 1 is the key of 0; K12 could be a label
+        tacto.run(*new, "--textures", textures, code=4)
+    assert tacto.error_of(*new, "--textures", "A,Bäume", code=2)["where"] == "--textures"
+    assert tacto.error_of(*new, "--textures", "A,B", "--seed", "a b", code=2)["where"] == "--seed"
 
 
 def a_run_without_noise_is_right():
@@ -86,6 +100,18 @@ def a_run_without_noise_is_right():
     assert proof["sessions"] == proof["same_to_the_bit"] == len(virtual) and "stretch_error" not in proof
 
 
+def a_study_is_replaced_only_without_runs():
+    new = ["experiment", "new", "identification", "--textures", "A,B", "-o"]
+    tacto.run(*new, "again")
+    tacto.run(*new, "again", code=2)
+    tacto.run(*new, "again", "--force", "--seed", "2")
+    assert json.loads(pathlib.Path("again.protocol.json").read_text())["seed"] == "2"
+    tacto.run("experiment", "check", "again")
+    assert tacto.error_of(*new, "faces", "--force", code=7)["where"].endswith("faces.protocol.json")
+    pathlib.Path("folder").mkdir()
+    tacto.run(*new, "folder", "--force", code=2)
+
+
 def labels_are_typed():
     """P02 gets the other order of blocks. A wrong label ends the run before the answer, and the run goes on."""
     labels = [trial.split(".")[0] for trial in order_of("P02", 2)]
@@ -107,6 +133,31 @@ def labels_are_typed():
     assert [entry["choice"] for entry in entries if entry["event"] == "answered"] == [1, 2, 3, 4, 5, 1] + [2] * 6
     proof = tacto.run_json("experiment", "prove", "faces-P02")
     assert proof["proven"] is True and "abandoned" not in proof
+
+
+def a_label_is_corrected_while_it_is_typed():
+    new_study("typed", 2, conditions=["real"])
+    ours, its = pty.openpty()
+    # Only the controlling terminal of its own session delivers keys.
+    command = ["setsid", "--ctty", "--wait", tacto.COMMAND, "experiment", "run", "typed", "-d", "sim:", "--participant", "P51"]
+    run = subprocess.Popen(command, stdin=its, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    os.write(ours, b"early")  # before the prompt
+    shown = b""
+    while not (label := re.search(rb"press Enter\. (K[0-9]+)\n", shown)):
+        more = os.read(run.stderr.fileno(), 4096)
+        assert more, shown
+        shown += more
+    os.write(ours, b" Kx\x7f\x01\x08" + label[1] + b"  \n")
+    while b'"event":"placed"' not in pathlib.Path("typed-P51.trials.jsonl").read_bytes():
+        assert run.poll() is None
+        os.write(ours, b" ")  # the go-ahead; a key from before its prompt is left out
+        time.sleep(0.01)
+    os.write(ours, b"\x03")  # Ctrl-C
+    run.stderr.read()
+    run.wait()
+    os.close(ours), os.close(its)
+    entries = journal("typed-P51")
+    assert [entry["event"] for entry in entries] == ["plan", "begun", "placed"] and entries[2]["label"] == label[1].decode(), entries
 
 
 def a_killed_run_is_resumed():
@@ -152,6 +203,7 @@ def information_bit(matrix):
 
 def confusions_are_counted():
     tacto.run("experiment", "analyse", "faces", code=5)
+    assert "html" in tacto.error_of("experiment", "analyse", "faces", "--unblind", "-o", "m.svg", code=2)["remedy"]
     report = tacto.run_json("experiment", "analyse", "faces", "--unblind", "-o", "faces.html", "-o", "faces.results.json")
     assert pathlib.Path("faces.html").exists() and "observer template,seed=3 (P03)" in report["simulated"]
     rows = [row for person in ("P01", "P02", "P03") for row in table(f"faces-{person}") if row["answer"] and row["delivered"] != "no"]
@@ -213,17 +265,27 @@ def a_block_ends_after_its_time():
     assert [entry["event"] for entry in journal("short-P21")] == ["plan", "block_over", "block_over", "end"]
 
 
+def a_gain_beyond_the_transducer_is_refused_at_once():
+    new_study("loud", 2, gain_m_per_n=1)
+    for command in (["check", "loud"], ["run", "loud", "--participant", "P41", "--observer", "template"]):
+        assert tacto.error_of("experiment", *command, "-d", "sim:", code=5)["where"].endswith("#/gain_m_per_n")
+    assert not pathlib.Path("loud-P41.trials.jsonl").exists()
+
+
 def what_is_never_delivered_is_abandoned():
     new_study("once", 2, most_attempts=1)
     done = tacto.run_json("experiment", "run", "once", "-d", "sim:", "--participant", "P31", "--observer", "template,hurry=100%")
     assert done["abandoned"] == 6 and (done["trials"], done["delivered_and_answered"]) == (12, 6)
     assert tacto.run_json("experiment", "prove", "once-P31")["abandoned"] == 6
+    assert tacto.run_json("experiment", "analyse", "once", "--unblind")["abandoned"] == 6
 
 
 def study():
     a_study_is_made_of_textures()
     a_run_without_noise_is_right()
+    a_study_is_replaced_only_without_runs()
     labels_are_typed()
+    a_label_is_corrected_while_it_is_typed()
     a_killed_run_is_resumed()
     confusions_are_counted()
     other_verbs()
@@ -231,6 +293,7 @@ def study():
     totals_are_those_of_the_paper()
     a_block_ends_after_its_time()
     what_is_never_delivered_is_abandoned()
+    a_gain_beyond_the_transducer_is_refused_at_once()
 
 
 if __name__ == "__main__":

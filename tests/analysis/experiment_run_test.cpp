@@ -374,6 +374,8 @@ TEST(ExperimentRun, AnObserverThatIsNoneIsRefused) {
     ASSERT_FALSE(refused) << text;
     EXPECT_EQ(refused.error().kind, ErrorKind::usage) << text;
   }
+  // Its remedy is an observer, of the same task.
+  EXPECT_EQ(parse_observer("template,noise=9").error().remedy.find("weber"), std::string::npos);
 }
 
 // A sinusoid along an uneven path, rounded to steps of 1 um: the tolerance is the one of the header.

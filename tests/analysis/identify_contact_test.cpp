@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <random>
+#include <set>
 
 #include "analysis/identify/measure/contact.hpp"
 #include "tests/measured.hpp"
@@ -135,7 +136,8 @@ TEST(IdentifyContact, AConstantColumnLeavesOutItsOwnFit) {
     }
     const ContactFits found = fit_contact(taps, "t.csv").value(),
                       other = fit_contact(without, "t.csv").value();
-    EXPECT_EQ(found.unused_columns, std::vector<std::string>{taps.names[constant]});
+    ASSERT_EQ(found.unused_columns.size(), 1U);
+    EXPECT_EQ(found.unused_columns.front().name, taps.names[constant]);
     ASSERT_EQ(found.fits.size(), 2U);
     ASSERT_EQ(other.fits.size(), 2U);
     for (std::size_t k = 0; k < 2; ++k) {
@@ -143,6 +145,28 @@ TEST(IdentifyContact, AConstantColumnLeavesOutItsOwnFit) {
       EXPECT_EQ(found.fits[k].left_out_n, other.fits[k].left_out_n);
     }
   }
+}
+
+// Six digits in a table: a linear function of the velocity is then one within some 1e-6, and a constant one
+// too.
+TEST(IdentifyContact, AColumnThatIsConstantOrLinearToItsRoundingIsLeftOut) {
+  std::set<std::string> reasons;
+  for (const bool constant : {true, false}) {
+    NumberTable taps = empty_table();
+    for (std::size_t i = 0; i < 12; ++i) {
+      const auto x = static_cast<double>(i);
+      const double velocity = -0.1 - 0.01 * x + 0.003 * std::sin(x), rounding = 5e-7 * std::cos(7 * x);
+      const double acceleration = (constant ? 0.7 : 2 * velocity + 1) + rounding;
+      taps.values.insert(taps.values.end(), {velocity, acceleration, std::cos(2 * x), 3 * x});
+      taps.lines.push_back(i + 2);
+    }
+    const ContactFits found = fit_contact(taps, "t.csv").value();
+    ASSERT_EQ(found.unused_columns.size(), 1U);
+    EXPECT_EQ(found.unused_columns.front().name, "acceleration_mps2");
+    reasons.insert(found.unused_columns.front().why);
+    EXPECT_EQ(found.fits.size(), 2U);
+  }
+  EXPECT_EQ(reasons.size(), 2U);
 }
 
 TEST(IdentifyContact, RefusesFewTapsOneVelocityAndPositiveVelocities) {

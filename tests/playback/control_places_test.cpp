@@ -182,9 +182,17 @@ TEST_F(ControlPlaces, AWrongTokenIsAnsweredAfterASecondAndARightOneAtOnce) {
   serve(2);
   EXPECT_TRUE(wrong->heard().empty());
   now_ += milliseconds(1);
-  EXPECT_NE(answer_of(*wrong).find("tcp_token_file"), std::string::npos);
+  const std::string answer = answer_of(*wrong);
+  EXPECT_NE(answer.find("tcp_token_file"), std::string::npos);
   serve();
   EXPECT_EQ(server_->clients(), 0U);
+  EXPECT_NE(answer, answer_of(*by_tcp(kHello))) << "a wrong token is another error than none";
+}
+
+TEST_F(ControlPlaces, OneThatIsSilentByTcpGetsTheRemedyWithTheToken) {
+  const auto silent = by_tcp();
+  now_ += seconds(6);
+  EXPECT_NE(answer_of(*silent).find("tcp_token_file"), std::string::npos);
 }
 
 TEST_F(ControlPlaces, FourConnectionsMayBeWithoutTheToken) {

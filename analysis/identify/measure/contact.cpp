@@ -22,7 +22,9 @@ using schema::Result;
 constexpr std::size_t kLeastContacts = 10;
 constexpr double kPulseEdge = 0.02;   // of the peak
 constexpr double kDoublePulse = 1.6;  // of the median duration
-constexpr double kCollinear = 1e-9;   // of the largest diagonal element of R
+// What a column varies by itself, re its variation, and its variation re its size. Below it are only the last
+// of the six or seven digits of a table.
+constexpr double kLeastVariation = 1e-4;
 
 struct ContactInput {
   const char* column;
@@ -47,15 +49,26 @@ Eigen::VectorXd values_of(const NumberTable& table, std::size_t column) {
   return values;
 }
 
-// `columns`: the constant first. None if a column is constant or a linear function of those before it.
-std::optional<ContactFit> fit_columns(const Eigen::MatrixXd& columns, const Eigen::VectorXd& peak,
-                                      std::span<const ContactInput> inputs) {
+// Why the last of `columns`, the constant first, cannot be fitted together with those before it; empty: it
+// can.
+std::string why_not_fitted(const Eigen::MatrixXd& columns) {
+  const Index last = columns.cols() - 1;
+  const Eigen::VectorXd column = columns.col(last);
+  const double spread = (column.array() - column.mean()).matrix().norm();
+  if (!(spread > kLeastVariation * column.norm())) return "is constant";
+  const double own = std::abs(Eigen::HouseholderQR<Eigen::MatrixXd>(columns).matrixQR()(last, last));
+  if (own > kLeastVariation * spread) return {};
+  return fmt::format("is a linear function of the columns before it, within {:.2g} of its spread",
+                     kLeastVariation);
+}
+
+// `columns`: the constant first.
+ContactFit fit_columns(const Eigen::MatrixXd& columns, const Eigen::VectorXd& peak,
+                       std::span<const ContactInput> inputs) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
   const Index terms = columns.cols(), taps = columns.rows();
   const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(taps, terms);
   const Eigen::MatrixXd r = qr.matrixQR().topRows(terms).triangularView<Eigen::Upper>();
-  for (Index k = 1; k < terms; ++k)
-    if (std::abs(r(k, k)) <= kCollinear * columns.col(k).norm()) return std::nullopt;
   const Eigen::VectorXd value = qr.solve(peak);
   const Eigen::VectorXd residual = peak - columns * value;
   const double freedom = static_cast<double>(taps - terms);
@@ -185,8 +198,9 @@ Result<ContactFits> fit_contact(const NumberTable& table, const std::string& sou
     inputs.push_back(input);
     columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
     columns.rightCols(1) = input.sign * values_of(table, *column);
-    if (auto fit = fit_columns(columns, values_of(table, *peak), inputs)) {
-      found.fits.push_back(std::move(*fit));
+    std::string why = why_not_fitted(columns);
+    if (why.empty()) {
+      found.fits.push_back(fit_columns(columns, values_of(table, *peak), inputs));
       continue;
     }
     if (inputs.size() == 1)
@@ -194,7 +208,7 @@ Result<ContactFits> fit_contact(const NumberTable& table, const std::string& sou
                   "tap at different velocities");
     inputs.pop_back();
     columns.conservativeResize(Eigen::NoChange, columns.cols() - 1);
-    found.unused_columns.emplace_back(input.column);
+    found.unused_columns.push_back({input.column, std::move(why)});
   }
   return found;
 }

@@ -27,10 +27,15 @@ struct ContactFit {
   double rms_n = 0, left_out_n = 0;
 };
 
+/// A column that no fit has.
+struct UnusedColumn {
+  std::string name;
+  std::string why;  ///< "is constant": it is so to 1e-4, or is a linear function of those before it
+};
+
 struct ContactFits {
   std::vector<ContactFit> fits;
-  /// Columns that are constant or a linear function of those before them: no fit has them.
-  std::vector<std::string> unused_columns;
+  std::vector<UnusedColumn> unused_columns;
 };
 
 /// The peak force of taps by ordinary least squares on the velocity, then also on the acceleration, then also
