@@ -20,7 +20,9 @@ Result<cli::Report> describe_wiring(const std::string& path) {
     row.add("input", input.input).add("channel", input.name).add("reference", input.reference);
     row.add("range_from_v", input.range_from_v).add("range_to_v", input.range_to_v);
     const auto unit = si_symbol(quantity_named(input.quantity)->dimension);
-    row.add("sensor", input.per_volt ? fmt::format("{:g} {}/V", *input.per_volt, unit)
+    const std::string at_zero =
+        input.at_zero_volt == 0 ? "" : fmt::format(", {:g} {} at 0 V", input.at_zero_volt, unit);
+    row.add("sensor", input.per_volt ? fmt::format("{:g} {}/V{}", *input.per_volt, unit, at_zero)
                                      : wiring->transducer_name + ", its output voltage");
     inputs.push_back(std::move(row));
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "data-schema/files/files.hpp"
@@ -46,10 +47,16 @@ Result<void> check_input(const Wiring& wiring, std::size_t index, const std::str
   if (!input.per_volt && input.at_zero_volt != 0)
     return fail(ErrorKind::unsuitable, "at_zero_volt needs per_volt", where + "/at_zero_volt",
                 "remove it: the transducer has no force at 0 V");
-  for (std::size_t earlier = 0; earlier < index; ++earlier)
+  if (std::ranges::any_of(input.name, [](unsigned char c) { return c < 0x20 || c == 0x7F; }))
+    return fail(ErrorKind::unsuitable, "the name has a control character", where + "/name", "remove it");
+  for (std::size_t earlier = 0; earlier < index; ++earlier) {
     if (wiring.inputs[earlier].name == input.name)
       return fail(ErrorKind::unsuitable, fmt::format("'{}' is the name of two channels", input.name),
                   where + "/name", "give one of them another name");
+    if (wiring.inputs[earlier].input == input.input && wiring.inputs[earlier].quantity != input.quantity)
+      return fail(ErrorKind::unsuitable, fmt::format("the input {} has two quantities", input.input),
+                  where + "/input", "give each sensor an input of its own");
+  }
   return {};
 }
 

@@ -25,6 +25,8 @@ REFUSED = [
     (("inputs", 1, "quantity"), "positon", "#/inputs/1/quantity", 5),
     (("inputs", 1, "range_v"), [10, -10], "#/inputs/1/range_v", 5),
     (("inputs", 1, "name"), "tangential_force", "#/inputs/1/name", 5),
+    (("inputs", 1, "name"), "a\nb", "#/inputs/1/name", 5),
+    (("inputs", 1, "input"), 0, "#/inputs/1/input", 5),
     (("inputs", 1, "reference"), "floating", "#/inputs/1/reference", 4),
     (("inputs", 1, "input"), -1, "#/inputs/1/input", 4),
     (("inputs", 0, "at_zero_volt"), 1, "#/inputs/0/at_zero_volt", 5),
@@ -66,6 +68,7 @@ def described_and_valid():
     write(GOOD)
     inputs = tacto.run_json("info", "bench")["inputs"]
     assert [(row["input"], row["channel"], row["range_to_v"]) for row in inputs] == [(0, "tangential_force", 5), (2, "position", 10)], inputs
+    assert inputs[1]["sensor"].split() == ["0.002", "m/V,", "0.01", "m", "at", "0", "V"], inputs
     tacto.run("validate", "bench")
     write(changed(("x_lab",), "7"))
     tacto.run("validate", "bench")
