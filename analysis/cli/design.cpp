@@ -10,11 +10,11 @@
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/design/design_page.hpp"
+#include "analysis/design/judged_piece.hpp"
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/prepare/scene/acting_load.hpp"
-#include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/stability/free_limit.hpp"
 
@@ -136,7 +136,7 @@ Result<void> add_adaptive(schema::Scene& scene, const std::string& file, const D
   return {};
 }
 
-// Pieces in space, each by itself: the wall's motion from tick to tick.
+// Pieces in space: the motion on their walls from tick to tick.
 Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& scene, const std::string& file,
                              const DesignRequest& request) {
   if (request.judged != Holder::nothing && request.judged != Holder::hand)
@@ -152,27 +152,37 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
         "give them in its file");
   std::vector<Report> rows;
   bool unstable = false;
-  for (const schema::Piece& piece : scene.pieces) {
-    const double growth = playback::wall_growth(piece, request.device, request.rate_hz, request.hand);
-    unstable = unstable || growth > 1;
+  for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
+    const schema::Piece& piece = scene.pieces[i];
+    const JudgedPiece judged = judged_piece(scene, i, request);
+    unstable = unstable || judged.verdict == Stability::unstable;
     Report row;
-    row.add("piece", piece.name).add("verdict", growth > 1 ? "unstable" : "stable");
+    row.add("piece", piece.name).add("verdict", to_string(judged.verdict));
     row.add("stiffness_n_per_m", piece.stiffness_n_per_m).add("damping_n_s_per_m", piece.damping_n_s_per_m);
+    if (!judged.with.empty())
+      row.add("adds_to", judged.with)
+          .add("total_stiffness_n_per_m", judged.total.stiffness_n_per_m)
+          .add("total_damping_n_s_per_m", judged.total.damping_n_s_per_m);
+    if (!judged.unjudged.empty()) row.add("not_computed_with", judged.unjudged);
     row.add("limit_n_per_m", playback::stiffness_limit_of(request.device, request.rate_hz, request.hand,
-                                                          piece.damping_n_s_per_m, true));
+                                                          judged.total.damping_n_s_per_m, true));
     // Until a motion is e times as small, or as large.
-    if (growth != 1)
-      row.add(growth < 1 ? "decay_time_s" : "growth_time_s",
-              1 / (request.rate_hz * std::abs(std::log(growth))));
+    if (judged.growth != 1)
+      row.add(judged.growth < 1 ? "decay_time_s" : "growth_time_s",
+              1 / (request.rate_hz * std::abs(std::log(judged.growth))));
     rows.push_back(std::move(row));
   }
   Report report;
   report.add("scene", file).add("device", request.device.name);
   report.add("hand", request.hand ? request.hand->name : "nothing holds the device");
   report.add("rate_hz", request.rate_hz).add("pieces", std::move(rows));
-  report.add("assumed",
-             "each piece alone, touched along an axis of the device; pieces that hold a hand together "
-             "in a corner act along different directions");
+  report.add(
+      "assumed",
+      scene.contact == schema::PieceContact::add
+          ? "touched along an axis of the device; planes of the same direction add up, and pieces that "
+            "may overlap in another way are not computed"
+          : "each piece touched along an axis of the device; of pieces that hold the ghost together at "
+            "an angle, only the sum of their dampings is looked at");
   if (unstable) report.ends_with(ErrorKind::unstable);
   return report;
 }

@@ -42,6 +42,14 @@ void judge(JudgedLayer& layer, const DesignRequest& request, const playback::Act
     layer.verdict = Stability::not_known;
     layer.because = "not proved for " + holder_name(judged, request);
   }
+  const double holding =
+      load.holding_n_per_m + (computed == Holder::nothing ? 0 : request.hand->stiffness_n_per_m);
+  if (load.repelling_n_per_m > 0 && load.repelling_n_per_m >= holding) {
+    layer.verdict = Stability::not_known;
+    layer.because = fmt::format(
+        "a force map drives the hand away with up to {:.4g} N/m, and {:.4g} N/m hold it against that",
+        load.repelling_n_per_m, holding);
+  }
   if (load.curl_n_per_m > 0) {
     layer.verdict = Stability::not_known;
     layer.because = fmt::format(

@@ -138,7 +138,8 @@ struct ForceMapLayer {
   std::string file;     ///< CSV of nodes, from the scene's folder (force_grid.hpp)
   LayerNumber gain{1};  ///< 1
   std::string extra_json;
-  double stiffest_n_per_m = 0, curl_n_per_m = 0;  ///< not in the file: at a gain of 1, once it was read
+  /// Not in the file: at a gain of 1, once it was read. The largest stiffness, and the most negative one.
+  double attracting_n_per_m = 0, repelling_n_per_m = 0, curl_n_per_m = 0;
 };
 
 /// The field of atoms (Lennard-Jones and Coulomb) on a probe, in a plane section through them. The origin of

@@ -3,6 +3,7 @@
 """Scenes of pieces in space on the command line: `render` against SciPy's minimised distance, `play` and `replay` to the bit, `explain`, `design`, what is refused."""
 import json
 import pathlib
+import subprocess
 
 import numpy as np
 from scipy.linalg import expm
@@ -155,6 +156,39 @@ def design_of_a_wall_is_that_of_numpy():
     assert len(verdicts) == 12, verdicts
 
 
+def design_adds_up_what_acts_together():
+    def rows(*pieces, **members):
+        write_scene("sums", *pieces, **members)
+        return {row["piece"]: row for row in json.loads(subprocess.run([tacto.COMMAND, "design", "sums.scene.json", "--device", "arm", "--json"], capture_output=True, text=True, timeout=600).stdout)["pieces"]}
+
+    def wall(name, stiffness, damping=0, **members):
+        return piece(name, members.pop("shape", "plane"), members.pop("place", (0, 0, 0)), damping_n_s_per_m=damping, **members) | {"stiffness_n_per_m": stiffness}
+
+    assert growth_per_tick(900, 0) < 1 < growth_per_tick(1800, 0)
+    for depth in (0, 0.01):  # the lower one acts with the upper one only
+        found = rows(wall("a", 900), wall("b", 900, place=(0, 0, -depth), direction=[0, 0, 7]), contact="add")
+        for name, other in ("ab", "ba"):
+            row = found[name]
+            assert row["verdict"] == "unstable" and row["adds_to"] == [other] and row["total_stiffness_n_per_m"] == 1800, row
+            assert abs(row["growth_time_s"] * RATE_HZ * np.log(growth_per_tick(1800, 0)) - 1) < 1e-6, row
+        assert {row["verdict"] for row in rows(wall("a", 900), wall("b", 900, place=(0, 0, -depth))).values()} == {"stable"}
+    # A damper on top, and a spring that would grow alone.
+    assert growth_per_tick(1500, 0) > 1 > max(growth_per_tick(500, 4), growth_per_tick(2000, 4))
+    found = rows(wall("skin", 500, 4), wall("core", 1500, place=(0, 0, -0.01)), contact="add")
+    assert {row["verdict"] for row in found.values()} == {"stable"} and abs(found["core"]["decay_time_s"] / decay_time_s(2000, 4) - 1) < 1e-6, found
+    # Perpendicular walls, walls face to face and a ball beside them do not add; a ball in the floor is not known.
+    room = [wall("floor", 900), wall("left", 900, place=(-0.05, 0, 0), direction=[1, 0, 0]), wall("right", 900, place=(0.05, 0, 0), direction=[-1, 0, 0])]
+    ball = [wall("ball", 900, shape="sphere", radius_m=0.01, place=(0, 0, height)) for height in (0.02, 0.005)]
+    assert {row["verdict"] for row in rows(*room, ball[0], contact="add").values()} == {"stable"}
+    found = rows(*room, ball[1], contact="add")
+    assert [found[name]["verdict"] for name in ("floor", "left", "ball")] == ["not known", "stable", "not known"] and found["ball"]["not_computed_with"] == ["floor"], found
+    # In a narrow groove of a ghost the dampings add, the stiffnesses do not.
+    assert growth_per_tick(STIFFNESS, 170) < 1 < growth_per_tick(STIFFNESS, 340)
+    for damping, slope, verdict in ((170, 0.05, "not known"), (60, 0.05, "stable"), (170, 1, "stable")):
+        found = rows(*(wall(name, STIFFNESS, damping, direction=[way * slope, 0, 1]) for name, way in (("a", 1), ("b", -1))))
+        assert {row["verdict"] for row in found.values()} == {verdict}, found
+
+
 def explain_and_design_judge_walls():
     write_scene("walls", piece("soft", "plane", damping_n_s_per_m=4))
     said = run_json("explain", "walls.scene.json", "--device", "arm")
@@ -190,5 +224,5 @@ def what_cannot_be_is_refused():
 
 if __name__ == "__main__":
     for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit,
-                 explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, what_cannot_be_is_refused):
+                 explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, design_adds_up_what_acts_together, what_cannot_be_is_refused):
         tacto.in_folder(test)

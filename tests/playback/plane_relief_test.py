@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Height maps on the command line: a PNG or a profile is imported, described, played, and its forces are those of SciPy's splines."""
+import json
 import pathlib
 import struct
 import zlib
@@ -189,6 +190,17 @@ def force_maps_that_do_not_fit_are_refused_or_warned_of():
     assert abs(row["stiffness_n_per_m"] - 100) < 1e-3 and row["verdict"] == "stable", row
     write_scene("stiff", patch(width_m=0.02, height_m=0.02, layers=[{**layer, "gain": 1000}]))
     assert run_json("design", "stiff", "--device", "sandpaper-1990", code=UNSTABLE)["layers"][0]["verdict"] == "unstable"
+    # A map of 500 N/m away from the middle, against what holds the hand there.
+    for held, verdict in ((0, "not known"), (400, "not known"), (500, "not known"), (600, "stable")):
+        away = [{**layer, "gain": -5}] + ([{"type": "spring", "stiffness_n_per_m": held}] if held else [])
+        write_scene("away", patch(width_m=0.02, height_m=0.02, layers=away))
+        row = run_json("design", "away", "--device", "sandpaper-1990")["layers"][0]
+        assert row["verdict"] == verdict and row["stiffness_n_per_m"] == 0, row
+    write_scene("away", patch(width_m=0.02, height_m=0.02, layers=[{**layer, "gain": -5}]))
+    for stiffness, verdict in ((100, "not known"), (600, "stable")):
+        pathlib.Path("held.hand.json").write_text(json.dumps({"kind": "hand", "version": "1.0", "name": "held", "mass_kg": 0.05, "damping_n_s_per_m": 1, "stiffness_n_per_m": stiffness, "source": "test"}))
+        row = run_json("design", "away", "--device", "sandpaper-1990", "--hand", "held.hand.json")["layers"][0]
+        assert row["verdict"] == verdict, row
     write_scene("wide", patch(width_m=0.05, height_m=0.02, layers=[layer]))
     _, err = run("explain", "wide.scene.json", "--device", "sandpaper-1990")
     assert "forces.csv" in err and "exceeds the peak force" not in err, err

@@ -110,6 +110,26 @@ TEST(SceneForceMap, StiffnessAndCurlAreThoseOfALinearField) {
   const auto spring = [](double x, double y) { return std::pair(-200 * x, -200 * y); };
   const MapOnDevice plain(patch_with(force_map("spring", 65, 1e-3, spring), 0.03));
   EXPECT_EQ(load_of(plain.scene.patches[0].layers[0]).curl_n_per_m, 0);
+  EXPECT_EQ(load_of(plain.scene.patches[0].layers[0]).repelling_n_per_m, 0);
+}
+
+// Of a saddle: the eigenvalues of its derivatives, by both signs of the gain.
+TEST(SceneForceMap, AMapRepelsByItsLargestSlope) {
+  const auto saddle = [](double x, double y) { return std::pair(100 * x + 120 * y, 120 * x - 220 * y); };
+  // Trace -120, determinant -36400: -60 +- 200.
+  schema::ForceMapLayer layer = force_map("saddle", 65, 1e-3, saddle);
+  const auto load_at = [&](const schema::LayerNumber& gain) {
+    layer.gain = gain;
+    const MapOnDevice on(patch_with(layer, 0.03));
+    return load_of(on.scene.patches[0].layers[0]);
+  };
+  EXPECT_NEAR(load_at({1}).stiffness_n_per_m, 260, 260e-6);
+  EXPECT_NEAR(load_at({1}).repelling_n_per_m, 140, 140e-6);
+  EXPECT_NEAR(load_at({-2}).stiffness_n_per_m, 280, 280e-6);
+  EXPECT_NEAR(load_at({-2}).repelling_n_per_m, 520, 520e-6);
+  const ActingLoad slid = load_at({1, schema::SliderRange{-0.5, 1}});
+  EXPECT_NEAR(slid.stiffness_n_per_m, 260, 260e-6);
+  EXPECT_NEAR(slid.repelling_n_per_m, 140, 140e-6);
 }
 
 // A turn of radius r gains the curl times its area.

@@ -231,14 +231,17 @@ double Relief::curvature_per_m(double width_m, double height_m) const {
   return largest / (pitch_m * pitch_m);
 }
 
-std::pair<double, double> ForceRelief::stiffness_and_curl(double width_m, double height_m) const {
-  double stiffness = 0, curl = 0, coefficient = 0;
+ForceSlopes ForceRelief::slopes(double width_m, double height_m) const {
+  double least = 0, most = 0, curl = 0, coefficient = 0;
   each_place(x, 1, height_m, [&](std::size_t j, const Weights& v) {
     const RowSums of_x(x, j, v), of_y(y, j, v);
     each_place(x, 0, width_m, [&](std::size_t i, const Weights& u) {
       const double x_by_u = weighted(u.slope, of_x.value, i), x_by_v = weighted(u.value, of_x.slope, i),
                    y_by_u = weighted(u.slope, of_y.value, i), y_by_v = weighted(u.value, of_y.slope, i);
-      stiffness = std::max(stiffness, largest_eigenvalue(x_by_u, 0.5 * (x_by_v + y_by_u), y_by_v));
+      const double mean = 0.5 * (x_by_u + y_by_v),
+                   apart = std::hypot(0.5 * (x_by_u - y_by_v), 0.5 * (x_by_v + y_by_u));
+      least = std::min(least, mean - apart);
+      most = std::max(most, mean + apart);
       curl = std::max(curl, std::abs(y_by_u - x_by_v));
     });
   });
@@ -246,7 +249,8 @@ std::pair<double, double> ForceRelief::stiffness_and_curl(double width_m, double
     for (const float c : component->levels.front().coefficients)
       coefficient = std::max(coefficient, std::abs(double{c}));
   constexpr double kRounding = 0x1p-22;  // of two differences of coefficients in single precision
-  return {stiffness / x.pitch_m, curl > kRounding * coefficient ? curl / x.pitch_m : 0};
+  const auto known = [&](double slope) { return slope > kRounding * coefficient ? slope / x.pitch_m : 0; };
+  return {known(-least), known(most), known(curl)};
 }
 
 double Relief::whole_to_mps(double rate_hz) const {

@@ -37,14 +37,21 @@ struct Relief {
   double zero_from_mps(double rate_hz) const;
 };
 
+/// How a force changes with the place, at most. It draws back as a spring of `attracting_n_per_m` where the
+/// least eigenvalue of the symmetric part of its derivatives is lowest, and drives away as one of
+/// -`repelling_n_per_m` where the largest one is highest.
+struct ForceSlopes {
+  double attracting_n_per_m = 0, repelling_n_per_m = 0;
+  double curl_n_per_m = 0;  ///< |dFy/dx - dFx/dy|
+};
+
 /// Two components of a force, in N: of the same levels.
 struct ForceRelief {
   Relief x, y;
 
-  /// Of the first level in a patch of this size, at the nodes and halfway between them, of the derivatives of
-  /// the force by the place: the largest eigenvalue, absolute, of their symmetric part, and the largest curl,
-  /// |dFy/dx - dFx/dy|; 0 if it is within the rounding of the coefficients.
-  std::pair<double, double> stiffness_and_curl(double width_m, double height_m) const;
+  /// Of the first level in a patch of this size, at the nodes and halfway between them; 0 for what is within
+  /// the rounding of the coefficients.
+  ForceSlopes slopes(double width_m, double height_m) const;
 };
 
 /// The first level is the surface through all heights (relief_coefficients()), less their mean. Each further

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -20,6 +21,8 @@ ActingLoad sum_of(const std::vector<schema::Patch>& patches, const std::vector<s
       sum.stiffness_n_per_m += load.stiffness_n_per_m;
       sum.least_damping_n_s_per_m += load.least_damping_n_s_per_m;
       sum.most_damping_n_s_per_m += load.most_damping_n_s_per_m;
+      sum.repelling_n_per_m += load.repelling_n_per_m;
+      sum.holding_n_per_m += load.holding_n_per_m;
       sum.curl_n_per_m += load.curl_n_per_m;
       const auto name = [&](const std::string& type) {
         return fmt::format("{} {} of patch '{}'", type, j, patches[i].name);
@@ -57,7 +60,9 @@ ActingLoad load_of(const schema::ForceLayer& layer) {
   ActingLoad load;
   load.stiffness_n_per_m = local_stiffness_n_per_m(layer);
   layer.visit(
-      [](const schema::SpringLayer& /*spring*/) {},
+      [&](const schema::SpringLayer& spring) {
+        load.holding_n_per_m = least_value(spring.stiffness_n_per_m);
+      },
       [&](const schema::DamperLayer& damper) {
         load.least_damping_n_s_per_m = least_value(damper.damping_n_s_per_m);
         load.most_damping_n_s_per_m = largest_value(damper.damping_n_s_per_m);
@@ -68,6 +73,8 @@ ActingLoad load_of(const schema::ForceLayer& layer) {
       },
       [&](const schema::ForceMapLayer& map) {
         load.curl_n_per_m = std::abs(farthest_value(map.gain)) * map.curl_n_per_m;
+        load.repelling_n_per_m = std::max({largest_value(map.gain) * map.repelling_n_per_m,
+                                           -least_value(map.gain) * map.attracting_n_per_m, 0.0});
       },
       [&](const schema::BodyLayer& body) {
         const auto end = [&](double (*of)(const schema::LayerNumber&)) -> CoupledBody {

@@ -24,6 +24,9 @@ inline constexpr std::size_t kMostActingBodies = 4;
 /// With each slider at its upper end, of dampers and bodies at both ends.
 struct ActingLoad {
   double stiffness_n_per_m = 0, least_damping_n_s_per_m = 0, most_damping_n_s_per_m = 0;
+  /// Of force maps: how strongly they drive the hand away, as a negative stiffness; and of springs, what is
+  /// against it at all places.
+  double repelling_n_per_m = 0, holding_n_per_m = 0;
   double curl_n_per_m = 0;  ///< of force maps: energy that a turn of the hand gains, by its area
   std::vector<std::string> unknown = {};  ///< the layers whose stiffness is not computed
   std::vector<ActingBody> bodies = {};

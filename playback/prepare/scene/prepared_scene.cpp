@@ -8,7 +8,6 @@
 #include <cstring>
 #include <functional>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 #include "data-schema/height/height_map.hpp"
@@ -425,8 +424,10 @@ Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, dou
       TACTO_TRY(levels);
       forces = std::make_shared<const ForceRelief>(std::move(*levels));
     }
-    std::tie(layer.stiffest_n_per_m, layer.curl_n_per_m) =
-        forces->stiffness_and_curl(patch.width_m, patch.height_m);
+    const ForceSlopes slopes = forces->slopes(patch.width_m, patch.height_m);
+    layer.attracting_n_per_m = slopes.attracting_n_per_m;
+    layer.repelling_n_per_m = slopes.repelling_n_per_m;
+    layer.curl_n_per_m = slopes.curl_n_per_m;
     return {};
   };
   for (schema::Patch& patch : scene.patches)

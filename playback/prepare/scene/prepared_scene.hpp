@@ -85,7 +85,7 @@ double stiffness_limit_of(const schema::Device& device, double rate_hz,
 schema::Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::string& where);
 
 /// Reads the height maps, textures, atoms and force maps of all layers, and sets their curvature,
-/// steepest_n_per_m, stiffest_n_per_m and curl_n_per_m. Textures fade at their ends as on a tray
+/// steepest_n_per_m, stiffest_n_per_m and slopes. Textures fade at their ends as on a tray
 /// (TextureLookup). `where` is the scene's file. Errors: as read_height_map, relief_levels, read_texture,
 /// check_playable, read_atoms, check_section, read_force_grid, force_levels; unsuitable: a texture whose mean
 /// force is too large for its length.

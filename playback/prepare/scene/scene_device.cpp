@@ -309,7 +309,8 @@ double local_stiffness_n_per_m(const schema::ForceLayer& layer) {
         return largest_value(field.force_scale) * field.stiffest_n_per_m;
       },
       [](const schema::ForceMapLayer& map) {
-        return std::abs(farthest_value(map.gain)) * map.stiffest_n_per_m;
+        return std::max(largest_value(map.gain) * map.attracting_n_per_m,
+                        -least_value(map.gain) * map.repelling_n_per_m);
       },
       [](const schema::NoiseLayer& noise) {
         double curvature = 0, cells_per_m = 1 / noise.period_m.value;
