@@ -12,7 +12,8 @@ constexpr float kSettled_m = 1e-9F;   // a shorter way is none
 constexpr float kRounding_m = 2e-8F;  // of a plane's place: 24 bits of 0.3 m
 constexpr float kSameSide = 0.8F;     // cosine of the largest turn of the normal in one step
 constexpr float kLeaves_m = 1e-6F;    // over a surface, beyond what rounding is
-constexpr float kDeepest = 0.1F;      // of a step along a surface that bends towards it
+constexpr int kPassesOut = 3;     // at the end of a tick: Newton's steps out of a surface, no way along it
+constexpr float kDeepest = 0.1F;  // of a step along a surface that bends towards it
 
 SceneLayerKind kind_of(const SceneView& scene, uint32_t piece) noexcept {
   return static_cast<SceneLayerKind>(scene.layers[piece].kind);
@@ -264,7 +265,8 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
     if (nearest_m >= -kInside_m) last = ghost_, of_last = holding, outside = true;
     if (goal.count == 1 && settle_on(scene, hand, step_m, touched, holding)) break;
     if (pass == kGhostPasses) break;
-    SpaceVector way = shortened(scene, planes, goal);
+    const bool out = nearest_m < -kInside_m && pass + kPassesOut >= kGhostPasses;
+    SpaceVector way = out ? nearest_allowed(planes, {}).way : shortened(scene, planes, goal);
     // A surface that bends towards the ghost: a shorter step, so that it stays near.
     for (int halved = 0; halved < 4; ++halved) {
       float deepest_m = 0;

@@ -26,12 +26,12 @@ struct SpaceHand {
 /// less than about 37 degrees of the normal away and nothing is between. So it passes through no surface:
 /// what it touches it leaves outwards only, and what it does not touch is met in closed form. Rounding leaves
 /// it at most 1e-6 m inside of a piece; there it is moved out. On a quadric that bends towards the ghost a
-/// step is shorter, by the curvature, so that the passes come to an end there, too. Where the passes end
-/// deeper (a quadric that bends towards it, and a hand that is far away), it stays at the last place outside,
-/// and goes on in the next tick. The force is the sum over the holding planes of wall_force() along the
-/// normal, the depth of each its share of the way from hand to ghost (the multiplier of its plane): of equal
-/// stiffness K together K (ghost - hand) once the ghost has come to rest; while it is on its way, the planes
-/// where it is give the force. `contact: add`: each piece by itself, from its nearest face.
+/// step is shorter, by the curvature, so that the passes come to an end there, too. The last passes
+/// of a tick lead only out. Where they end deeper all the same, it stays at the last place outside, and goes
+/// on in the next tick. The force is the sum over the holding planes of wall_force() along the normal, the
+/// depth of each its share of the way from hand to ghost (the multiplier of its plane): of equal stiffness K
+/// together K (ghost - hand) once the ghost has come to rest; while it is on its way, the planes where it is
+/// give the force. `contact: add`: each piece by itself, from its nearest face.
 class GhostPoint {
  public:
   /// Without a place: the next hand is the ghost.
