@@ -28,7 +28,7 @@ bool is_presented(const schema::Protocol& protocol, const schema::CodedStimulus&
 }
 
 std::string hashed_text(const schema::Protocol& protocol, const std::string& participant,
-                     const StudyTrial& trial) {
+                        const StudyTrial& trial) {
   return fmt::format("{}/{}/{}/{}", protocol.seed, participant, trial.block, trial.name());
 }
 
