@@ -75,8 +75,8 @@ inline constexpr int kQuadricSteps = 8;
 bool nearest_on(SceneLayerKind kind, const PieceTable& table, SpaceVector hand, SpaceVector start,
                 SpaceVector& nearest) noexcept;
 
-/// The place of a quadric's surface that is nearest to a hand in the solid, of all. False if no way leads out.
-/// Safe in the tick.
+/// The place of a quadric's surface that is nearest to a hand in the solid, of all. False if no way leads
+/// out. Safe in the tick.
 bool nearest_face(const PieceTable& quadric, SpaceVector hand, SpaceVector& nearest) noexcept;
 
 /// Behind the numbers of a piece, 0 in a block.
