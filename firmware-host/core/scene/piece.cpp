@@ -247,8 +247,11 @@ bool nearest_face(const PieceTable& quadric, SpaceVector hand, SpaceVector& near
     face.try_way(q, inside, -1 * singular);
   }
   if (!(face.squared_m2 < kNoExit)) return false;
-  if (nearest_on_quadric(q, hand, face.place, p)) face.try_place(p);
+  // Rounding does not tell places near the nearest one apart by their distance, but by the normal.
+  constexpr float kAsNear = 1 + 1e-5F;
   nearest = face.place;
+  if (nearest_on_quadric(q, hand, face.place, p) && dot(p - hand, p - hand) <= kAsNear * face.squared_m2)
+    nearest = p;
   return true;
 }
 
