@@ -45,7 +45,7 @@ constexpr DemoCommand kOfEachSurface[] = {
      "gives them."},
     {&spatial::kSpatialVerb, "{stem} -o {stem} --stroke 1",
      "The first stroke becomes a texture, force against position: 15-500 Hz, divided by the sensor's "
-     "response, piecewise cubic Hermite, 1 µm grid."},
+     "response, piecewise cubic Hermite, 1 um grid."},
     {&spatial::kSpectrogramVerb, "{stem} -o {stem}.png -o {stem}.nc",
      "The spatial spectrogram of the texture, as a picture and as data."},
     {&kFidelityVerb, "{stem} --speed 25mm/s --gain 0.5mm/N -o {stem}.results.json",

@@ -23,7 +23,7 @@ a { color: inherit; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .8rem 0; }
 th, td { padding: .35rem .6rem; text-align: right; vertical-align: top; border-bottom: 1px solid var(--line); }
 th { font-weight: 600; vertical-align: bottom; } td:first-child, th:first-child { text-align: left; }
-table.pairs th, table.pairs td { text-align: left; } table.c9 { font-size: .9rem; display: block; overflow-x: auto; } td.long { overflow-wrap: anywhere; } td.word { white-space: nowrap; } td.text { text-align: left; }
+table.pairs th, table.pairs td { text-align: left; } table.c9 { font-size: .9rem; display: block; overflow-x: auto; } td.long { overflow-wrap: anywhere; } td.word { white-space: nowrap; } td.text, th.text { text-align: left; }
 .picture { overflow-x: auto; } .picture img { min-width: 40rem; } .small img { min-width: 0; }
 img { width: 100%; height: auto; margin: .6rem 0; border-radius: .3rem; } p.note { color: var(--soft); font-size: .9rem; }
 details { margin: .8rem 0; border: 1px solid var(--line); border-radius: .3rem; padding: 0 .8rem; }
@@ -103,9 +103,10 @@ std::string cell_class(std::string_view cell, bool in_text_column) {
   return *classes == 0 ? "" : fmt::format(" class=\"{}\"", classes);
 }
 
-std::string head_row(const std::vector<std::string>& headers) {
+std::string head_row(const std::vector<std::string>& headers, const std::vector<bool>& text_columns) {
   std::string row = "<thead><tr>";
-  for (const std::string& header : headers) row += fmt::format("<th>{}</th>", escaped(header));
+  for (std::size_t i = 0; i < headers.size(); ++i)
+    row += fmt::format("<th{}>{}</th>", text_columns[i] ? " class=\"text\"" : "", escaped(headers[i]));
   return row + "</tr></thead>\n";
 }
 
@@ -219,7 +220,8 @@ std::string html_table(const std::vector<std::string>& headers, std::size_t rows
       cells[row].push_back(cell(row, column));
       if (is_text(cells[row].back())) text_columns[column] = true;
     }
-  std::string table = fmt::format("<table{}>\n{}<tbody>\n", table_class(headers.size()), head_row(headers));
+  std::string table =
+      fmt::format("<table{}>\n{}<tbody>\n", table_class(headers.size()), head_row(headers, text_columns));
   for (std::size_t i = 0; i < rows; ++i) {
     table += "<tr>";
     for (std::size_t column = 0; column < headers.size(); ++column) {
