@@ -70,7 +70,8 @@ class RatingGrid {
 
  private:
   double limit(std::size_t k) const {
-    return least_ + step_ * (static_cast<double>(k) - static_cast<double>(kMatchSteps / 2));
+    constexpr std::size_t kMiddle = kMatchSteps / 2;
+    return least_ + step_ * (static_cast<double>(k) - static_cast<double>(kMiddle));
   }
 
   std::span<const RatedRatio> ratings_;
