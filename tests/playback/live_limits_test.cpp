@@ -187,7 +187,9 @@ TEST_F(LiveLimitsTest, SaysWhyItIsNotKnown) {
   EXPECT_FALSE(holed.db);
   const auto other =
       follow_session([](std::vector<schema::SessionTick>& ticks) { ticks[1].drive_v += 1e-6F; });
-  EXPECT_EQ(other.unknown, "the device computes a different drive");
+  EXPECT_FALSE(other.db);
+  EXPECT_FALSE(other.unknown.empty());
+  EXPECT_NE(other.unknown, holed.unknown);
 }
 
 }  // namespace
