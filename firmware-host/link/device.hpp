@@ -36,7 +36,7 @@ struct Capabilities {
   std::vector<schema::Channel> channels;
   std::optional<schema::Transducer> transducer;
   std::string surface;                ///< the surface on the tray, if the device reports it
-  std::vector<std::string> warnings;  ///< for whoever records, and for the recording
+  std::vector<std::string> warnings;  ///< of the device; each recording stores them, too
 };
 
 /// Counters of a stream since start().

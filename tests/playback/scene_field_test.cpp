@@ -17,6 +17,7 @@
 #include "playback/prepare/scene/field_stiffness.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/reference/exact_scene.hpp"
+#include "tests/playback/unlimited_device.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -30,17 +31,6 @@ constexpr double kStiffness_n_per_m = kForce_n / kBenchSigma;  // epsilon / sigm
 const double kZero = std::pow(2.0, 1.0 / 6);                   // of the force, in sigma
 constexpr std::uint32_t kAtomsAt = sizeof(core::SceneHeader) / 4 + sizeof(core::ScenePatch) / 4 +
                                    sizeof(core::SceneLayer) / 4 + 2;  // words of a scene of one field
-
-schema::Device unlimited_device(double encoder_step_m) {
-  schema::Device device = *schema::read_device("sandpaper-1990");
-  for (schema::DeviceAxis& axis : device.axes) {
-    axis.peak_force_n = axis.continuous_force_n = 1e9;
-    axis.encoder_step_m = encoder_step_m;
-  }
-  device.peak_force_n = device.continuous_force_n = 1e9;
-  device.slew_n_per_s = 1e15;
-  return device;
-}
 
 // Written to a file, which the layer names.
 schema::FieldLayer field(const std::string& name, const std::vector<Atom>& atoms) {

@@ -19,22 +19,12 @@
 #include "playback/prepare/scene/prepared_scene.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/reference/exact_scene.hpp"
+#include "tests/playback/unlimited_device.hpp"
 
 namespace tacto::playback {
 namespace {
 
 using NodeForce = std::function<std::pair<double, double>(double, double)>;
-
-schema::Device device_for_maps(double encoder_step_m) {
-  schema::Device device = *schema::read_device("sandpaper-1990");
-  for (schema::DeviceAxis& axis : device.axes) {
-    axis.peak_force_n = axis.continuous_force_n = 1e9;
-    axis.encoder_step_m = encoder_step_m;
-  }
-  device.peak_force_n = device.continuous_force_n = 1e9;
-  device.slew_n_per_s = 1e15;
-  return device;
-}
 
 // Of `count` x `count` nodes around the origin, written to a file.
 schema::ForceMapLayer force_map(const std::string& name, int count, double pitch_m,
@@ -68,7 +58,9 @@ struct MapOnDevice {
   std::vector<float> live;
 
   explicit MapOnDevice(const schema::Patch& patch, double encoder_step_m = 1e-7)
-      : device(device_for_maps(encoder_step_m)), scene(prepared_map(patch)), live(scene.view().live_words()) {
+      : device(unlimited_device(encoder_step_m)),
+        scene(prepared_map(patch)),
+        live(scene.view().live_words()) {
     kernel.set(scene.view(), *force_setup_of(device, 1000), live.data());
   }
   PreparedScene prepared_map(const schema::Patch& patch) const {
