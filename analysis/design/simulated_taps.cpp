@@ -209,7 +209,8 @@ SimulatedTap TapBench::tap(const TapPlace& at, double push_n, double speed_mps, 
   for (std::uint32_t i = 0; i < view_.layer_count; ++i) {
     const core::SceneLayer& layer = view_.layers[i];
     if (const auto kind = static_cast<core::SceneLayerKind>(layer.kind);
-        kind != core::SceneLayerKind::damper && kind != core::SceneLayerKind::mover)
+        kind != core::SceneLayerKind::damper && kind != core::SceneLayerKind::tick_damper &&
+        kind != core::SceneLayerKind::mover)
       live[layer.first_number] *= static_cast<float>(factor);  // the force of each kind is proportional to it
   }
   firmware_host::PlanarBody body(device_, hand_, 1 / double{setup_.rate_hz});

@@ -235,8 +235,8 @@ Result<schema::Protocol> identification_protocol(const std::string& seed, const 
 
 Result<schema::Protocol> amplitude_protocol(const std::string& seed, const NamedTextures& textures) {
   if (textures.size() != 1)
-    return fail(ErrorKind::usage, fmt::format("there are {} textures", textures.size()), "--textures",
-                "name one: for others make a study each");
+    return fail(ErrorKind::usage, fmt::format("takes one texture, but {} are named", textures.size()),
+                "--textures", "name one texture; make a study for each of the others");
   schema::Protocol protocol = stretch_protocol(seed);
   protocol.task = schema::Task::amplitude;
   protocol.largest_ratio = 2;

@@ -51,9 +51,10 @@ Result<std::string> newer_version(const std::string& version, const std::string&
   if (!found) return fail(ErrorKind::malformed, "`version` is not \"major.minor\"", place);
   const Version known = *version_from(ours);
   if (found->major != known.major)
-    return fail(ErrorKind::unsupported_version,
-                fmt::format("its format has version {}, this program reads {}.x", version, known.major), file,
-                found->major > known.major ? "use a newer tactograph" : "");
+    return fail(
+        ErrorKind::unsupported_version,
+        fmt::format("its format has version {}, this program reads {}.x", version, known.major), file,
+        found->major > known.major ? "use a newer tactograph" : "read it with the tactograph that wrote it");
   if (found->minor <= known.minor) return "";
   keep_newer(file, version);
   return version;

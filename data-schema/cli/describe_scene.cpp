@@ -35,6 +35,11 @@ cli::Report row_of(const ForceLayer& layer) {
       row.add(std::string(name), number.value);
   }
   if (is_adaptive(layer)) row.add("adaptive", true);
+  layer.visit(
+      [&](const DamperLayer& damper) {
+        if (damper.two_ticks) row.add("two_ticks", true);
+      },
+      [](const auto& /*other*/) {});
   return row;
 }
 

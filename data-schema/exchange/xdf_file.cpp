@@ -416,7 +416,9 @@ Result<XdfContents> xdf_contents(const std::string& path) {
   contents.cut = chunks->cut();
   if (contents.streams.empty())
     return fail(ErrorKind::malformed, "has no stream", path,
-                contents.cut.empty() ? "" : "it was cut: copy it again from the recording computer");
+                contents.cut.empty()
+                    ? "it was recorded without a stream: select the streams in the recorder and record again"
+                    : "it was cut: copy it again from the recording computer");
   return contents;
 }
 

@@ -105,6 +105,9 @@ struct DamperLayer {
   LayerNumber damping_n_s_per_m;
   std::string extra_json;
   bool added = false;  ///< not in the file: it was added for the adaptive layers of its patch
+  /// The speed is the difference of two ticks: not delayed, with a grain of one count per tick. Otherwise it
+  /// is the slope over several counts of the encoder.
+  bool two_ticks = false;
 };
 
 /// A brick: a mass with dry friction on its base, coupled to the hand by a spring and a damper. It is taken

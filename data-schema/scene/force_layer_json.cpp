@@ -54,6 +54,7 @@ Json made_rule() {
     mine[std::string(member.name)] = all[std::string(member.name)];
   if constexpr (IsGrooves<L>) mine["filter_m"] = all["filter_m"];
   if constexpr (MayBeAdaptive<L>) mine["adaptive"] = all["adaptive"];
+  if constexpr (MayTakeTwoTicks<L>) mine["two_ticks"] = all["two_ticks"];
   return {{"properties", mine}};
 }
 
@@ -78,6 +79,7 @@ Result<ForceLayer> layer_of_kind(const Json& body, UnknownMembers unknown, const
   if constexpr (NamesFile<L>) layer.file = text_or(body, "file");
   if constexpr (IsGrooves<L>) read_shape(layer, body);
   if constexpr (MayBeAdaptive<L>) layer.adaptive = body.value("adaptive", false);
+  if constexpr (MayTakeTwoTicks<L>) layer.two_ticks = body.value("two_ticks", false);
   for (const auto& [name, number, changes, whole] : LayerMembers<L>::kNumbers)
     if (const auto at = body.find(std::string(name)); at != body.end())
       layer.*number = layer_number_from(*at);
@@ -121,6 +123,8 @@ Json force_layer_body(const ForceLayer& layer) {
       body["filter_m"] = of.filter_m ? layer_number_body(*of.filter_m) : Json(kAuto);
     if constexpr (MayBeAdaptive<L>)
       if (of.adaptive) body["adaptive"] = true;
+    if constexpr (MayTakeTwoTicks<L>)
+      if (of.two_ticks) body["two_ticks"] = true;
     add_unknown_parts(rule_of_kind<L>(), body, of.extra_json);
   });
   return body;

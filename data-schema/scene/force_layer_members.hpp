@@ -130,6 +130,9 @@ concept IsGrooves = requires(L layer) { layer.profile; };
 template <class L>
 concept MayBeAdaptive = requires(L layer) { layer.adaptive; };
 
+template <class L>
+concept MayTakeTwoTicks = requires(L layer) { layer.two_ticks; };
+
 /// Calls `use.operator()<L>()` for each kind L of OneOf<...>, in its order.
 template <class... Kinds, class Use>
 void for_each_kind(const OneOf<Kinds...>* /*of*/, Use use) {

@@ -228,6 +228,7 @@ Report row_of_layer(const SceneOnDevice& on, const schema::Patch& patch, std::si
         at_limit("force_limit_at_displacement_m", largest_value(spring.stiffness_n_per_m));
       },
       [&](const schema::DamperLayer& damper) {
+        if (damper.two_ticks) row.add("two_ticks", true);
         if (damper.added) row.add("added_damping_n_s_per_m", damper.damping_n_s_per_m.value);
         at_limit("force_limit_at_speed_mps", largest_value(damper.damping_n_s_per_m));
       },

@@ -221,6 +221,22 @@ TEST(ScenePatches, AdaptiveIsAMemberOfLayersWithAStiffness) {
                  "s#/patches/0/layers/4/adaptive", "");
 }
 
+TEST(ScenePatches, TwoTicksIsAMemberOfDampers) {
+  for (std::size_t i = 0; i < kLayers.size(); ++i) {
+    Body body = all_kinds();
+    const bool damper = layer(body, i)["type"] == "damper";
+    for (const bool two_ticks : {false, true}) {
+      layer(body, i)["two_ticks"] = two_ticks;
+      const auto scene = parsed(body);
+      ASSERT_EQ(scene.has_value(), damper) << i;
+      if (damper)
+        EXPECT_EQ(written(*scene)["patches"][0]["layers"][i].contains("two_ticks"), two_ticks);
+      else
+        EXPECT_EQ(scene.error().where, fmt::format("s#/patches/0/layers/{}/two_ticks", i));
+    }
+  }
+}
+
 // Each number of each layer once with a slider, among those that the file has here.
 TEST(ScenePatches, OnlyNumbersThatCanChangeMayHaveASlider) {
   const std::set<std::string> fixed = {"1/period_m",      "2/period_m", "2/octaves", "2/seed",
@@ -494,7 +510,7 @@ TEST(ScenePatches, ANewerMinorVersionIsReadAndItsMembersAreKept) {
 
 // The schema's members are those of the layers in C++: no more, no fewer.
 TEST(ScenePatches, SchemaAndTypesHaveTheSameMembers) {
-  std::set<std::string> known = {"type", "file", "profile", "filter_m", "adaptive"};
+  std::set<std::string> known = {"type", "file", "profile", "filter_m", "adaptive", "two_ticks"};
   const auto scene = parsed(all_kinds());
   ASSERT_TRUE(scene);
   for (const ForceLayer& each : scene->patches[0].layers)

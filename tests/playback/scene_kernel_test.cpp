@@ -185,6 +185,20 @@ TEST(SceneKernel, DampersAndSurfacesNeedTheSpeed) {
   EXPECT_TRUE(prepared({patch("a", {spring(1), damper(1)})}).view().needs_speed);
 }
 
+TEST(SceneKernel, ADamperOfTwoTicksTakesTheirDifference) {
+  OnDevice on(unlimited(1e-5), {patch("a", {schema::DamperLayer{{2}, "", false, true}})});
+  EXPECT_FALSE(on.scene.view().needs_speed);
+  const auto force_at = [&](std::int32_t x) {
+    const std::int32_t counts[2] = {x, 0};
+    return on.kernel.tick(counts, true).force_n[0];
+  };
+  EXPECT_EQ(force_at(700), 0);  // there is no tick before it
+  EXPECT_EQ(force_at(700), 0);
+  EXPECT_FLOAT_EQ(force_at(701), -0.02F);  // one count of 10 um in 1 ms
+  EXPECT_EQ(force_at(701), 0);
+  EXPECT_FLOAT_EQ(force_at(698), 0.06F);
+}
+
 // The sum of the absolute forces of the harmonics.
 double largest_slope_n(const schema::GroovesLayer& layer) {
   const auto resolved = prepared({patch("a", {layer})})
@@ -405,7 +419,8 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
     for (int i = 0; i < 4; ++i) {
       const double k = draw(0, 3000), b = draw(0, 10);
       patches.push_back(
-          patch("p" + std::to_string(i), {spring(k, draw(-0.05, 0.05), draw(-0.05, 0.05)), damper(b)}));
+          patch("p" + std::to_string(i), {spring(k, draw(-0.05, 0.05), draw(-0.05, 0.05)), damper(b),
+                                          schema::DamperLayer{{b}, "", false, true}}));
       const auto profile = static_cast<schema::GrooveProfile>(i % 3);
       const schema::GroovesLayer wave =
           grooves(profile, draw(5e-4, 5e-3), draw(0, 1e-3), draw(0, 3), draw(-360, 360));
@@ -426,7 +441,7 @@ TEST(SceneKernel, SinglePrecisionIsTheReference) {
       patches.back().angle_deg = draw(-360, 360);
       patches.back().order = draw(-1, 1);
       patches.back().combine = i % 2 == 0 ? PatchCombine::add : PatchCombine::topmost;
-      scale += k * 0.2 + b * 1;  // at most 0.2 m and about 1 m/s
+      scale += k * 0.2 + 2 * b * 1;  // at most 0.2 m and about 1 m/s
     }
     const PreparedScene placed = prepared(patches, unlimited());
     std::vector<std::array<std::int32_t, 2>> ways;

@@ -99,7 +99,7 @@ TEST(AddedDamping, IsRefusedBeyondTheSampledDamperAndTheRounding) {
 }
 
 // So the kernel and its reference compute it as any damper.
-TEST(AdaptiveLayer, HasTheBlockOfASpringAndADamper) {
+TEST(AdaptiveLayer, HasTheBlockOfASpringAndADamperOfTwoTicks) {
   const schema::Device device = held_device();
   const auto adaptive =
       prepare_scene(held_scene({held_patch("a", 0, {held_spring(5000, true)})}), "s", device, kHeldRate);
@@ -107,7 +107,8 @@ TEST(AdaptiveLayer, HasTheBlockOfASpringAndADamper) {
   const double added = added_to(adaptive->patches[0]);
   EXPECT_EQ(added, added_damping({5000, 0, 0, {}}, device, kHeldRate, std::nullopt).value_or(-1));
   const auto explicit_damper = prepare_scene(
-      held_scene({held_patch("a", 0, {held_spring(5000, false), schema::DamperLayer{{added}, "", false}})}),
+      held_scene(
+          {held_patch("a", 0, {held_spring(5000, false), schema::DamperLayer{{added}, "", false, true}})}),
       "s", device, kHeldRate);
   ASSERT_TRUE(explicit_damper);
   EXPECT_EQ(adaptive->words, explicit_damper->words);

@@ -55,7 +55,7 @@ std::vector<std::string> fix_added_dampers(schema::Scene& scene, const std::vect
           [&](const schema::DamperLayer& damper) {
             if (!damper.added) return;
             scene.patches[i].layers.emplace_back(
-                schema::DamperLayer{{damper.damping_n_s_per_m.value}, "", false});
+                schema::DamperLayer{{damper.damping_n_s_per_m.value}, "", false, true});
             fixed.push_back(
                 fmt::format("{:.4g} N s/m in '{}'", damper.damping_n_s_per_m.value, patches[i].name));
           },

@@ -47,6 +47,7 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
              within(number[kSpringCentreX], -kFarthest_m, kFarthest_m) &&
              within(number[kSpringCentreY], -kFarthest_m, kFarthest_m);
     case SceneLayerKind::damper:
+    case SceneLayerKind::tick_damper:
       return within(number[kDamperDamping], 0, kMostDamping_n_s_per_m);
     case SceneLayerKind::height_map:
       return within(number[kHeightMapKappa], -kMostKappa_n, kMostKappa_n);
@@ -237,6 +238,7 @@ SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t 
       return check_piece(view, layer, room, words);
     case SceneLayerKind::spring:
     case SceneLayerKind::damper:
+    case SceneLayerKind::tick_damper:
       break;
   }
   return SceneFault::none;
@@ -269,8 +271,9 @@ SceneFault check_layers(SceneView& view) noexcept {
     if (numbers > view.number_count || bodies > kMostSceneBodies) return SceneFault::structure;
     const float* const number = view.numbers + layer.first_number;
     if (!sound(kind, number) || !state_is_zero(kind, number)) return SceneFault::value;
-    view.needs_speed = view.needs_speed || (kind != SceneLayerKind::spring && kind != SceneLayerKind::lasso &&
-                                            kind != SceneLayerKind::field);
+    view.needs_speed =
+        view.needs_speed || (kind != SceneLayerKind::spring && kind != SceneLayerKind::lasso &&
+                             kind != SceneLayerKind::field && kind != SceneLayerKind::tick_damper);
     uint32_t words = 0;
     if (const SceneFault fault = check_table(view, layer, view.table_words - tables, words);
         fault != SceneFault::none)

@@ -31,6 +31,7 @@ enum class SceneLayerKind : uint16_t {
   mover = 7,
   field = 8,
   force_map = 9,
+  tick_damper = 10,
   plane = 16,
   sphere = 17,
   cylinder = 18,
@@ -43,7 +44,7 @@ constexpr bool is_piece(SceneLayerKind kind) noexcept {
 }
 
 constexpr bool is_known(SceneLayerKind kind) noexcept {
-  return kind <= SceneLayerKind::force_map || is_piece(kind);
+  return kind <= SceneLayerKind::tick_damper || is_piece(kind);
 }
 
 /// The places of a layer's numbers, from its first one.
@@ -86,6 +87,7 @@ constexpr uint32_t changeable_numbers_of(SceneLayerKind kind) noexcept {
     case SceneLayerKind::spring:
       return 3;
     case SceneLayerKind::damper:
+    case SceneLayerKind::tick_damper:
     case SceneLayerKind::height_map:
     case SceneLayerKind::force_map:
       return 1;

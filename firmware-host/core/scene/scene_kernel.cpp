@@ -23,7 +23,7 @@ void SceneKernel::set(const SceneView& scene, const ForceSetup& setup, float* li
   for (Ramp& ramp : ramps_) ramp.left = 0;
   for (Move& move : moves_) move.left = 0;
   next_ramp_ = next_move_ = 0;
-  moving_ = false;
+  moving_ = has_last_counts_ = false;
   tick_ = last_tick_ = 1;
   setup_ = setup;
   for (float& step_m : step_m_) step_m = 0;
@@ -279,6 +279,11 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) noe
       case SceneLayerKind::damper:
         force = {-number[kDamperDamping] * speed.x, -number[kDamperDamping] * speed.y};
         break;
+      case SceneLayerKind::tick_damper: {
+        const PlaneVector of_tick = into_patch(patch, hand.tick_speed_mps);
+        force = {-number[kDamperDamping] * of_tick.x, -number[kDamperDamping] * of_tick.y};
+        break;
+      }
       case SceneLayerKind::grooves:
         force = groove_force(layer, hand, along);
         break;
@@ -336,15 +341,23 @@ PlaneVector SceneKernel::force(const Hand& hand) noexcept {
 
 SpaceVector SceneKernel::force_in_plane(const int32_t* counts) noexcept {
   Hand hand;
-  float speed_mps[2] = {};
+  float speed_mps[2] = {}, tick_speed_mps[2] = {};
   for (uint32_t i = 0; i < setup_.axis_count; ++i) {
     const auto along = static_cast<uint32_t>(setup_.axes[i].along);
     if (along > 1) continue;
     hand.counts[along] = counts[i];
-    if (!scene_.needs_speed) continue;
-    speed_mps[along] = speeds_[along].track(counts[i]) * (step_m_[along] * setup_.rate_hz);
+    const float mps_per_count = step_m_[along] * setup_.rate_hz;
+    if (has_last_counts_)
+      tick_speed_mps[along] =
+          static_cast<float>(static_cast<int32_t>(static_cast<uint32_t>(counts[i]) -
+                                                  static_cast<uint32_t>(last_counts_[along]))) *
+          mps_per_count;
+    last_counts_[along] = counts[i];
+    if (scene_.needs_speed) speed_mps[along] = speeds_[along].track(counts[i]) * mps_per_count;
   }
+  has_last_counts_ = true;
   hand.speed_mps = hand.along_mps = {speed_mps[0], speed_mps[1]};
+  hand.tick_speed_mps = {tick_speed_mps[0], tick_speed_mps[1]};
   const PlaneVector sum = force(hand);
   return {sum.x, sum.y, 0};
 }

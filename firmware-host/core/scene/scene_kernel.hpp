@@ -23,6 +23,7 @@ struct ForceOutput {
 /// force = limits(envelope x sum over patches (sum over layers)) (Minsky 1990), of the topmost patch at the
 /// hand's place and of every patch there that adds. In the axes of a patch, from its centre:
 ///   spring: -stiffness (place - centre);  damper: -damping speed;  surface: -kappa grad h;
+///   tick damper: -damping (place - place one tick ago) rate, 0 in the first tick;
 ///   field: sum over its atoms;  force map: gain times its forces;
 ///   mover: damping (its speed - speed);  body, lasso: the reaction to the force on them (body.hpp).
 /// A body is taken up where the hand enters its patch, at rest in it; while the hand is elsewhere, or another
@@ -71,6 +72,7 @@ class SceneKernel {
     int32_t counts[2] = {};
     PlaneVector place_m;
     PlaneVector speed_mps, along_mps;  // of the hand; relative to the patch
+    PlaneVector tick_speed_mps;        // of the hand: the difference of two ticks
   };
   PlaneVector force(const Hand& hand) noexcept;
   SpaceVector force_in_plane(const int32_t* counts) noexcept;
@@ -119,6 +121,8 @@ class SceneKernel {
   ForceSetup setup_;
   float step_m_[3] = {};            // of a count along x, y and z
   float tick_ = 1, last_tick_ = 1;  // whole numbers above 1 from the first tick on
+  int32_t last_counts_[2] = {};
+  bool has_last_counts_ = false;
   EdgeSpeed speeds_[3];
   GhostPoint ghost_;
   Envelope envelope_;

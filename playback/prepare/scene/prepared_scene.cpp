@@ -198,8 +198,9 @@ KindInBlock kind_of(const ForceLayer& layer) {
       [](const schema::SpringLayer& /*spring*/) -> KindInBlock {
         return {SceneLayerKind::spring, {"stiffness_n_per_m", "centre_x_m", "centre_y_m"}};
       },
-      [](const schema::DamperLayer& /*damper*/) -> KindInBlock {
-        return {SceneLayerKind::damper, {"damping_n_s_per_m"}};
+      [](const schema::DamperLayer& damper) -> KindInBlock {
+        return {damper.two_ticks ? SceneLayerKind::tick_damper : SceneLayerKind::damper,
+                {"damping_n_s_per_m"}};
       },
       [](const schema::GroovesLayer& /*grooves*/) -> KindInBlock {
         return {SceneLayerKind::grooves, {"depth_m", "kappa_n"}};

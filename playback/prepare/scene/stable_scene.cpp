@@ -252,7 +252,7 @@ Result<void> add_adaptive_damping(schema::Scene& scene, const std::string& where
         return refused(place, fine.error());
   }
   for (std::size_t i = 0; i < patches.size(); ++i)
-    if (added[i] > 0) patches[i].layers.emplace_back(schema::DamperLayer{{added[i]}, "", true});
+    if (added[i] > 0) patches[i].layers.emplace_back(schema::DamperLayer{{added[i]}, "", true, true});
   return {};
 }
 

@@ -290,7 +290,7 @@ double ExactScene::track(Speed& speed, std::int64_t count) {
   return speed.per_tick;
 }
 
-ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vector speed,
+ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vector speed, Vector tick_speed,
                                      Bodies* bodies) const {
   Vector sum;
   bool covered = false;
@@ -332,8 +332,9 @@ ExactScene::Vector ExactScene::force(Vector place, core::PlaneVector single, Vec
             sum.y -= k * (place.y - (patch.y_m + s * u + c * v));
           },
           [&](const schema::DamperLayer& damper) {
-            sum.x -= damper.damping_n_s_per_m.value * speed.x;
-            sum.y -= damper.damping_n_s_per_m.value * speed.y;
+            const Vector resisted = damper.two_ticks ? tick_speed : speed;
+            sum.x -= damper.damping_n_s_per_m.value * resisted.x;
+            sum.y -= damper.damping_n_s_per_m.value * resisted.y;
           },
           [&](const schema::GroovesLayer& grooves) {
             const Vector along =
@@ -418,7 +419,7 @@ ExactScene::Output ExactScene::tick(const std::vector<std::int32_t>& counts) {
     output.force_n = limited(output.unlimited_n);
     return output;
   }
-  Vector place_m, speed_mps;
+  Vector place_m, speed_mps, tick_speed_mps;
   core::PlaneVector single_m;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const schema::DeviceAxis& axis = device_.axes[i];
@@ -427,8 +428,12 @@ ExactScene::Output ExactScene::tick(const std::vector<std::int32_t>& counts) {
     (x ? place_m.x : place_m.y) = counts[i] * axis.encoder_step_m;
     (x ? single_m.x : single_m.y) = static_cast<float>(counts[i]) * static_cast<float>(axis.encoder_step_m);
     (x ? speed_mps.x : speed_mps.y) = track(speeds_[x ? 0 : 1], counts[i]) * axis.encoder_step_m * rate_hz_;
+    if (!last_counts_.empty())
+      (x ? tick_speed_mps.x : tick_speed_mps.y) =
+          (static_cast<double>(counts[i]) - last_counts_[i]) * axis.encoder_step_m * rate_hz_;
   }
-  const Vector sum = force(place_m, single_m, speed_mps, &bodies_);
+  last_counts_ = counts;
+  const Vector sum = force(place_m, single_m, speed_mps, tick_speed_mps, &bodies_);
   Output output;
   for (const schema::DeviceAxis& axis : device_.axes)
     output.unlimited_n.push_back(axis.name == "x" ? sum.x : axis.name == "y" ? sum.y : 0);

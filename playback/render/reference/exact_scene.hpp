@@ -36,7 +36,7 @@ class ExactScene {
   /// The force before the limits on a hand at this place, m, with this speed, m/s. Independent of the ticks:
   /// without bodies and lassos.
   Vector force_at(Vector place, Vector speed) const {
-    return force(place, {static_cast<float>(place.x), static_cast<float>(place.y)}, speed, nullptr);
+    return force(place, {static_cast<float>(place.x), static_cast<float>(place.y)}, speed, speed, nullptr);
   }
 
  private:
@@ -70,7 +70,7 @@ class ExactScene {
   Vector lasso_force(const schema::LassoLayer& layer, Body& body, Vector hand) const;
   void advance(Body& body, double mass_kg, double damping, Vector force_n, double static_n,
                double kinetic_n) const;
-  Vector force(Vector place, core::PlaneVector single, Vector speed, Bodies* bodies) const;
+  Vector force(Vector place, core::PlaneVector single, Vector speed, Vector tick_speed, Bodies* bodies) const;
   std::vector<double> limited(std::vector<double> force_n);
   struct Rms {
     double limit_n = 0, mean_square = 0, root = 0;
@@ -83,6 +83,7 @@ class ExactScene {
   double rate_hz_;
   std::int64_t tick_ = 0;
   std::array<Speed, 3> speeds_;
+  std::vector<std::int32_t> last_counts_;
   ExactGhost ghost_;
   Bodies bodies_;
   std::vector<Rms> axis_rms_;
