@@ -3,9 +3,11 @@
 // scene. Both are in one program because their common code takes minutes to compile.
 // A line gives a request or an error with a place; a valid request, written again, is still valid; replies to
 // it are lines that clients can parse. A valid scene has layers with numbers in their ranges, and one with
-// patches reads the same after it is written; an invalid one gives an error with a place.
+// patches or pieces reads the same after it is written; an invalid one gives an error with a place.
 #include <cmath>
 #include <cstdint>
+#include <fstream>
+#include <iterator>
 
 #include "data-schema/control/control.hpp"
 #include "data-schema/scene/scene.hpp"
@@ -56,12 +58,20 @@ std::size_t patch(const Patch& patch) {
   return patch.layers.size();
 }
 
-// What was read is written, and read again, with the same numbers.
+std::string written(const std::string& stem, const Scene& scene) {
+  demand(write_scene(stem, scene).has_value());
+  std::ifstream file(scene_path(stem), std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// What was read is written, and read again, with the same numbers; written once more, it is the same file.
 void written_again(const Scene& scene) {
   const std::string stem = (tacto::tests::fuzz_folder() / "again").string();
-  demand(write_scene(stem, scene).has_value());
+  const std::string first = written(stem, scene);
   const auto again = read_scene(stem);
-  demand(again && again->patches.size() == scene.patches.size());
+  demand(again && again->patches.size() == scene.patches.size() &&
+         again->pieces.size() == scene.pieces.size());
+  demand(written(stem + "2", *again) == first);
   for (std::size_t i = 0; i < scene.patches.size(); ++i)
     for (std::size_t j = 0; j < scene.patches[i].layers.size(); ++j) {
       const auto ours = numbers_of(scene.patches[i].layers[j]),
@@ -77,7 +87,7 @@ void scene(const std::string& text) {
     demand(read.error().where.starts_with("fuzz") && !read.error().what.empty());
     return;
   }
-  demand(!read->layers.empty() || !read->patches.empty());
+  demand(!read->layers.empty() || !read->patches.empty() || !read->pieces.empty());
   demand(read->layers.size() <= kMostLayers);
   for (const Layer& layer : read->layers) {
     const auto texture = layer.visit([](const TextureLayer& of) { return of; });
@@ -87,7 +97,7 @@ void scene(const std::string& text) {
   std::size_t layers = read->layers.size();
   for (const Patch& of : read->patches) layers += patch(of);
   demand(layers <= kMostLayers);
-  if (!read->patches.empty()) written_again(*read);
+  if (!read->patches.empty() || !read->pieces.empty()) written_again(*read);
 }
 
 }  // namespace
