@@ -6,7 +6,6 @@
 
 #include "analysis/trade/offline/offline_choices.hpp"
 #include "analysis/trade/offline/offline_half.hpp"
-#include "analysis/trade/realtime_choices.hpp"
 #include "analysis/trade/realtime_half.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/base/machine_words.hpp"
