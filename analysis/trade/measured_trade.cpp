@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "analysis/trade/offline/offline_choices.hpp"
 #include "analysis/trade/offline/offline_half.hpp"
 #include "analysis/trade/realtime_half.hpp"
 #include "data-schema/base/creation_time.hpp"

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <random>
 
-#include "analysis/trade/offline/offline_choices.hpp"
 #include "analysis/trade/offline/offline_half.hpp"
 #include "analysis/trade/offline/spectrogram_errors.hpp"
 #include "analysis/trade/offline/spectrogram_trade.hpp"

@@ -7,9 +7,24 @@
 
 #include "analysis/trade/rows/trade_row.hpp"
 #include "data-schema/base/error.hpp"
+#include "data-schema/results/trade_table.hpp"
 #include "data-schema/texture/texture.hpp"
+#include "spatial/texture/resample.hpp"
 
 namespace tacto::analysis {
+
+// The offline half of the table of measured choices: resampling, grid, spectrogram.
+
+/// Each method of resampling from time to space: the error of a sine of so many frames per period at its
+/// highest local frequency, the worst of fingers of constant and of varying speed; cost per sample of a grid
+/// with 5 samples per frame.
+std::vector<schema::MeasuredChoice> measure_resampling();
+
+/// Interpolation of a texture by cubic Hermite: the error of a sine of so many samples per period.
+schema::MeasuredChoice measure_grid();
+
+/// Spectrogram cells: largest |X - exact| re the largest exact |X|, against extended precision.
+std::vector<schema::MeasuredChoice> measure_spectrogram();
 
 /// The texture is filtered to the band of 20-450 Hz for a finger of 50 mm/s whose speed varies by a tenth,
 /// sampled along that motion at 10 kHz with exact positions, and resampled to space by each choice.
