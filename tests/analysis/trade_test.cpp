@@ -9,7 +9,6 @@
 
 #include "analysis/trade/offline/offline_half.hpp"
 #include "analysis/trade/offline/spectrogram_errors.hpp"
-#include "analysis/trade/offline/spectrogram_trade.hpp"
 #include "analysis/trade/rows/pareto.hpp"
 #include "analysis/trade/trade_page.hpp"
 #include "analysis/trade/worst_trade.hpp"
