@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "capture/cli/calibrate_parts.hpp"
-#include "capture/import/plausible_scale.hpp"
+#include "capture/import/plausibility.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/report/report.hpp"
 #include "data-schema/report/terminal.hpp"
