@@ -25,10 +25,6 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-// Marginal intervals of a psychometric function's parameters. Internal to this folder.
-
-// The probability of counts of answers, given a psychometric function. Internal to this folder.
-
 // The logarithm of likelihood times the priors of lapse and overdispersion, without constants.
 class PsychometricLikelihood {
  public:
@@ -75,6 +71,7 @@ struct PosteriorIntervals {
 
 // Beta(1, b): density b (1 - x)^(b - 1). Lapses: mean 5 %; overdispersion: as Schuett 2016.
 constexpr double kLapsePrior = 19, kEtaPrior = 10;
+constexpr double kMostEta = 0.7;
 constexpr double kLeastEta = 1e-3;  // below it the variance differs from the binomial one by n 1e-6
 
 double times_log(double count, double p) {

@@ -15,7 +15,7 @@
 namespace tacto::schema {
 namespace {
 
-// The member `transform` of a texture's sidecar as JSON.
+// The member `transform`.
 
 constexpr std::array<const char*, 4> kOperations = {"stretch", "gain", "mix", "filter"};
 constexpr std::array<const char*, 2> kLengthenings = {"periods", "best_fit"};
@@ -25,14 +25,6 @@ template <class Word, std::size_t kCount>
 Word word_from(const std::array<const char*, kCount>& words, const std::string& text) {
   const auto found = std::ranges::find(words, text);
   return static_cast<Word>(found == words.end() ? 0 : found - words.begin());
-}
-
-const char* operation_name(TransformOperation operation) {
-  return kOperations[static_cast<std::size_t>(operation)];
-}
-
-const char* lengthening_name(Lengthening lengthening) {
-  return kLengthenings[static_cast<std::size_t>(lengthening)];
 }
 
 Json step_body(const TransformStep& step) {
@@ -76,7 +68,7 @@ TextureTransform transform_from(const Json& body) {
   return transform;
 }
 
-// The member `certificate` of a texture's JSON. Internal to this folder.
+// The member `certificate`.
 
 constexpr std::array<const char*, 3> kVerdicts = {"spatial", "temporal", "undecided"};
 
@@ -100,10 +92,6 @@ PeakVerdict verdict_from(const std::string& name) {
   const auto found = std::ranges::find(kVerdicts, name);
   return found == kVerdicts.end() ? PeakVerdict::undecided
                                   : static_cast<PeakVerdict>(found - kVerdicts.begin());
-}
-
-std::string verdict_name(PeakVerdict verdict) {
-  return kVerdicts[static_cast<std::size_t>(verdict)];
 }
 
 Json peak_body(const CertifiedPeak& peak) {
@@ -302,6 +290,18 @@ PlaybackGain playback_gain_from(const Json& body) {
 }
 
 }  // namespace
+
+const char* operation_name(TransformOperation operation) {
+  return kOperations[static_cast<std::size_t>(operation)];
+}
+
+const char* lengthening_name(Lengthening lengthening) {
+  return kLengthenings[static_cast<std::size_t>(lengthening)];
+}
+
+std::string verdict_name(PeakVerdict verdict) {
+  return kVerdicts[static_cast<std::size_t>(verdict)];
+}
 
 Json playback_gain_body(const PlaybackGain& gain) {
   Json body = {{"gain_m_per_n", gain.gain_m_per_n}};
