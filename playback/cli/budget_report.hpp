@@ -2,10 +2,36 @@
 // The decision of a budget in the reports of play and render.
 #pragma once
 
+#include <optional>
+
 #include "data-schema/command/budget_options.hpp"
+#include "data-schema/report/report.hpp"
+#include "data-schema/texture/texture.hpp"
 #include "playback/choose/budget.hpp"
+#include "playback/model/gain_sign.hpp"
 
 namespace tacto::playback {
+
+// The gain of a texture, the effect of its sign, and who set it.
+
+/// How the help of --gain ends.
+inline constexpr const char* kDefaultGain = "; default: the gain in the texture's file, or 1mm/N";
+
+/// Adds `gain_m_per_n`; `gain_times_default` if it is another than the default; `inverts_texture` if it
+/// is below 0.
+inline void add_gain(cli::Report& report, double gain_m_per_n, double default_m_per_n) {
+  report.add("gain_m_per_n", gain_m_per_n);
+  if (gain_m_per_n != default_m_per_n && default_m_per_n != 0)
+    report.add("gain_times_default", gain_m_per_n / default_m_per_n);
+  tell_inversion(gain_m_per_n, [&](const char* key, bool value) { report.add(key, value); });
+}
+
+/// Adds `gain_set_by` and `gain_set_on` if the gain is stored with the texture.
+inline void add_kept_gain(cli::Report& report, const std::optional<schema::PlaybackGain>& kept) {
+  if (!kept) return;
+  report.add("gain_set_by", kept->who.empty() ? "unknown" : kept->who);
+  if (!kept->when.empty()) report.add("gain_set_on", kept->when);
+}
 
 /// The options --quality, --max-error and --max-tick.
 struct AskedBudget {
