@@ -12,6 +12,11 @@
 
 namespace tacto::playback {
 
+/// Adds `loop_period_m` and `loop_seam_m`; nothing if there is no loop (a period of 0).
+inline void add_loop(cli::Report& report, double period_m, double seam_m) {
+  if (period_m > 0) report.add("loop_period_m", period_m).add("loop_seam_m", seam_m);
+}
+
 // The gain of a texture, the effect of its sign, and who set it.
 
 /// How the help of --gain ends.
