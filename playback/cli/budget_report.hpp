@@ -9,8 +9,13 @@
 #include "data-schema/texture/texture.hpp"
 #include "playback/choose/budget.hpp"
 #include "playback/model/gain_sign.hpp"
+#include "playback/model/limit_tally.hpp"
 
 namespace tacto::playback {
+
+/// Adds `removed_by_limits_db` and in how many ticks each limit acted; or `removed_by_limits`: none, or
+/// unknown.
+void add_removed(cli::Report& report, const std::optional<LimitTally>& limits);
 
 /// Adds `loop_period_m` and `loop_seam_m`; nothing if there is no loop (a period of 0).
 inline void add_loop(cli::Report& report, double period_m, double seam_m) {

@@ -16,7 +16,6 @@
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
 #include "playback/cli/finger_path_option.hpp"
-#include "playback/cli/limits_report.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/player/session_name.hpp"
