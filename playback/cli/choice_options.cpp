@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "playback/cli/choice_options.hpp"
 
+#include "data-schema/base/playback_defaults.hpp"
+#include "data-schema/base/quantity.hpp"
+
 namespace tacto::playback {
 namespace {
 
@@ -47,6 +50,19 @@ void declare_limits(CLI::App& app, PlaybackChoices& c, const std::string& of) {
 }
 
 }  // namespace
+
+void declare_ends(CLI::App& app, std::optional<schema::TextureEnds>& ends, const std::string& of_what) {
+  app.add_option_function<std::string>(
+         "--ends",
+         [&ends](const std::string& word) {
+           ends = static_cast<schema::TextureEnds>(cli::choose("--ends", word, {"stop", "mirror", "loop"}));
+         },
+         of_what +
+             "Beyond the ends of a texture: nothing (stop), its mirror image, or the texture again (loop: if "
+             "the end does not meet the beginning, the last " +
+             schema::length_for_people(schema::kSeamM) + " fades into the first)")
+      ->type_name("stop|mirror|loop");
+}
 
 void declare_choices(CLI::App& app, PlaybackChoices& choices, const std::string& of_what) {
   declare_path(app, choices, of_what);

@@ -23,7 +23,6 @@
 #include "data-schema/report/terminal.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
-#include "playback/cli/ends_option.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/control/control_connection.hpp"
 #include "playback/host-loop/time_histogram.hpp"

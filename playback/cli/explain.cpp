@@ -20,7 +20,6 @@
 #include "playback/choose/budget_words.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
-#include "playback/cli/ends_option.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/player/program.hpp"

@@ -13,7 +13,7 @@
 #include "data-schema/report/progress.hpp"
 #include "playback/choose/choices.hpp"
 #include "playback/cli/budget_report.hpp"
-#include "playback/cli/ends_option.hpp"
+#include "playback/cli/choice_options.hpp"
 #include "playback/cli/finger_path_option.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
