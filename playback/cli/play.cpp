@@ -14,7 +14,6 @@
 #include "data-schema/report/warnings.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
-#include "playback/cli/finger_path_option.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/player/session_name.hpp"

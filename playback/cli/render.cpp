@@ -14,7 +14,6 @@
 #include "playback/choose/choices.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
-#include "playback/cli/finger_path_option.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/model/drive_files.hpp"
