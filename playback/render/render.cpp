@@ -18,6 +18,7 @@
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/recording/statistics.hpp"
 #include "firmware-host/core/kernel/profile.hpp"
+#include "playback/model/chain.hpp"
 #include "playback/model/finger_path.hpp"
 #include "playback/model/identified_band.hpp"
 #include "playback/model/limits.hpp"
@@ -31,7 +32,7 @@
 #include "playback/render/loop_seam.hpp"
 #include "playback/render/reference/exact_drive.hpp"
 #include "playback/render/reference/exact_target.hpp"
-#include "playback/render/render_job.hpp"
+#include "playback/render/reference/padded_spectrum.hpp"
 
 namespace tacto::playback {
 
@@ -40,6 +41,16 @@ using schema::fail;
 using schema::Result;
 
 namespace {
+
+// The input of one rendering, for both engines.
+
+struct RenderJob {
+  std::span<const PlacedTexture> textures;
+  const FingerPath& path;
+  const PaddedSpectrum& target;
+  Chain chain;
+  RenderOptions options;
+};
 
 // The part of render() that uses the kernel.
 
