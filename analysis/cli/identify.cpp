@@ -18,7 +18,6 @@
 #include "analysis/identify/report/bode_figure.hpp"
 #include "analysis/identify/report/identification.hpp"
 #include "analysis/identify/report/identify_results.hpp"
-#include "analysis/identify/report/interval_words.hpp"
 #include "analysis/identify/report/paper_words.hpp"
 #include "data-schema/base/error.hpp"
 #include "data-schema/command/output_options.hpp"
