@@ -17,7 +17,6 @@
 #include "analysis/trade/measured_trade.hpp"
 #include "analysis/trade/rows/pareto.hpp"
 #include "analysis/trade/scene/scene_trade_page.hpp"
-#include "analysis/trade/worst_trade.hpp"
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/files/files.hpp"
