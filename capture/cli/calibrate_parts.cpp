@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/cli/enter_key.hpp"
+#include "capture/cli/calibrate_parts.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
