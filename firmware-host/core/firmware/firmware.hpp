@@ -4,7 +4,6 @@
 
 #include "firmware-host/core/firmware/board.hpp"
 #include "firmware-host/core/firmware/profile_upload.hpp"
-#include "firmware-host/core/firmware/record.hpp"
 #include "firmware-host/core/firmware/ticker.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
 #include "firmware-host/core/wire/device_messages.hpp"
