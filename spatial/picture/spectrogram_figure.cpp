@@ -12,7 +12,7 @@
 #include "spatial/picture/draw/hatch.hpp"
 #include "spatial/picture/draw/shown_range.hpp"
 #include "spatial/picture/formant_ridges.hpp"
-#include "spatial/picture/level_bar.hpp"
+#include "spatial/picture/heatmap.hpp"
 #include "spatial/picture/trace.hpp"
 #include "spatial/picture/valid_band.hpp"
 #include "spatial/spectrogram/spectrogram_summary.hpp"
