@@ -22,7 +22,6 @@
 #include "spatial/job/spatial_report.hpp"
 #include "spatial/job/texture_names.hpp"
 #include "spatial/spectrogram/budget.hpp"
-#include "spatial/strokes/finger_contact.hpp"
 #include "spatial/strokes/touch_record.hpp"
 #include "spatial/texture/filtered_track.hpp"
 #include "spatial/texture/texture_warnings.hpp"
