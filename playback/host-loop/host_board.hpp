@@ -19,7 +19,7 @@
 #include "firmware-host/core/kernel/ring.hpp"
 #include "firmware-host/link/client.hpp"
 #include "firmware-host/link/hosted_board.hpp"
-#include "playback/host-loop/sample_run.hpp"
+#include "playback/host-loop/tray_samples.hpp"
 
 namespace tacto::playback {
 
