@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/cli/choice_options.hpp"
+#include "playback/cli/play_options.hpp"
 
 #include "data-schema/base/playback_defaults.hpp"
 #include "data-schema/base/quantity.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/cli/budget_report.hpp"
+#include "playback/cli/play_reports.hpp"
 
 #include "playback/choose/budget_words.hpp"
 

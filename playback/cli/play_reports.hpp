@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The decision of a budget in the reports of play and render.
+// What several verbs report of a playback: gain, loop, limits, the decision of a budget.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,6 @@ void add_removed(cli::Report& report, const std::optional<LimitTally>& limits);
 inline void add_loop(cli::Report& report, double period_m, double seam_m) {
   if (period_m > 0) report.add("loop_period_m", period_m).add("loop_seam_m", seam_m);
 }
-
-// The gain of a texture, the effect of its sign, and who set it.
 
 /// How the help of --gain ends.
 inline constexpr const char* kDefaultGain = "; default: the gain in the texture's file, or 1mm/N";

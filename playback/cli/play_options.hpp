@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The options --interpolation, --inverse, --reconstruction and so on, the same in play, explain and ctl.
+// The options that several verbs of playback have: --interpolation, --inverse and so on, --ends,
+// --finger-path.
 #pragma once
 
 #include <optional>
