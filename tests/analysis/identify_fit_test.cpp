@@ -8,6 +8,7 @@
 #include "analysis/identify/fit/least_squares.hpp"
 #include "analysis/identify/fit/plausibility.hpp"
 #include "analysis/identify/fit/response_fit.hpp"
+#include "analysis/identify/measure/hold.hpp"
 #include "analysis/identify/report/identification.hpp"
 #include "firmware-host/sim/bench/actuated_tray.hpp"
 #include "tests/analysis/identify_plants.hpp"

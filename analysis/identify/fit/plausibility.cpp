@@ -8,6 +8,7 @@
 
 #include "analysis/identify/fit/starting_values.hpp"
 #include "analysis/identify/measure/angles.hpp"
+#include "analysis/identify/measure/hold.hpp"
 #include "data-schema/base/decibels.hpp"
 
 namespace tacto::analysis {
@@ -16,13 +17,6 @@ namespace {
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
-
-constexpr int kImages = 3;
-
-std::complex<double> hold_of(double frequency_hz, double rate_hz) {
-  const double turn = std::numbers::pi * frequency_hz / rate_hz;
-  return std::polar(turn == 0 ? 1 : std::sin(turn) / turn, -turn);
-}
 
 constexpr double kClearly = 0.25;
 constexpr double kBadStart = 0.2;  // of the data's weight; the grid alone fits a good response better
@@ -78,6 +72,10 @@ Result<void> check_times(double times, const schema::Transducer& base, const std
               source, remedy);
 }
 
+}  // namespace
+
+namespace {
+
 std::string turns_remedy(Turned needed, Turned given) {
   if (!needed.conjugated) return invert_remedy(given.inverted);
   if (!needed.inverted) return given.conjugated ? "omit --phase-sign" : "give --phase-sign -1";
@@ -111,38 +109,7 @@ Turned turns_needed(const ResponseModel& model, const BodeData& data, double lef
   return needed;
 }
 
-// In degrees, as in the table.
-double largest_angle(const BodeData& data) {
-  double most = 0;
-  for (const auto& value : data.response) most = std::max(most, kDegrees * std::abs(std::arg(value)));
-  return most;
-}
-
-constexpr double kLoudest = 400;        // dB: no measured level is larger, and 10^20 times the unit is finite
-constexpr double kExplained = 0.99;     // R^2
-constexpr double kMostRadians = kTurn;  // three poles lag by three quarters of a turn
-
 }  // namespace
-
-std::complex<double> hold_factor(const Response& response, double frequency_hz, double rate_hz) {
-  std::complex<double> sum = 0;
-  for (int k = -kImages; k <= kImages; ++k) {
-    const double image_hz = frequency_hz + k * rate_hz;
-    sum += response(image_hz) * hold_of(image_hz, rate_hz);
-  }
-  return sum / response(frequency_hz);
-}
-
-BodeData without_hold(BodeData data, const Response& response) {
-  if (!(data.held_rate_hz > 0)) return data;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    const auto factor = hold_factor(response, data.frequency_hz[i], data.held_rate_hz);
-    data.response[i] /= factor;
-    if (data.has_noise()) data.noise[i] /= std::abs(factor);
-  }
-  data.held_rate_hz = 0;
-  return data;
-}
 
 Result<void> check_phases(const BodeData& measured, const ModelChoice& choice, const schema::Transducer& base,
                           Turned turned) {
@@ -168,6 +135,21 @@ Result<void> check_phases(const BodeData& measured, const ModelChoice& choice, c
                 turns_remedy(needed, turned));
   return {};
 }
+
+namespace {
+
+// In degrees, as in the table.
+double largest_angle(const BodeData& data) {
+  double most = 0;
+  for (const auto& value : data.response) most = std::max(most, kDegrees * std::abs(std::arg(value)));
+  return most;
+}
+
+constexpr double kLoudest = 400;        // dB: no measured level is larger, and 10^20 times the unit is finite
+constexpr double kExplained = 0.99;     // R^2
+constexpr double kMostRadians = kTurn;  // three poles lag by three quarters of a turn
+
+}  // namespace
 
 Result<void> check_units(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base) {
   if (choice.finger || !data.table_in_degrees || largest_angle(data) > kMostRadians) return {};

@@ -12,12 +12,12 @@
 #include <span>
 
 #include "analysis/identify/fit/model_choice.hpp"
-#include "analysis/identify/fit/plausibility.hpp"
 #include "analysis/identify/fit/response_fitter.hpp"
 #include "analysis/identify/fit/shared_errors.hpp"
 #include "analysis/identify/fit/starting_values.hpp"
 #include "analysis/identify/fit/three_poles.hpp"
 #include "analysis/identify/measure/angles.hpp"
+#include "analysis/identify/measure/hold.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/base/statistics.hpp"
 
