@@ -295,11 +295,6 @@ NoiseEvenness evenness_of(std::span<const std::complex<double>> residuals,
   return found;
 }
 
-std::string uneven_residuals_words(const NoiseEvenness& evenness) {
-  return fmt::format("the residuals are {:.2g} times as large from {:.4g} to {:.4g} Hz as elsewhere",
-                     evenness.times, evenness.low_hz, evenness.high_hz);
-}
-
 std::string evenness_words(const NoiseEvenness& evenness) {
   return fmt::format(
       "the noise is {:.2g} times as large from {:.4g} to {:.4g} Hz as elsewhere; intervals use the local "

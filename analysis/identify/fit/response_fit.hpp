@@ -45,10 +45,7 @@ struct NoiseEvenness {
 NoiseEvenness evenness_of(std::span<const std::complex<double>> residuals,
                           std::span<const double> frequency_hz);
 
-/// "the residuals are 3.2 times as large from 290 to 650 Hz as elsewhere".
-std::string uneven_residuals_words(const NoiseEvenness& evenness);
-
-/// "... the residuals are 3.2 times as large from 290 to 650 Hz as elsewhere ...", and what to do.
+/// "the noise is 3.2 times as large from 290 to 650 Hz as elsewhere ...", and what to do.
 std::string evenness_words(const NoiseEvenness& evenness);
 
 struct ResponseFit {
