@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "analysis/design/design.hpp"
 #include "analysis/design/simulated_taps.hpp"
 #include "data-schema/device/device.hpp"
 #include "data-schema/device/hand.hpp"
@@ -17,22 +16,6 @@
 #include "playback/stability/sampled_loop.hpp"
 
 namespace tacto::analysis {
-
-// Whether a piece in space is stable on a force device, with the pieces that may act at the same place.
-
-struct JudgedPiece {
-  schema::Piece total;                ///< its wall, or the sum of those that act along its direction
-  std::vector<std::string> with;      ///< the other pieces of that sum
-  std::vector<std::string> unjudged;  ///< pieces that may act with it along an angle that is not computed
-  double growth = 0;                  ///< playback::wall_growth() of `total`
-  Stability verdict = Stability::stable;
-};
-
-/// `contact: add`: planes of the same direction add up, from the highest one down to the depth at which they
-/// grow the most; with pieces that may overlap in another way a stable sum is not known. `ghost`: stiffnesses
-/// do not add, because each wall holds its part of the way to the ghost; with the dampings of all pieces that
-/// may hold the ghost together, not perpendicular, a wall that would grow is not known.
-JudgedPiece judged_piece(const schema::Scene& scene, std::size_t index, const DesignRequest& request);
 
 // One axis of a device with a virtual spring and damper, and the five limits by which it can be judged.
 
@@ -183,5 +166,21 @@ schema::ResultPicture z_width(const Design& design);
 /// The worst simulated tap: the place over time, and the layers as its title. Precondition: one was
 /// simulated.
 schema::ResultPicture worst_tap(const Design& design);
+
+// Whether a piece in space is stable on a force device, with the pieces that may act at the same place.
+
+struct JudgedPiece {
+  schema::Piece total;                ///< its wall, or the sum of those that act along its direction
+  std::vector<std::string> with;      ///< the other pieces of that sum
+  std::vector<std::string> unjudged;  ///< pieces that may act with it along an angle that is not computed
+  double growth = 0;                  ///< playback::wall_growth() of `total`
+  Stability verdict = Stability::stable;
+};
+
+/// `contact: add`: planes of the same direction add up, from the highest one down to the depth at which they
+/// grow the most; with pieces that may overlap in another way a stable sum is not known. `ghost`: stiffnesses
+/// do not add, because each wall holds its part of the way to the ghost; with the dampings of all pieces that
+/// may hold the ghost together, not perpendicular, a wall that would grow is not known.
+JudgedPiece judged_piece(const schema::Scene& scene, std::size_t index, const DesignRequest& request);
 
 }  // namespace tacto::analysis

@@ -13,9 +13,7 @@
 
 namespace tacto::analysis {
 
-// Cost of the tick kernel's choices on this machine, and their errors: the real-time stages of a table of
-// measured choices.
-
+/// Cost and error of the tick kernel's choices on this machine, for the table of measured choices:
 /// - "reading": nearest, linear, hermite, sinc, per tick: a whole tick under a moving finger (place, two
 ///   levels, gain, envelope, limits) without filter; errors for 2.2 to 64 samples per period of a sine: RMS
 ///   over its phases at the worst place between two samples, re the RMS of the sine; in single precision, as

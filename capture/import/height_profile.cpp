@@ -38,6 +38,33 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
+// The unit of the last digit with which numbers were printed, 10^-k: the largest of which all are multiples.
+class PrintedDigit {
+ public:
+  void add(double number);
+  double value() const;
+
+ private:
+  int decimals_ = 0;
+};
+
+struct NearestGrid {
+  double origin = 0, pitch = 0, deviation = 0;
+};
+
+// Instruments take the line as mean or as least squares, and the limits of the evaluation from cursors that
+// are between points.
+constexpr double kRoughnessTolerance = 0.01;
+
+// The largest deviation of a position from the even grid, in pitches. Heights are assumed to be at the
+// positions of the grid. A profile with a larger deviation is not even, unless its positions are those of
+// nearest_grid(), rounded to their last printed digit.
+constexpr double kMostUnevenness = 0.25;
+
+// A pitch that is fitted to positions which are printed more coarsely is known to 1 % if the profile is at
+// least so many printed digits long.
+constexpr double kFewestPrintedDigits = 100;
+
 // The words of a line. A comma divides them, unless the line is divided otherwise: then it is a decimal mark.
 std::vector<std::string_view> words_of(std::string_view line) {
   std::string_view dividers = ",;\t:= \"";
@@ -200,6 +227,32 @@ void turn_round(HeightProfile& profile, std::vector<double>& position_m) {
   profile.direction = -1;
 }
 
+// The even grid x = origin + i pitch whose largest deviation from the positions is the smallest (minimax).
+// Positions of an even grid that were rounded to a digit deviate from it by half of that digit at most, and
+// no other positions do. `x` has at least two.
+NearestGrid nearest_grid(std::span<const double> x) {
+  double low = x[1] - x[0], high = low;
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    low = std::min(low, x[i] - x[i - 1]);
+    high = std::max(high, x[i] - x[i - 1]);
+  }
+  NearestGrid grid;
+  for (;;) {
+    grid.pitch = low + (high - low) / 2;
+    std::size_t lowest = 0, highest = 0;
+    double least = x[0], most = x[0];
+    for (std::size_t i = 1; i < x.size(); ++i) {
+      const double above = x[i] - static_cast<double>(i) * grid.pitch;
+      if (above < least) least = above, lowest = i;
+      if (above > most) most = above, highest = i;
+    }
+    grid.origin = (least + most) / 2;
+    grid.deviation = (most - least) / 2;
+    if (!(low < grid.pitch && grid.pitch < high) || lowest == highest) return grid;
+    (highest > lowest ? low : high) = grid.pitch;
+  }
+}
+
 // Whether the positions are those of an even grid, rounded to `digit_m`; then the grid is fitted to them.
 // Positions that are even from the first to the last need no fit.
 bool is_rounded_grid(HeightProfile& profile, const std::vector<double>& x, double digit_m) {
@@ -255,6 +308,46 @@ Result<HeightProfile> profile_of(const ImportRequest& request, const Columns& co
   const double digit_m = table.printed.value() * std::abs(columns.position->scale);
   const auto found = find_grid(profile, table, digit_m, request.file);
   return found ? Result<HeightProfile>(std::move(profile)) : schema::forward_error(found);
+}
+
+// The lines before the header of a table, in UTF-8, without blanks around them and without empty ones.
+// Errors: not_found.
+Result<std::vector<std::string>> preamble_of(const Source& source) {
+  std::vector<std::string> lines;
+  if (!source.csv || source.csv->lines_before == 0) return lines;
+  auto input = InputFile::open(source.file);
+  TACTO_TRY(input);
+  std::string head(source.csv->data_offset, '\0');
+  const auto got = input->read(head);
+  TACTO_TRY(got);
+  head.resize(*got);
+  std::string text = to_utf8(head);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  const std::size_t table_line = source.csv->header ? source.csv->header_line : source.csv->data_line;
+  for (std::size_t number = 1; number < table_line && !text.empty(); ++number) {
+    const std::size_t size = std::min(text.find(source.csv->line_end), text.size());
+    std::string line(schema::without_blanks(std::string_view(text).substr(0, size)));
+    std::erase_if(line, [](unsigned char c) { return c < 0x20 && c != '\t'; });
+    if (!line.empty()) lines.push_back(std::move(line));
+    text.erase(0, size + 1);
+  }
+  return lines;
+}
+
+// Values without a unit of length are not compared.
+std::vector<StatedRoughness> compare_roughness(std::span<const std::string> preamble,
+                                               std::span<const double> height_m) {
+  std::vector<StatedRoughness> all;
+  for (const std::string& line : preamble) {
+    const auto stated = stated_in(line);
+    if (!stated || height_m.size() < 2) continue;
+    const Roughness computed = roughness_of(height_m);
+    const double computed_m = stated->name == "Ra" ? computed.ra_m : computed.rq_m;
+    const double most_m = stated->half_digit_m + kRoughnessTolerance * stated->value_m;
+    all.push_back(
+        {stated->name, stated->value_m, computed_m, std::abs(computed_m - stated->value_m) <= most_m});
+  }
+  return all;
 }
 
 Result<HeightProfile> read_profile_table(const ImportRequest& request,
@@ -531,28 +624,6 @@ Result<HeightProfile> read_profile_x3p(const ImportRequest& request) {
 
 }  // namespace
 
-Result<std::vector<std::string>> preamble_of(const Source& source) {
-  std::vector<std::string> lines;
-  if (!source.csv || source.csv->lines_before == 0) return lines;
-  auto input = InputFile::open(source.file);
-  TACTO_TRY(input);
-  std::string head(source.csv->data_offset, '\0');
-  const auto got = input->read(head);
-  TACTO_TRY(got);
-  head.resize(*got);
-  std::string text = to_utf8(head);
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  const std::size_t table_line = source.csv->header ? source.csv->header_line : source.csv->data_line;
-  for (std::size_t number = 1; number < table_line && !text.empty(); ++number) {
-    const std::size_t size = std::min(text.find(source.csv->line_end), text.size());
-    std::string line(schema::without_blanks(std::string_view(text).substr(0, size)));
-    std::erase_if(line, [](unsigned char c) { return c < 0x20 && c != '\t'; });
-    if (!line.empty()) lines.push_back(std::move(line));
-    text.erase(0, size + 1);
-  }
-  return lines;
-}
-
 void PrintedDigit::add(double number) {
   constexpr int kMost = 15;  // digits of a double
   for (; decimals_ < kMost; ++decimals_) {
@@ -570,44 +641,6 @@ double PrintedDigit::value() const {
 // The width of the strip of a slope that holds all positions is convex in the slope, and its derivative is
 // the index of the lowest position in the strip minus that of the highest: bisection finds the smallest
 // width.
-NearestGrid nearest_grid(std::span<const double> x) {
-  double low = x[1] - x[0], high = low;
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    low = std::min(low, x[i] - x[i - 1]);
-    high = std::max(high, x[i] - x[i - 1]);
-  }
-  NearestGrid grid;
-  for (;;) {
-    grid.pitch = low + (high - low) / 2;
-    std::size_t lowest = 0, highest = 0;
-    double least = x[0], most = x[0];
-    for (std::size_t i = 1; i < x.size(); ++i) {
-      const double above = x[i] - static_cast<double>(i) * grid.pitch;
-      if (above < least) least = above, lowest = i;
-      if (above > most) most = above, highest = i;
-    }
-    grid.origin = (least + most) / 2;
-    grid.deviation = (most - least) / 2;
-    if (!(low < grid.pitch && grid.pitch < high) || lowest == highest) return grid;
-    (highest > lowest ? low : high) = grid.pitch;
-  }
-}
-
-std::vector<StatedRoughness> compare_roughness(std::span<const std::string> preamble,
-                                               std::span<const double> height_m) {
-  std::vector<StatedRoughness> all;
-  for (const std::string& line : preamble) {
-    const auto stated = stated_in(line);
-    if (!stated || height_m.size() < 2) continue;
-    const Roughness computed = roughness_of(height_m);
-    const double computed_m = stated->name == "Ra" ? computed.ra_m : computed.rq_m;
-    const double most_m = stated->half_digit_m + kRoughnessTolerance * stated->value_m;
-    all.push_back(
-        {stated->name, stated->value_m, computed_m, std::abs(computed_m - stated->value_m) <= most_m});
-  }
-  return all;
-}
-
 bool is_x3p(const std::string& file) {
   return file.ends_with(".x3p") || file.ends_with(".X3P");
 }

@@ -14,23 +14,16 @@
 
 namespace tacto::analysis {
 
-// Cost and error of each choice of a spectrogram.
-
-// Pairs of spectrogram choices that change each other's error.
-
-/// "window x hop": a wider window smooths the power along the texture, so that a larger hop is sufficient.
-/// "window x padding": a line between two bins loses the same fraction of its height with any window, but
-/// padding a narrow window costs less. Error: the root of the sum of squares of the window's effect on the
-/// energy by octaves, and of the hop's effect on the power between rows or the padding's on the height of the
-/// peaks (re 16 times the padding); the note has both. Errors: those of spatial_spectrogram.
+/// Pairs of spectrogram choices that change each other's error. "window x hop": a wider window smooths the
+/// power along the texture, so that a larger hop is sufficient. "window x padding": a line between two bins
+/// loses the same fraction of its height with any window, but padding a narrow window costs less. Error: the
+/// root of the sum of squares of the window's effect on the energy by octaves, and of the hop's effect on the
+/// power between rows or the padding's on the height of the peaks (re 16 times the padding); the note has
+/// both. Errors: those of spatial_spectrogram.
 schema::Result<std::vector<TradeRow>> measure_spectrogram_pairs(const schema::Texture& texture,
                                                                 const OctaveEnergy& energy);
 
-/// Varies resolution, hop, padding and window, one at a time, from the standard ones; references: see
-/// measure_offline. Cost in ns per sample of the texture. Errors: those of spatial_spectrogram.
-schema::Result<std::vector<TradeRow>> measure_spectrogram_trade(const schema::Texture& texture);
-
-// The offline half of the table of measured choices: resampling, grid, spectrogram.
+// For the table of measured choices.
 
 /// Each method of resampling from time to space: the error of a sine of so many frames per period at its
 /// highest local frequency, the worst of fingers of constant and of varying speed; cost per sample of a grid

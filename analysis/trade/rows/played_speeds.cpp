@@ -187,8 +187,9 @@ void compare_with(const PaddedSpectrum& target, const std::vector<double>& playe
 // With less of the texture in the band, the displacement is mainly leakage from outside of the band.
 constexpr double kLeastTargetShare = 0.05;
 
-}  // namespace
-
+// Plays 0.8 s of a looped texture through the modelled transducer (with its hysteresis) and compares with
+// the exact reference, without 0.15 s at both ends. The target displacement peaks at a fiftieth of the
+// transducer's limit, so that no limit is reached. Errors: those of prepare().
 schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const schema::Transducer& transducer,
                                         const PlayedCase& played) {
   const playback::PlacedTexture placed{&texture, 0, 1};
@@ -220,6 +221,8 @@ schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const sc
   compare_with(target, output, loop, options, outcome);
   return outcome;
 }
+
+}  // namespace
 
 schema::Result<PlayedSpeeds> PlayedSpeeds::of(const schema::Texture& texture,
                                               const schema::Transducer& transducer, PlayedCase played,

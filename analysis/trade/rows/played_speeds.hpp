@@ -47,12 +47,6 @@ struct PlayedOutcome {
 /// An encoder so fine that its count is practically the finger's exact position.
 inline constexpr double kTrueEncoderM = 1e-9;
 
-/// Plays 0.8 s of a looped texture through the modelled transducer (with its hysteresis) and compares with
-/// the exact reference, without 0.15 s at both ends. The target displacement peaks at a fiftieth of the
-/// transducer's limit, so that no limit is reached. Errors: those of prepare().
-schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const schema::Transducer& transducer,
-                                        const PlayedCase& played);
-
 /// A slow, a usual and a fast finger: with the speed, a delay becomes a longer distance; with a slow finger,
 /// edges of the count are rarer.
 inline constexpr std::array<double, 3> kTradeSpeeds_mps = {0.025, 0.1, 0.2};
