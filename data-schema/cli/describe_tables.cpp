@@ -4,6 +4,7 @@
 
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/corpus/corpus_plan.hpp"
+#include "data-schema/height/height_map.hpp"
 #include "data-schema/results/results.hpp"
 #include "data-schema/results/trade_table.hpp"
 #include "data-schema/session/session_netcdf.hpp"
@@ -112,6 +113,25 @@ Result<cli::Report> describe_corpus(const std::string& path) {
   for (const CorpusStep& step : plan->steps)
     rows.push_back(cli::Report().add("step", step.step).add("options", step.options));
   return report.add("steps", std::move(rows));
+}
+
+Result<cli::Report> describe_height_map(const std::string& path) {
+  const auto map = read_height_map(path);
+  TACTO_TRY(map);
+  if (const auto note = unknown_note(path, map->newer_version, {}); !note.empty()) cli::warn(note);
+  cli::Report report = report_of(FileKind::height_map, path, "");
+  const HeightFigures figures = figures_of(*map);
+  report.add("columns", map->columns).add("rows", map->rows).add("pitch_m", map->pitch_m);
+  report.add("width_m", static_cast<double>(map->columns - 1) * map->pitch_m)
+      .add("length_m", static_cast<double>(map->rows - 1) * map->pitch_m);
+  report.add("lowest_m", figures.lowest_m).add("highest_m", figures.highest_m);
+  report.add("rms_slope", figures.rms_slope);
+  for (const auto& [key, text] : {std::pair{"surface", &map->surface},
+                                  {"source", &map->source},
+                                  {"notes", &map->notes},
+                                  {"created", &map->created}})
+    add_text(report, key, *text);
+  return report;
 }
 
 }  // namespace tacto::schema
