@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/cli/corpus_parts.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/corpus/corpus_init.hpp"
 #include "analysis/corpus/corpus_pack.hpp"
@@ -176,6 +175,54 @@ cli::Action declare_status(CLI::App& app) {
   return [study, verify, verb] { return run_status(*study, *verify, verb->count("--json") > 0); };
 }
 
+cli::Action declare_pack(CLI::App& app) {
+  const auto options = std::make_shared<CorpusPackOptions>();
+  schema::Citation& citation = options->citation;
+  app.add_option("STUDY", options->study, "Folder of the plan")->required();
+  app.add_option("-o,--output", options->output, "Folder to write")->required();
+  app.add_option("--title", citation.title,
+                 "Title of the dataset; as the next four needed in order to cite it");
+  app.add_option("--creator", citation.creators,
+                 "A creator, if you like with ORCID: 'Doe, Jane <0000-0002-1825-0097>'; repeat it for more")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--publisher", citation.publisher, "Who publishes it: an archive, a university");
+  app.add_option("--year", citation.year, "Year of publication");
+  app.add_option("--licence,--license", citation.licence,
+                 "CC0-1.0, CC-BY-4.0, CC-BY-SA-4.0, CC-BY-NC-4.0, ODbL-1.0, or the address of another one");
+  app.add_flag("--with-subjects", options->with_subjects,
+               "Keep the codes of subjects. Default: they are removed from sidecars, notes, names and "
+               "tables; only codes "
+               "that are the 'subject' of a recording are known");
+  cli::declare_force(app, options->existing);
+  return [options] { return run_pack(*options); };
+}
+
+cli::Action declare_workflow(CLI::App& app) {
+  const auto options = std::make_shared<WorkflowOptions>();
+  CorpusWorkflowOptions& workflow = options->workflow;
+  app.add_option("STUDY", workflow.study, "Folder of the plan")->required();
+  cli::add_choice<WorkflowEngine>(
+      app, "--engine", workflow.engine,
+      {{"slurm", WorkflowEngine::slurm}, {"snakemake", WorkflowEngine::snakemake}},
+      "An array of Slurm, or rules of Snakemake; each task runs 'corpus run --shard I/N'")
+      ->required();
+  app.add_option("-o,--output", workflow.output, "The file to write")->required();
+  app.add_flag("--missing", workflow.missing,
+               "Only shards in which a unit is missing or damaged: to resume after tasks were killed");
+  app.add_option("--shards", workflow.shards,
+                 "Number of shards; default: as many as have a minute of work each (estimated)")
+      ->check(CLI::Range(std::size_t{1}, kMostShards));
+  app.add_option("--account", workflow.account, "For Slurm, as its option")->type_name("NAME");
+  app.add_option("--partition", workflow.partition, "For Slurm, as its option")->type_name("NAME");
+  app.add_option("--time", workflow.time, "Time limit of a shard, as Slurm writes it: 30 (minutes), 2:00:00")
+      ->type_name("LIMIT");
+  app.add_option("--mem", workflow.memory, "Memory of a shard, as Slurm writes it: 500M, 4G")
+      ->type_name("SIZE");
+  cli::declare_force(app, options->existing);
+  return [options] { return run_workflow(*options); };
+}
+
 constexpr cli::VerbPart kParts[] = {
     {"init", "Write the plan: recordings with their checksums, steps and options", declare_init},
     {"run", "Compute what is missing; after a recording that fails, the run goes on and notes it",
@@ -241,53 +288,5 @@ const cli::Verb kCorpusVerb{
     "  tactograph corpus pack study -o published --title 'Oak and linen' --creator 'Doe, Jane' --publisher "
     "Zenodo --year 2026 --licence CC-BY-4.0",
     declare_corpus};
-
-cli::Action declare_pack(CLI::App& app) {
-  const auto options = std::make_shared<CorpusPackOptions>();
-  schema::Citation& citation = options->citation;
-  app.add_option("STUDY", options->study, "Folder of the plan")->required();
-  app.add_option("-o,--output", options->output, "Folder to write")->required();
-  app.add_option("--title", citation.title,
-                 "Title of the dataset; as the next four needed in order to cite it");
-  app.add_option("--creator", citation.creators,
-                 "A creator, if you like with ORCID: 'Doe, Jane <0000-0002-1825-0097>'; repeat it for more")
-      ->expected(1)
-      ->take_all();
-  app.add_option("--publisher", citation.publisher, "Who publishes it: an archive, a university");
-  app.add_option("--year", citation.year, "Year of publication");
-  app.add_option("--licence,--license", citation.licence,
-                 "CC0-1.0, CC-BY-4.0, CC-BY-SA-4.0, CC-BY-NC-4.0, ODbL-1.0, or the address of another one");
-  app.add_flag("--with-subjects", options->with_subjects,
-               "Keep the codes of subjects. Default: they are removed from sidecars, notes, names and "
-               "tables; only codes "
-               "that are the 'subject' of a recording are known");
-  cli::declare_force(app, options->existing);
-  return [options] { return run_pack(*options); };
-}
-
-cli::Action declare_workflow(CLI::App& app) {
-  const auto options = std::make_shared<WorkflowOptions>();
-  CorpusWorkflowOptions& workflow = options->workflow;
-  app.add_option("STUDY", workflow.study, "Folder of the plan")->required();
-  cli::add_choice<WorkflowEngine>(
-      app, "--engine", workflow.engine,
-      {{"slurm", WorkflowEngine::slurm}, {"snakemake", WorkflowEngine::snakemake}},
-      "An array of Slurm, or rules of Snakemake; each task runs 'corpus run --shard I/N'")
-      ->required();
-  app.add_option("-o,--output", workflow.output, "The file to write")->required();
-  app.add_flag("--missing", workflow.missing,
-               "Only shards in which a unit is missing or damaged: to resume after tasks were killed");
-  app.add_option("--shards", workflow.shards,
-                 "Number of shards; default: as many as have a minute of work each (estimated)")
-      ->check(CLI::Range(std::size_t{1}, kMostShards));
-  app.add_option("--account", workflow.account, "For Slurm, as its option")->type_name("NAME");
-  app.add_option("--partition", workflow.partition, "For Slurm, as its option")->type_name("NAME");
-  app.add_option("--time", workflow.time, "Time limit of a shard, as Slurm writes it: 30 (minutes), 2:00:00")
-      ->type_name("LIMIT");
-  app.add_option("--mem", workflow.memory, "Memory of a shard, as Slurm writes it: 500M, 4G")
-      ->type_name("SIZE");
-  cli::declare_force(app, options->existing);
-  return [options] { return run_workflow(*options); };
-}
 
 }  // namespace tacto::analysis

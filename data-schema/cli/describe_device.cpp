@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Force devices, and the hands on them.
+// Force devices and the hands on them, wirings of cards, calibrations, transducers.
 #include <fmt/format.h>
 
 #include <cmath>

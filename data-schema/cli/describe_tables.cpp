@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables of formants and of descriptions.
+// Tables and results that verbs wrote, height maps, and the plan of a corpus.
 #include <vector>
 
 #include "data-schema/cli/describe.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// NAME.formants.json, read and written.
+// NAME.formants.json, read and written, and their table as CSV.
 #include <fmt/format.h>
 
 #include <filesystem>
