@@ -31,7 +31,7 @@
 #include "data-schema/report/report_text.hpp"
 #include "data-schema/report/terminal.hpp"
 #include "data-schema/report/warnings.hpp"
-#include "firmware-host/device_to_record.hpp"
+#include "firmware-host/open_device.hpp"
 #include "firmware-host/sim/device/sim_parameters.hpp"
 
 namespace tacto::capture {
