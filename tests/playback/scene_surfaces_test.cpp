@@ -16,7 +16,6 @@
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/relief_levels.hpp"
 #include "playback/render/reference/exact_noise.hpp"
-#include "spatial/dsp/fourier/cosine_transform.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::playback {

@@ -12,7 +12,7 @@
 #include "data-schema/base/raised_cosine.hpp"
 #include "firmware-host/core/scene/relief.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
-#include "spatial/dsp/fourier/cosine_transform.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::playback {
 namespace {
