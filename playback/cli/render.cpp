@@ -19,7 +19,6 @@
 #include "playback/model/drive_files.hpp"
 #include "playback/player/placed_textures.hpp"
 #include "playback/player/silent_play.hpp"
-#include "playback/render/kept_error.hpp"
 #include "playback/render/render.hpp"
 
 namespace tacto::playback {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -28,19 +29,44 @@
 #include "playback/prepare/prepare.hpp"
 #include "playback/prepare/texture_check.hpp"
 #include "playback/prepare/texture_layout.hpp"
-#include "playback/render/kept_error.hpp"
 #include "playback/render/loop_seam.hpp"
 #include "playback/render/reference/exact_drive.hpp"
 #include "playback/render/reference/exact_target.hpp"
 #include "playback/render/reference/padded_spectrum.hpp"
 
 namespace tacto::playback {
+namespace {
 
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-namespace {
+constexpr double kLeftOutAtEnds_s = 1;
+
+double rms_between_ends(const std::vector<double>& values, std::size_t left_out) {
+  return schema::statistics_of(std::span(values).subspan(left_out, values.size() - 2 * left_out)).rms();
+}
+
+std::vector<double> without(std::vector<double> values, const std::vector<double>& less) {
+  std::ranges::transform(values, less, values.begin(), std::minus<>());
+  return values;
+}
+
+std::vector<double> in_band(const std::vector<double>& values, const PaddedSpectrum& target,
+                            const spatial::Band& band) {
+  auto spectrum = spectrum_of(values, target.rate_hz, target.period);
+  keep_band(spectrum, band);
+  return signal_of(spectrum);
+}
+
+// The target is filtered to the band with skirts, and so is the reference's displacement; the kernel's is
+// not.
+std::vector<double> error_of(const Rendering& rendering, const PaddedSpectrum& target,
+                             const spatial::Band& band) {
+  const auto &modelled_m = rendering.modelled_m.values, &target_m = rendering.target_m.values;
+  if (rendering.engine == Engine::kernel) return without(in_band(modelled_m, target, band), target_m);
+  return in_band(without(modelled_m, target_m), target, band);
+}
 
 // The input of one rendering, for both engines.
 
@@ -513,6 +539,17 @@ void warn_of_model(Rendering& rendering, const schema::Transducer& transducer, c
 }
 
 }  // namespace
+
+double left_out_at_ends_s(const Rendering& rendering) {
+  return std::min(std::max(kLeftOutAtEnds_s, rendering.onset_s), rendering.target_m.duration_s() / 4);
+}
+
+double error_between_ends(const Rendering& rendering, const PaddedSpectrum& target,
+                          const spatial::Band& band) {
+  const auto left_out = static_cast<std::size_t>(left_out_at_ends_s(rendering) * target.rate_hz);
+  return rms_between_ends(error_of(rendering, target, band), left_out) /
+         rms_between_ends(rendering.target_m.values, left_out);
+}
 
 Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPath& path,
                          const schema::Transducer& transducer, const RenderOptions& options,
