@@ -175,6 +175,21 @@ cli::Action declare_status(CLI::App& app) {
   return [study, verify, verb] { return run_status(*study, *verify, verb->count("--json") > 0); };
 }
 
+Result<Report> run_pack(const CorpusPackOptions& options) {
+  const cli::StopSignals signals;
+  cli::Progress progress("recordings");
+  const auto pack = pack_corpus(
+      options, [&](double fraction) { progress.update(fraction); }, [&] { return signals.stop_asked(); });
+  TACTO_TRY(pack);
+  cli::Report report;
+  report.add("recordings", pack->recordings).add("files", pack->files);
+  if (pack->left_out > 0) report.add("left_out_damaged_recordings", pack->left_out);
+  if (pack->renamed > 0) report.add("renamed_because_of_a_subjects_code", pack->renamed);
+  report.add("subject_codes", options.with_subjects ? "are in the dataset" : "are removed");
+  report.add("folder", options.output);
+  return report.add("next", "cd " + cli::shell_word(options.output) + " && sha256sum -c --quiet SHA256SUMS");
+}
+
 cli::Action declare_pack(CLI::App& app) {
   const auto options = std::make_shared<CorpusPackOptions>();
   schema::Citation& citation = options->citation;
@@ -196,6 +211,30 @@ cli::Action declare_pack(CLI::App& app) {
                "that are the 'subject' of a recording are known");
   cli::declare_force(app, options->existing);
   return [options] { return run_pack(*options); };
+}
+
+struct WorkflowOptions {
+  CorpusWorkflowOptions workflow;
+  schema::Existing existing = schema::Existing::keep;
+};
+
+Result<Report> run_workflow(const WorkflowOptions& options) {
+  const std::string& output = options.workflow.output;
+  TACTO_TRY(schema::check_table_free(output, options.existing, is_workflow));
+  const auto workflow = corpus_workflow(options.workflow);
+  TACTO_TRY(workflow);
+  schema::PendingFiles pending;
+  TACTO_TRY(pending.write(output, workflow->text));
+  TACTO_TRY(pending.commit(options.existing));
+  const bool slurm = options.workflow.engine == WorkflowEngine::slurm;
+  cli::Report report;
+  report.add("recordings", workflow->recordings).add("shards", workflow->shards);
+  report.add("shards_in_the_file", workflow->listed.size());
+  report.add("estimated_work_s", workflow->work_s)
+      .add("estimated_work_of_a_shard_s", workflow->work_s / static_cast<double>(workflow->shards))
+      .add("estimated_from_recordings", workflow->read);
+  report.add("files", std::vector<std::string>{output});
+  return report.add("next", (slurm ? "sbatch " : "snakemake --cores 4 -s ") + cli::shell_word(output));
 }
 
 cli::Action declare_workflow(CLI::App& app) {
@@ -235,45 +274,6 @@ constexpr cli::VerbPart kParts[] = {
 
 cli::Action declare_corpus(CLI::App& app) {
   return cli::declare_parts(app, kParts);
-}
-
-schema::Result<cli::Report> run_pack(const CorpusPackOptions& options) {
-  const cli::StopSignals signals;
-  cli::Progress progress("recordings");
-  const auto pack = pack_corpus(
-      options, [&](double fraction) { progress.update(fraction); }, [&] { return signals.stop_asked(); });
-  TACTO_TRY(pack);
-  cli::Report report;
-  report.add("recordings", pack->recordings).add("files", pack->files);
-  if (pack->left_out > 0) report.add("left_out_damaged_recordings", pack->left_out);
-  if (pack->renamed > 0) report.add("renamed_because_of_a_subjects_code", pack->renamed);
-  report.add("subject_codes", options.with_subjects ? "are in the dataset" : "are removed");
-  report.add("folder", options.output);
-  return report.add("next", "cd " + cli::shell_word(options.output) + " && sha256sum -c --quiet SHA256SUMS");
-}
-
-struct WorkflowOptions {
-  CorpusWorkflowOptions workflow;
-  schema::Existing existing = schema::Existing::keep;
-};
-
-schema::Result<cli::Report> run_workflow(const WorkflowOptions& options) {
-  const std::string& output = options.workflow.output;
-  TACTO_TRY(schema::check_table_free(output, options.existing, is_workflow));
-  const auto workflow = corpus_workflow(options.workflow);
-  TACTO_TRY(workflow);
-  schema::PendingFiles pending;
-  TACTO_TRY(pending.write(output, workflow->text));
-  TACTO_TRY(pending.commit(options.existing));
-  const bool slurm = options.workflow.engine == WorkflowEngine::slurm;
-  cli::Report report;
-  report.add("recordings", workflow->recordings).add("shards", workflow->shards);
-  report.add("shards_in_the_file", workflow->listed.size());
-  report.add("estimated_work_s", workflow->work_s)
-      .add("estimated_work_of_a_shard_s", workflow->work_s / static_cast<double>(workflow->shards))
-      .add("estimated_from_recordings", workflow->read);
-  report.add("files", std::vector<std::string>{output});
-  return report.add("next", (slurm ? "sbatch " : "snakemake --cores 4 -s ") + cli::shell_word(output));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ void unpack_spectra(PackedSpectrum<Real> z, std::span<std::complex<float>> a,
 template <class Real>
 class PackedFft {
  public:
-  /// `expected` is the number of transforms. A measured plan in the user's cache (fft_wisdom.hpp) is used if
+  /// `expected` is the number of transforms. A measured plan in the user's cache is used if
   /// there is one. Otherwise a plan is measured and stored there if that takes no longer than the transforms;
   /// otherwise FFTW estimates one. Plans differ by rounding only. Throws bad_alloc.
   PackedFft(std::size_t length, std::size_t expected);
