@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,15 @@
 #include "data-schema/command/budget_options.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/command/verb.hpp"
+#include "data-schema/files/files.hpp"
 #include "data-schema/report/progress.hpp"
 #include "data-schema/spectrogram/spectrogram.hpp"
+#include "data-schema/spectrogram/spectrogram_writer.hpp"
 #include "spatial/cli/formant_row.hpp"
-#include "spatial/cli/spectrogram_files.hpp"
 #include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
 #include "spatial/features/formants.hpp"
+#include "spatial/picture/figure.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
 #include "spatial/picture/spectrogram_output.hpp"
 #include "spatial/spectrogram/budget.hpp"
@@ -36,6 +39,69 @@ using schema::Dimension;
 using schema::ErrorKind;
 using schema::Result;
 using schema::SpectrogramHeader;
+
+// The outputs of a run of 'tactograph spectrogram': tables and netCDF row by row, pictures at the end; they
+// appear together or not at all.
+
+class SpectrogramFiles {
+ public:
+  // Precondition: check_outputs(paths). Errors: cannot_write.
+  schema::Result<void> open(std::span<const std::string> paths, bool several, bool compress);
+  // Whether a figure is needed.
+  bool has_pictures() const { return !pictures_.empty(); }
+
+  // Calls SpectrogramWriter::begin() of every table and netCDF file.
+  schema::Result<void> begin(const schema::SpectrogramHeader& header);
+  schema::Result<void> rows(std::size_t first, std::span<const float> cells);
+
+  // Ends all files, draws the pictures (`figure` may be null if there are none) and renames all files
+  // together. Errors: of the writers and the figure; cannot_write; usage, if a file that must not be
+  // replaced has the name.
+  schema::Result<void> finish(const Figure* figure, schema::Existing existing);
+
+ private:
+  schema::PendingFiles pending_;
+  std::vector<std::unique_ptr<schema::SpectrogramWriter>> writers_;
+  std::vector<std::string> pictures_;
+};
+
+Result<void> SpectrogramFiles::open(std::span<const std::string> paths, bool several, bool compress) {
+  for (const std::string& path : paths) {
+    const OutputForm form = form_of(path);
+    if (form == OutputForm::picture) {
+      pictures_.push_back(path);
+      continue;
+    }
+    const auto temporary = pending_.add(path);
+    TACTO_TRY(temporary);
+    const auto open = form == OutputForm::netcdf ? schema::open_spectrogram_nc : schema::open_spectrogram_csv;
+    auto writer = open(*temporary, {several, compress, path});
+    TACTO_TRY(writer);
+    writers_.push_back(std::move(*writer));
+  }
+  return {};
+}
+
+Result<void> SpectrogramFiles::begin(const schema::SpectrogramHeader& header) {
+  for (const auto& writer : writers_)
+    if (auto begun = writer->begin(header); !begun) return begun;
+  return {};
+}
+
+Result<void> SpectrogramFiles::rows(std::size_t first, std::span<const float> cells) {
+  for (const auto& writer : writers_)
+    if (auto written = writer->rows(first, cells); !written) return written;
+  return {};
+}
+
+Result<void> SpectrogramFiles::finish(const Figure* figure, schema::Existing existing) {
+  for (const auto& writer : writers_)
+    if (auto closed = writer->close(); !closed) return closed;
+  writers_.clear();
+  for (const std::string& path : pictures_)
+    if (auto added = add_figure(pending_, path, *figure); !added) return added;
+  return pending_.commit(existing);
+}
 
 // A run of 'tactograph spectrogram': computes texture after texture with one maker and writes all files.
 
