@@ -8,6 +8,9 @@
 
 namespace tacto::schema {
 
+/// In lower-case hexadecimal.
+std::string md5_of(std::string_view bytes);
+
 class Sha256 {
  public:
   Sha256();

@@ -16,8 +16,8 @@
 #include <utility>
 
 #include "data-schema/base/column_unit.hpp"
-#include "data-schema/base/md5.hpp"
 #include "data-schema/base/module.hpp"
+#include "data-schema/base/sha256.hpp"
 #include "data-schema/exchange/zip/zip_functions.hpp"
 #include "data-schema/files/files.hpp"
 
