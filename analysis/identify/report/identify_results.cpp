@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "analysis/identify/measure/angles.hpp"
-#include "analysis/identify/report/bode_curves.hpp"
+#include "analysis/identify/report/bode_figure.hpp"
 #include "data-schema/report/value_text.hpp"
 
 namespace tacto::analysis {
