@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware-host/gadget/burst_queue.hpp"
+#include "firmware-host/gadget/board_link.hpp"
 
 #include <algorithm>
 
