@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SHA-256 of bytes that arrive in parts.
+// SHA-256 of bytes that arrive in parts; MD5, which X3P files contain.
 #pragma once
 
 #include <memory>
@@ -7,9 +7,6 @@
 #include <string_view>
 
 namespace tacto::schema {
-
-/// In lower-case hexadecimal.
-std::string md5_of(std::string_view bytes);
 
 class Sha256 {
  public:
@@ -26,5 +23,8 @@ class Sha256 {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// In lower-case hexadecimal.
+std::string md5_of(std::string_view bytes);
 
 }  // namespace tacto::schema
