@@ -476,42 +476,38 @@ struct Reader {
   std::string_view text(const char* path) const {
     return stripped(document.select_node(path).node().child_value());
   }
-  Result<double> number(const char* path) const;
-  Result<double> unit() const;
-  Result<std::vector<double>> heights(double unit_m) const;
-};
-
-Result<double> Reader::number(const char* path) const {
-  char mark = '.';
-  double value = 0;
-  const std::string_view written = text(path);
-  if (read_number(written, mark, value) == NumberFault::none) return value;
-  return broken(fmt::format("'{}' is not a number", written.substr(0, 40)), path);
-}
-
-Result<double> Reader::unit() const {
-  constexpr const char* kPath = "/DATA/DATAFILE/UNITS";
-  const auto known = schema::parse_unit(text(kPath));
-  if (known && known->dimension == schema::Dimension::length) return known->si;
-  return broken(fmt::format("'{}' is not a unit of length", text(kPath).substr(0, 40)), kPath);
-}
-
-Result<std::vector<double>> Reader::heights(double unit_m) const {
-  constexpr const char* kPath = "/DATA/DATAFILE/DATA_POINT_VALUES";
-  std::string_view left = text(kPath);
-  std::vector<double> heights;
-  while (!left.empty()) {
-    const std::string_view word = left.substr(0, left.find_first_of(kBlanks));
+  Result<double> number(const char* path) const {
     char mark = '.';
     double value = 0;
-    if (read_number(word, mark, value) != NumberFault::none)
-      return broken(fmt::format("value {}, '{}', is not a number", heights.size() + 1, word.substr(0, 40)),
-                    kPath);
-    heights.push_back(value * unit_m);
-    left = stripped(left.substr(word.size()));
+    const std::string_view written = text(path);
+    if (read_number(written, mark, value) == NumberFault::none) return value;
+    return broken(fmt::format("'{}' is not a number", written.substr(0, 40)), path);
   }
-  return heights;
-}
+
+  Result<double> unit() const {
+    constexpr const char* kPath = "/DATA/DATAFILE/UNITS";
+    const auto known = schema::parse_unit(text(kPath));
+    if (known && known->dimension == schema::Dimension::length) return known->si;
+    return broken(fmt::format("'{}' is not a unit of length", text(kPath).substr(0, 40)), kPath);
+  }
+
+  Result<std::vector<double>> heights(double unit_m) const {
+    constexpr const char* kPath = "/DATA/DATAFILE/DATA_POINT_VALUES";
+    std::string_view left = text(kPath);
+    std::vector<double> heights;
+    while (!left.empty()) {
+      const std::string_view word = left.substr(0, left.find_first_of(kBlanks));
+      char mark = '.';
+      double value = 0;
+      if (read_number(word, mark, value) != NumberFault::none)
+        return broken(fmt::format("value {}, '{}', is not a number", heights.size() + 1, word.substr(0, 40)),
+                      kPath);
+      heights.push_back(value * unit_m);
+      left = stripped(left.substr(word.size()));
+    }
+    return heights;
+  }
+};
 
 std::string joined(std::initializer_list<std::string_view> texts) {
   std::string all;

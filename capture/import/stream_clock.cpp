@@ -202,14 +202,97 @@ class Search {
         stream_(stream),
         progress_(progress),
         where_(fmt::format("{}: stream '{}'", file, stream.name)) {}
-  Result<StreamClock> run();
+  Result<StreamClock> run() {
+    const auto pairs = clock_pairs(where_, stream_);
+    TACTO_TRY(pairs);
+    TACTO_TRY(survey());
+    auto located = even_.second_pass_needed() ? locate() : Result<void>{};
+    const auto scattered = located || !scatter_ ? std::nullopt : scatter_->clock();
+    if (located) {
+      found_.clock = even_.clock();
+      if (even_.pauses() > 0)
+        found_.warnings.push_back(fmt::format(
+            "{} of its pauses are no whole number of periods: their gaps are to the nearest sample",
+            even_.pauses()));
+    } else if (scattered) {
+      use_scattered(*scattered);
+    } else {
+      located.error().remedy = kWithoutTimes;
+      return schema::forward_error(located);
+    }
+    move_to_recorders_clock(*pairs);
+    compare_with_nominal();
+    return std::move(found_);
+  }
 
  private:
-  Result<void> survey();
-  Result<void> locate();
-  void use_scattered(const ScatteredClock& scattered);
-  void compare_with_nominal();
-  void move_to_recorders_clock(std::span<const schema::ClockPair> pairs);
+  Result<void> survey() {
+    if (stream_.nominal_rate_hz > 0) scatter_.emplace(stream_.nominal_rate_hz);
+    std::optional<double> last_s;
+    const auto take = [&](std::span<const double> times_s, std::span<const double>) -> Result<void> {
+      even_.survey(times_s);
+      for (const double time_s : times_s) {
+        if (last_s && time_s < *last_s - kClockReset_s) return was_reset(where_, *last_s, time_s - *last_s);
+        if (last_s && (time_s - *last_s) * stream_.nominal_rate_hz > kLongestGap_samples)
+          return was_reset(where_, *last_s, time_s - *last_s);
+        if (scatter_) scatter_->add(time_s);
+        last_s = time_s;
+      }
+      return {};
+    };
+    TACTO_TRY(schema::read_xdf(file_, stream_, {}, take, progress_));
+    return even_.end_survey(where_);
+  }
+
+  Result<void> locate() {
+    even_.allow_pauses();
+    const auto place_of = [](std::uint64_t row) { return fmt::format("sample {}", row); };
+    return schema::read_xdf(
+        file_, stream_, {},
+        [&](std::span<const double> times_s, std::span<const double>) {
+          return even_.locate(times_s, place_of, where_);
+        },
+        progress_);
+  }
+
+  void use_scattered(const ScatteredClock& scattered) {
+    found_.clock = scattered.clock;
+    found_.warnings.push_back(fmt::format(
+        "its times scatter by {:.3g} ms (RMS) about an even rate, so gaps shorter than {:g} s are not "
+        "found",
+        1e3 * scattered.scatter_s,
+        std::max(kLongestScatter_s, kLongestScatter_samples / stream_.nominal_rate_hz)));
+  }
+
+  void compare_with_nominal() {
+    constexpr double kFarFromNominal = 0.01;  // crystals deviate by less than 0.0001
+    const double nominal_hz = stream_.nominal_rate_hz, rate_hz = found_.clock.rate_hz;
+    if (nominal_hz > 0 && std::abs(rate_hz / nominal_hz - 1) > kFarFromNominal)
+      found_.warnings.push_back(fmt::format(
+          "its times give a rate of {:.6g} Hz, but its nominal rate is {:.6g} Hz", rate_hz, nominal_hz));
+  }
+
+  void move_to_recorders_clock(std::span<const schema::ClockPair> pairs) {
+    constexpr double kFastForACrystal_ppm = 100;
+    const auto fit = offset_drift(pairs);
+    if (!fit || !fit->is_certain()) {
+      found_.words = "times of the stream, by its own clock " +
+                     (fit ? fmt::format("(its drift of {:.3g} ppm is not certain: {:.3g} to {:.3g} ppm)",
+                                        fit->drift_ppm, fit->lowest_ppm, fit->highest_ppm)
+                          : "(too few clock offsets, or too close in time)");
+      return;
+    }
+    found_.clock.rate_hz *= 1 + 1e-6 * fit->drift_ppm;
+    found_.words = fmt::format(
+        "times of the stream, by the recorder's clock: that of the stream is {:.3g} ppm {} ({} clock "
+        "offsets, median deviation {:.3g} ms)",
+        std::abs(fit->drift_ppm), fit->drift_ppm < 0 ? "slower" : "faster", pairs.size(),
+        1e3 * fit->deviation_s);
+    if (std::abs(fit->drift_ppm) > kFastForACrystal_ppm)
+      found_.warnings.push_back(fmt::format(
+          "its clock is {:.3g} ppm {} than the recorder's: crystals deviate by less than {:g} ppm",
+          std::abs(fit->drift_ppm), fit->drift_ppm < 0 ? "slower" : "faster", kFastForACrystal_ppm));
+  }
 
   const std::string& file_;
   const schema::XdfStream& stream_;
@@ -219,97 +302,6 @@ class Search {
   std::optional<ScatterFit> scatter_;
   StreamClock found_;
 };
-
-Result<void> Search::survey() {
-  if (stream_.nominal_rate_hz > 0) scatter_.emplace(stream_.nominal_rate_hz);
-  std::optional<double> last_s;
-  const auto take = [&](std::span<const double> times_s, std::span<const double>) -> Result<void> {
-    even_.survey(times_s);
-    for (const double time_s : times_s) {
-      if (last_s && time_s < *last_s - kClockReset_s) return was_reset(where_, *last_s, time_s - *last_s);
-      if (last_s && (time_s - *last_s) * stream_.nominal_rate_hz > kLongestGap_samples)
-        return was_reset(where_, *last_s, time_s - *last_s);
-      if (scatter_) scatter_->add(time_s);
-      last_s = time_s;
-    }
-    return {};
-  };
-  TACTO_TRY(schema::read_xdf(file_, stream_, {}, take, progress_));
-  return even_.end_survey(where_);
-}
-
-Result<void> Search::locate() {
-  even_.allow_pauses();
-  const auto place_of = [](std::uint64_t row) { return fmt::format("sample {}", row); };
-  return schema::read_xdf(
-      file_, stream_, {},
-      [&](std::span<const double> times_s, std::span<const double>) {
-        return even_.locate(times_s, place_of, where_);
-      },
-      progress_);
-}
-
-void Search::use_scattered(const ScatteredClock& scattered) {
-  found_.clock = scattered.clock;
-  found_.warnings.push_back(fmt::format(
-      "its times scatter by {:.3g} ms (RMS) about an even rate, so gaps shorter than {:g} s are not "
-      "found",
-      1e3 * scattered.scatter_s,
-      std::max(kLongestScatter_s, kLongestScatter_samples / stream_.nominal_rate_hz)));
-}
-
-void Search::compare_with_nominal() {
-  constexpr double kFarFromNominal = 0.01;  // crystals deviate by less than 0.0001
-  const double nominal_hz = stream_.nominal_rate_hz, rate_hz = found_.clock.rate_hz;
-  if (nominal_hz > 0 && std::abs(rate_hz / nominal_hz - 1) > kFarFromNominal)
-    found_.warnings.push_back(fmt::format(
-        "its times give a rate of {:.6g} Hz, but its nominal rate is {:.6g} Hz", rate_hz, nominal_hz));
-}
-
-void Search::move_to_recorders_clock(std::span<const schema::ClockPair> pairs) {
-  constexpr double kFastForACrystal_ppm = 100;
-  const auto fit = offset_drift(pairs);
-  if (!fit || !fit->is_certain()) {
-    found_.words = "times of the stream, by its own clock " +
-                   (fit ? fmt::format("(its drift of {:.3g} ppm is not certain: {:.3g} to {:.3g} ppm)",
-                                      fit->drift_ppm, fit->lowest_ppm, fit->highest_ppm)
-                        : "(too few clock offsets, or too close in time)");
-    return;
-  }
-  found_.clock.rate_hz *= 1 + 1e-6 * fit->drift_ppm;
-  found_.words = fmt::format(
-      "times of the stream, by the recorder's clock: that of the stream is {:.3g} ppm {} ({} clock "
-      "offsets, median deviation {:.3g} ms)",
-      std::abs(fit->drift_ppm), fit->drift_ppm < 0 ? "slower" : "faster", pairs.size(),
-      1e3 * fit->deviation_s);
-  if (std::abs(fit->drift_ppm) > kFastForACrystal_ppm)
-    found_.warnings.push_back(fmt::format(
-        "its clock is {:.3g} ppm {} than the recorder's: crystals deviate by less than {:g} ppm",
-        std::abs(fit->drift_ppm), fit->drift_ppm < 0 ? "slower" : "faster", kFastForACrystal_ppm));
-}
-
-Result<StreamClock> Search::run() {
-  const auto pairs = clock_pairs(where_, stream_);
-  TACTO_TRY(pairs);
-  TACTO_TRY(survey());
-  auto located = even_.second_pass_needed() ? locate() : Result<void>{};
-  const auto scattered = located || !scatter_ ? std::nullopt : scatter_->clock();
-  if (located) {
-    found_.clock = even_.clock();
-    if (even_.pauses() > 0)
-      found_.warnings.push_back(
-          fmt::format("{} of its pauses are no whole number of periods: their gaps are to the nearest sample",
-                      even_.pauses()));
-  } else if (scattered) {
-    use_scattered(*scattered);
-  } else {
-    located.error().remedy = kWithoutTimes;
-    return schema::forward_error(located);
-  }
-  move_to_recorders_clock(*pairs);
-  compare_with_nominal();
-  return std::move(found_);
-}
 
 }  // namespace
 

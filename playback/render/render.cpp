@@ -204,18 +204,64 @@ Result<ExactDrive> kernels_drive(Rendering& rendering, const RenderJob& job) {
 class TexturePath {
  public:
   /// Errors: as as_played().
-  static schema::Result<TexturePath> make(std::span<const PlacedTexture> textures, const FingerPath& path,
-                                          Ends ends);
+  static Result<TexturePath> make(std::span<const PlacedTexture> textures, const FingerPath& path,
+                                  Ends ends) {
+    TexturePath texture_path(path);
+    const auto [low_m, high_m] = std::ranges::minmax(path.position_m);
+    texture_path.start_m_ = textures.front().at_m, texture_path.end_m_ = texture_path.start_m_;
+    for (const PlacedTexture& placed : textures) {
+      auto played = as_played(*placed.texture, placed.at_m, prepared_ends(*placed.texture, ends), low_m,
+                              high_m, "path");
+      TACTO_TRY(played);
+      const PlayedSignal& signal = texture_path.signals_.emplace_back(std::move(*played));
+      texture_path.layers_.push_back({TextureLookup(signal.signal, signal.at_m), placed.weight});
+      texture_path.start_m_ = std::min(texture_path.start_m_, placed.at_m);
+      texture_path.end_m_ = std::max(texture_path.end_m_, placed.at_m + placed.texture->signal.length_m());
+    }
+    return texture_path;
+  }
 
   /// Number of grid samples at which the finger is outside all textures.
-  std::size_t count_outside(const ReadingGrid& grid) const;
+  std::size_t count_outside(const ReadingGrid& grid) const {
+    const auto positions = positions_along(*path_, grid.rate_hz, grid.samples);
+    return static_cast<std::size_t>(std::ranges::count_if(positions, [&](double x) {
+      return std::ranges::none_of(layers_, [&](const Layer& layer) { return layer.lookup.contains(x); });
+    }));
+  }
+
   /// The error for a path outside all textures: unsuitable, with their positions.
-  tl::unexpected<schema::Error> outside_textures() const;
+  tl::unexpected<schema::Error> outside_textures() const {
+    const auto [low, high] = std::ranges::minmax(path_->position_m);
+    const bool several = layers_.size() > 1;
+    const auto shown = [](double length_m) {
+      return schema::for_people(length_m, schema::Dimension::length);
+    };
+    return schema::fail(
+        schema::ErrorKind::unsuitable,
+        fmt::format("the finger moves from {} to {}, outside the texture{}, which {} at {} and {} {} long",
+                    shown(low), shown(high), several ? "s" : "", several ? "begin" : "begins",
+                    shown(start_m_), several ? "are" : "is", shown(end_m_ - start_m_)),
+        "path", several ? "move them in the scene" : "--at moves the texture");
+  }
+
   /// The widest fade at their ends.
-  double fade_m() const;
+  double fade_m() const {
+    double widest_m = 0;
+    for (const Layer& layer : layers_) widest_m = std::max(widest_m, layer.lookup.fade_m());
+    return widest_m;
+  }
+
   /// As exact_target, for the sum of the textures, each times its weight and gain_m_per_n.
   PaddedSpectrum target(const ReadingGrid& grid, const spatial::Band& band, double gain_m_per_n,
-                        double onset_s) const;
+                        double onset_s) const {
+    std::vector<double> readings = reading_places(*path_, grid);
+    for (double& value : readings) {
+      double force_n = 0;
+      for (const Layer& layer : layers_) force_n += layer.weight * layer.lookup(value);
+      value = gain_m_per_n * force_n;
+    }
+    return target_of_readings(std::move(readings), grid, band, onset_s);
+  }
 
  private:
   struct Layer {
@@ -229,59 +275,6 @@ class TexturePath {
   std::vector<Layer> layers_;
   double start_m_ = 0, end_m_ = 0;
 };
-
-Result<TexturePath> TexturePath::make(std::span<const PlacedTexture> textures, const FingerPath& path,
-                                      Ends ends) {
-  TexturePath texture_path(path);
-  const auto [low_m, high_m] = std::ranges::minmax(path.position_m);
-  texture_path.start_m_ = textures.front().at_m, texture_path.end_m_ = texture_path.start_m_;
-  for (const PlacedTexture& placed : textures) {
-    auto played =
-        as_played(*placed.texture, placed.at_m, prepared_ends(*placed.texture, ends), low_m, high_m, "path");
-    TACTO_TRY(played);
-    const PlayedSignal& signal = texture_path.signals_.emplace_back(std::move(*played));
-    texture_path.layers_.push_back({TextureLookup(signal.signal, signal.at_m), placed.weight});
-    texture_path.start_m_ = std::min(texture_path.start_m_, placed.at_m);
-    texture_path.end_m_ = std::max(texture_path.end_m_, placed.at_m + placed.texture->signal.length_m());
-  }
-  return texture_path;
-}
-
-std::size_t TexturePath::count_outside(const ReadingGrid& grid) const {
-  const auto positions = positions_along(*path_, grid.rate_hz, grid.samples);
-  return static_cast<std::size_t>(std::ranges::count_if(positions, [&](double x) {
-    return std::ranges::none_of(layers_, [&](const Layer& layer) { return layer.lookup.contains(x); });
-  }));
-}
-
-tl::unexpected<schema::Error> TexturePath::outside_textures() const {
-  const auto [low, high] = std::ranges::minmax(path_->position_m);
-  const bool several = layers_.size() > 1;
-  const auto shown = [](double length_m) { return schema::for_people(length_m, schema::Dimension::length); };
-  return schema::fail(
-      schema::ErrorKind::unsuitable,
-      fmt::format("the finger moves from {} to {}, outside the texture{}, which {} at {} and {} {} long",
-                  shown(low), shown(high), several ? "s" : "", several ? "begin" : "begins", shown(start_m_),
-                  several ? "are" : "is", shown(end_m_ - start_m_)),
-      "path", several ? "move them in the scene" : "--at moves the texture");
-}
-
-double TexturePath::fade_m() const {
-  double widest_m = 0;
-  for (const Layer& layer : layers_) widest_m = std::max(widest_m, layer.lookup.fade_m());
-  return widest_m;
-}
-
-PaddedSpectrum TexturePath::target(const ReadingGrid& grid, const spatial::Band& band, double gain_m_per_n,
-                                   double onset_s) const {
-  std::vector<double> readings = reading_places(*path_, grid);
-  for (double& value : readings) {
-    double force_n = 0;
-    for (const Layer& layer : layers_) force_n += layer.weight * layer.lookup(value);
-    value = gain_m_per_n * force_n;
-  }
-  return target_of_readings(std::move(readings), grid, band, onset_s);
-}
 
 // Beyond this the padded transforms alone need over a gigabyte.
 constexpr double kMostSamples = 1 << 24;

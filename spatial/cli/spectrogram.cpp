@@ -46,18 +46,50 @@ using schema::SpectrogramHeader;
 class SpectrogramFiles {
  public:
   // Precondition: check_outputs(paths). Errors: cannot_write.
-  schema::Result<void> open(std::span<const std::string> paths, bool several, bool compress);
+  Result<void> open(std::span<const std::string> paths, bool several, bool compress) {
+    for (const std::string& path : paths) {
+      const OutputForm form = form_of(path);
+      if (form == OutputForm::picture) {
+        pictures_.push_back(path);
+        continue;
+      }
+      const auto temporary = pending_.add(path);
+      TACTO_TRY(temporary);
+      const auto open =
+          form == OutputForm::netcdf ? schema::open_spectrogram_nc : schema::open_spectrogram_csv;
+      auto writer = open(*temporary, {several, compress, path});
+      TACTO_TRY(writer);
+      writers_.push_back(std::move(*writer));
+    }
+    return {};
+  }
+
   // Whether a figure is needed.
   bool has_pictures() const { return !pictures_.empty(); }
 
-  // Calls SpectrogramWriter::begin() of every table and netCDF file.
-  schema::Result<void> begin(const schema::SpectrogramHeader& header);
-  schema::Result<void> rows(std::size_t first, std::span<const float> cells);
+  Result<void> begin(const schema::SpectrogramHeader& header) {
+    for (const auto& writer : writers_)
+      if (auto begun = writer->begin(header); !begun) return begun;
+    return {};
+  }
+
+  Result<void> rows(std::size_t first, std::span<const float> cells) {
+    for (const auto& writer : writers_)
+      if (auto written = writer->rows(first, cells); !written) return written;
+    return {};
+  }
 
   // Ends all files, draws the pictures (`figure` may be null if there are none) and renames all files
   // together. Errors: of the writers and the figure; cannot_write; usage, if a file that must not be
   // replaced has the name.
-  schema::Result<void> finish(const Figure* figure, schema::Existing existing);
+  Result<void> finish(const Figure* figure, schema::Existing existing) {
+    for (const auto& writer : writers_)
+      if (auto closed = writer->close(); !closed) return closed;
+    writers_.clear();
+    for (const std::string& path : pictures_)
+      if (auto added = add_figure(pending_, path, *figure); !added) return added;
+    return pending_.commit(existing);
+  }
 
  private:
   schema::PendingFiles pending_;
@@ -65,92 +97,7 @@ class SpectrogramFiles {
   std::vector<std::string> pictures_;
 };
 
-Result<void> SpectrogramFiles::open(std::span<const std::string> paths, bool several, bool compress) {
-  for (const std::string& path : paths) {
-    const OutputForm form = form_of(path);
-    if (form == OutputForm::picture) {
-      pictures_.push_back(path);
-      continue;
-    }
-    const auto temporary = pending_.add(path);
-    TACTO_TRY(temporary);
-    const auto open = form == OutputForm::netcdf ? schema::open_spectrogram_nc : schema::open_spectrogram_csv;
-    auto writer = open(*temporary, {several, compress, path});
-    TACTO_TRY(writer);
-    writers_.push_back(std::move(*writer));
-  }
-  return {};
-}
-
-Result<void> SpectrogramFiles::begin(const schema::SpectrogramHeader& header) {
-  for (const auto& writer : writers_)
-    if (auto begun = writer->begin(header); !begun) return begun;
-  return {};
-}
-
-Result<void> SpectrogramFiles::rows(std::size_t first, std::span<const float> cells) {
-  for (const auto& writer : writers_)
-    if (auto written = writer->rows(first, cells); !written) return written;
-  return {};
-}
-
-Result<void> SpectrogramFiles::finish(const Figure* figure, schema::Existing existing) {
-  for (const auto& writer : writers_)
-    if (auto closed = writer->close(); !closed) return closed;
-  writers_.clear();
-  for (const std::string& path : pictures_)
-    if (auto added = add_figure(pending_, path, *figure); !added) return added;
-  return pending_.commit(existing);
-}
-
 // A run of 'tactograph spectrogram': computes texture after texture with one maker and writes all files.
-
-// Stores only a few numbers of each spectrogram; with `keep` (for pictures) also all of it, and its texture.
-class SpectrogramRun {
- public:
-  struct Line {
-    std::string name;
-    std::size_t positions = 0;
-    SpectrogramTally tally;
-  };
-
-  // `lowest_per_m`: lower limit of the band over which the lines are summed. Default: that of the pictures.
-  SpectrogramRun(const SpectrogramOptions& options, std::optional<double> lowest_per_m,
-                 SpectrogramFiles& files, bool keep)
-      : options_(options), asked_lowest_per_m_(lowest_per_m), files_(files), keep_(keep) {}
-
-  // Errors: of the inputs, the maker and the files; unsuitable, with both names, for a texture with another
-  // pitch or quantity than the first.
-  schema::Result<void> transform(TextureInputs& inputs);
-
-  // After transform(): one line for each texture, and their common values.
-  const std::vector<Line>& lines() const { return lines_; }
-  const schema::SpectrogramHeader& first() const { return *first_; }
-  const Decimation& decimation() const { return maker_->decimation(); }
-  double lowest_per_m() const { return asked_lowest_per_m_.value_or(lowest_shown_per_m(lowest_, *first_)); }
-  const std::vector<NamedTexture>& textures() const { return textures_; }
-  const std::vector<schema::Spectrogram>& spectrograms() const { return spectrograms_; }
-
- private:
-  schema::Result<void> take(NamedTexture texture);
-  schema::Result<void> prepare(const NamedTexture& first);
-  schema::Result<void> check_alike(const NamedTexture& other) const;
-  schema::Result<void> make(const NamedTexture& texture, const schema::SpectrogramHeader& header);
-
-  SpectrogramOptions options_;
-  std::optional<double> asked_lowest_per_m_;
-  SpectrogramFiles& files_;
-  bool keep_;
-  cli::Progress progress_{"spectrogram"};
-  std::size_t expected_ = 0;
-  std::optional<SpectrogramMaker> maker_;
-  std::optional<schema::SpectrogramHeader> first_;
-  std::string first_path_;
-  double lowest_ = 0;
-  std::vector<Line> lines_;
-  std::vector<NamedTexture> textures_;
-  std::vector<schema::Spectrogram> spectrograms_;
-};
 
 void warn_of_odd_options(const SpectrogramOptions& options, double pitch_m) {
   if (options.hop_m > options.window_m)
@@ -179,83 +126,124 @@ tl::unexpected<schema::Error> naming(const NamedTexture& texture, const Result<T
   return tl::unexpected(error);
 }
 
-Result<void> SpectrogramRun::transform(TextureInputs& inputs) {
-  expected_ = inputs.expected();
-  for (;;) {
-    auto texture = inputs.next();
-    TACTO_TRY(texture);
-    if (!*texture) break;
-    if (auto taken = take(std::move(**texture)); !taken) return taken;
-  }
-  if (lines_.empty()) return schema::fail(ErrorKind::unsuitable, "none of the given files is a texture");
-  return {};
-}
+// Stores only a few numbers of each spectrogram; with `keep` (for pictures) also all of it, and its texture.
+class SpectrogramRun {
+ public:
+  struct Line {
+    std::string name;
+    std::size_t positions = 0;
+    SpectrogramTally tally;
+  };
 
-Result<void> SpectrogramRun::take(NamedTexture texture) {
-  const auto ready = first_ ? check_alike(texture) : prepare(texture);
-  if (!ready) return ready;
-  auto header = maker_->describe(texture.texture);
-  if (!header) return naming(texture, header);
-  header->name = texture.name;
-  warn_if_little_is_seen(texture, *header);
-  if (!first_) {
-    first_ = *header;
-    lowest_ = INFINITY;
-  }
-  lowest_ = std::min(lowest_, lowest_of_interest_per_m(texture.texture));
-  lines_.push_back({texture.name, header->position_m.size(), {*header, lowest_per_m()}});
-  if (auto made = make(texture, *header); !made) return naming(texture, made);
-  if (keep_) textures_.push_back(std::move(texture));
-  return {};
-}
+  // `lowest_per_m`: lower limit of the band over which the lines are summed. Default: that of the pictures.
+  SpectrogramRun(const SpectrogramOptions& options, std::optional<double> lowest_per_m,
+                 SpectrogramFiles& files, bool keep)
+      : options_(options), asked_lowest_per_m_(lowest_per_m), files_(files), keep_(keep) {}
 
-// The number of rows is estimated from the first texture, because most others are about as long.
-Result<void> SpectrogramRun::prepare(const NamedTexture& first) {
-  const auto& signal = first.texture.signal;
-  const auto shape = frame_shape(options_, signal.pitch_m);
-  TACTO_TRY(shape);
-  auto maker = SpectrogramMaker::prepare(options_, signal.pitch_m,
-                                         expected_ * (1 + signal.values.size() / shape->hop));
-  TACTO_TRY(maker);
-  maker_.emplace(std::move(*maker));
-  first_path_ = first.path;
-  warn_of_odd_options(options_, signal.pitch_m);
-  return {};
-}
-
-Result<void> SpectrogramRun::check_alike(const NamedTexture& other) const {
-  const double pitch_m = first_->pitch_m;
-  const auto& texture = other.texture;
-  if (std::abs(texture.signal.pitch_m - pitch_m) > 1e-9 * pitch_m)
-    return schema::fail(
-        ErrorKind::unsuitable,
-        fmt::format("has a grid of {}, but {} has {}", schema::length_for_people(texture.signal.pitch_m),
-                    first_path_, schema::length_for_people(pitch_m)),
-        other.path, "make one spectrogram of each, or make textures with equal grids ('spatial --grid')");
-  if (texture.quantity != first_->quantity || texture.unit != first_->unit)
-    return schema::fail(
-        ErrorKind::unsuitable,
-        fmt::format("contains {}, but {} contains {}", texture.quantity, first_path_, first_->quantity),
-        other.path, "make one spectrogram of each");
-  return {};
-}
-
-Result<void> SpectrogramRun::make(const NamedTexture& texture, const SpectrogramHeader& header) {
-  if (auto begun = files_.begin(header); !begun) return begun;
-  if (keep_) spectrograms_.push_back({header, {}});
-  const auto before = static_cast<double>(lines_.size() - 1),
-             rows = static_cast<double>(header.position_m.size());
-  return maker_->make(texture.texture, [&](std::size_t first, std::span<const float> cells) -> Result<void> {
-    lines_.back().tally.add(first, cells);
-    if (keep_) {
-      auto& kept = spectrograms_.back().cells;
-      kept.insert(kept.end(), cells.begin(), cells.end());
+  // Errors: of the inputs, the maker and the files; unsuitable, with both names, for a texture with another
+  // pitch or quantity than the first.
+  Result<void> transform(TextureInputs& inputs) {
+    expected_ = inputs.expected();
+    for (;;) {
+      auto texture = inputs.next();
+      TACTO_TRY(texture);
+      if (!*texture) break;
+      if (auto taken = take(std::move(**texture)); !taken) return taken;
     }
-    progress_.update(
-        std::min(1.0, (before + static_cast<double>(first) / rows) / static_cast<double>(expected_)));
-    return files_.rows(first, cells);
-  });
-}
+    if (lines_.empty()) return schema::fail(ErrorKind::unsuitable, "none of the given files is a texture");
+    return {};
+  }
+
+  // After transform(): one line for each texture, and their common values.
+  const std::vector<Line>& lines() const { return lines_; }
+  const schema::SpectrogramHeader& first() const { return *first_; }
+  const Decimation& decimation() const { return maker_->decimation(); }
+  double lowest_per_m() const { return asked_lowest_per_m_.value_or(lowest_shown_per_m(lowest_, *first_)); }
+  const std::vector<NamedTexture>& textures() const { return textures_; }
+  const std::vector<schema::Spectrogram>& spectrograms() const { return spectrograms_; }
+
+ private:
+  Result<void> take(NamedTexture texture) {
+    const auto ready = first_ ? check_alike(texture) : prepare(texture);
+    if (!ready) return ready;
+    auto header = maker_->describe(texture.texture);
+    if (!header) return naming(texture, header);
+    header->name = texture.name;
+    warn_if_little_is_seen(texture, *header);
+    if (!first_) {
+      first_ = *header;
+      lowest_ = INFINITY;
+    }
+    lowest_ = std::min(lowest_, lowest_of_interest_per_m(texture.texture));
+    lines_.push_back({texture.name, header->position_m.size(), {*header, lowest_per_m()}});
+    if (auto made = make(texture, *header); !made) return naming(texture, made);
+    if (keep_) textures_.push_back(std::move(texture));
+    return {};
+  }
+
+  // The number of rows is estimated from the first texture, because most others are about as long.
+  Result<void> prepare(const NamedTexture& first) {
+    const auto& signal = first.texture.signal;
+    const auto shape = frame_shape(options_, signal.pitch_m);
+    TACTO_TRY(shape);
+    auto maker = SpectrogramMaker::prepare(options_, signal.pitch_m,
+                                           expected_ * (1 + signal.values.size() / shape->hop));
+    TACTO_TRY(maker);
+    maker_.emplace(std::move(*maker));
+    first_path_ = first.path;
+    warn_of_odd_options(options_, signal.pitch_m);
+    return {};
+  }
+
+  Result<void> check_alike(const NamedTexture& other) const {
+    const double pitch_m = first_->pitch_m;
+    const auto& texture = other.texture;
+    if (std::abs(texture.signal.pitch_m - pitch_m) > 1e-9 * pitch_m)
+      return schema::fail(
+          ErrorKind::unsuitable,
+          fmt::format("has a grid of {}, but {} has {}", schema::length_for_people(texture.signal.pitch_m),
+                      first_path_, schema::length_for_people(pitch_m)),
+          other.path, "make one spectrogram of each, or make textures with equal grids ('spatial --grid')");
+    if (texture.quantity != first_->quantity || texture.unit != first_->unit)
+      return schema::fail(
+          ErrorKind::unsuitable,
+          fmt::format("contains {}, but {} contains {}", texture.quantity, first_path_, first_->quantity),
+          other.path, "make one spectrogram of each");
+    return {};
+  }
+
+  Result<void> make(const NamedTexture& texture, const SpectrogramHeader& header) {
+    if (auto begun = files_.begin(header); !begun) return begun;
+    if (keep_) spectrograms_.push_back({header, {}});
+    const auto before = static_cast<double>(lines_.size() - 1),
+               rows = static_cast<double>(header.position_m.size());
+    return maker_->make(
+        texture.texture, [&](std::size_t first, std::span<const float> cells) -> Result<void> {
+          lines_.back().tally.add(first, cells);
+          if (keep_) {
+            auto& kept = spectrograms_.back().cells;
+            kept.insert(kept.end(), cells.begin(), cells.end());
+          }
+          progress_.update(
+              std::min(1.0, (before + static_cast<double>(first) / rows) / static_cast<double>(expected_)));
+          return files_.rows(first, cells);
+        });
+  }
+
+  SpectrogramOptions options_;
+  std::optional<double> asked_lowest_per_m_;
+  SpectrogramFiles& files_;
+  bool keep_;
+  cli::Progress progress_{"spectrogram"};
+  std::size_t expected_ = 0;
+  std::optional<SpectrogramMaker> maker_;
+  std::optional<schema::SpectrogramHeader> first_;
+  std::string first_path_;
+  double lowest_ = 0;
+  std::vector<Line> lines_;
+  std::vector<NamedTexture> textures_;
+  std::vector<schema::Spectrogram> spectrograms_;
+};
 
 struct SpectrogramVerbOptions {
   std::vector<std::string> names, outputs;
