@@ -442,7 +442,15 @@ class RealtimeTrade {
       if (line.work) line.row.cost_ns = line.times * costs[*line.work] / ticks_[*line.work];
   }
 
-  Result<void> check_felt() const;
+  Result<void> check_felt() const {
+    const auto played = play(reading_case(usual(), wire::Interpolation::hermite, 16));
+    TACTO_TRY(played);
+    if (!std::isnan(worst_of(played->errors()))) return {};
+    return schema::fail(schema::ErrorKind::unsuitable,
+                        "has nothing within 15 to 500 Hz at " + speed_words(played->errors()), "the texture",
+                        "use a texture with content in that band");
+  }
+
   void add_loops() {
     PrepareOptions options;
     options.ends = playback::Ends::loop;
@@ -462,35 +470,6 @@ class RealtimeTrade {
   std::vector<std::function<void()>> works_;
   std::vector<double> ticks_;  // number of ticks of each work
 };
-
-Result<std::vector<TradeRow>> RealtimeTrade::rows() {
-  Result<void> check_felt() const {
-    const auto played = play(reading_case(usual(), wire::Interpolation::hermite, 16));
-    TACTO_TRY(played);
-    if (!std::isnan(worst_of(played->errors()))) return {};
-    return schema::fail(schema::ErrorKind::unsuitable,
-                        "has nothing within 15 to 500 Hz at " + speed_words(played->errors()), "the texture",
-                        "use a texture with content in that band");
-  }
-
-  constexpr Part kParts[] = {
-      &RealtimeTrade::add_readings,      &RealtimeTrade::add_densities,  &RealtimeTrade::add_inverses,
-      &RealtimeTrade::add_looking_ahead, &RealtimeTrade::add_counts,     &RealtimeTrade::add_rates,
-      &RealtimeTrade::add_pyramids,      &RealtimeTrade::add_precisions, &RealtimeTrade::add_hysteresis,
-      &RealtimeTrade::clock_all,         &RealtimeTrade::add_loops};
-  for (std::size_t i = 0; i < std::size(kParts); ++i) {
-    (this->*kParts[i])();
-    if (progress_) progress_(static_cast<double>(i + 1) / static_cast<double>(std::size(kParts)));
-  }
-  std::vector<TradeRow> rows;
-  for (Line& line : lines_) {
-    if (!line.refusal.empty()) line.row.note = line.refusal;
-    if (!line.row.by_speed.empty() && !line.row.is_judged())
-      line.row.note = "nothing of the texture is in the band at " + speed_words(line.row.by_speed);
-    rows.push_back(std::move(line.row));
-  }
-  return rows;
-}
 
 }  // namespace
 

@@ -60,9 +60,9 @@ void put_data(const ResponseFit& fit, double reference, BodeCurves& c) {
 }
 
 constexpr spatial::Size kBodePage{720, 640};
-constexpr double kMargin = 14, kLeft = 66, kWidth = 630, kTop = 76;
+constexpr double kPageMargin = 14, kLeft = 66, kWidth = 630, kTop = 76;
 constexpr double kHeights[] = {230, 150, 80};
-constexpr double kGap = 14;
+constexpr double kPanelGap = 14;
 constexpr double kDot = 1.6;
 constexpr double kNearResidual = 1.96;  // 95 % of normal noise is within this
 
@@ -77,7 +77,7 @@ struct Panel {
         std::initializer_list<const std::vector<double>*> shown)
       : canvas(on), hz(frequencies) {
     double top = first_top;
-    for (int above = 0; above < row; ++above) top += kHeights[above] + kGap;
+    for (int above = 0; above < row; ++above) top += kHeights[above] + kPanelGap;
     box = {kLeft, top, kWidth, kHeights[row]};
     double low = INFINITY, high = -INFINITY;
     for (const auto* values : shown)
@@ -164,7 +164,8 @@ std::string facts_of(const ResponseFit& fit) {
 }
 
 spatial::Heading heading_of(const ResponseFit& fit) {
-  return spatial::heading_of(title_of(fit), facts_of(fit), fit.data.simulated, kBodePage.width - 2 * kMargin);
+  return spatial::heading_of(title_of(fit), facts_of(fit), fit.data.simulated,
+                             kBodePage.width - 2 * kPageMargin);
 }
 
 }  // namespace
@@ -186,7 +187,7 @@ schema::Result<void> BodeFigure::draw(Canvas& canvas) const {
   const auto& hz = fit.data.frequency_hz;
   const spatial::Heading heading = heading_of(fit);
   const double top = kTop + heading.extra();
-  spatial::draw_heading(canvas, {kMargin, kMargin}, heading);
+  spatial::draw_heading(canvas, {kPageMargin, kPageMargin}, heading);
   draw_bode_legend(canvas, top, !fit.band.empty());
   const Panel amplitude(canvas, hz, top, 0, {&c.model_db, &c.data_db, &c.inverse_db, &c.low_db, &c.high_db});
   amplitude.grid();
