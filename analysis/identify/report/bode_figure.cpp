@@ -60,7 +60,7 @@ void put_data(const ResponseFit& fit, double reference, BodeCurves& c) {
 }
 
 constexpr spatial::Size kBodePage{720, 640};
-constexpr double kPageMargin = 14, kLeft = 66, kWidth = 630, kTop = 76;
+constexpr double kBodeMargin = 14, kLeft = 66, kWidth = 630, kTop = 76;
 constexpr double kHeights[] = {230, 150, 80};
 constexpr double kPanelGap = 14;
 constexpr double kDot = 1.6;
@@ -165,7 +165,7 @@ std::string facts_of(const ResponseFit& fit) {
 
 spatial::Heading heading_of(const ResponseFit& fit) {
   return spatial::heading_of(title_of(fit), facts_of(fit), fit.data.simulated,
-                             kBodePage.width - 2 * kPageMargin);
+                             kBodePage.width - 2 * kBodeMargin);
 }
 
 }  // namespace
@@ -187,7 +187,7 @@ schema::Result<void> BodeFigure::draw(Canvas& canvas) const {
   const auto& hz = fit.data.frequency_hz;
   const spatial::Heading heading = heading_of(fit);
   const double top = kTop + heading.extra();
-  spatial::draw_heading(canvas, {kPageMargin, kPageMargin}, heading);
+  spatial::draw_heading(canvas, {kBodeMargin, kBodeMargin}, heading);
   draw_bode_legend(canvas, top, !fit.band.empty());
   const Panel amplitude(canvas, hz, top, 0, {&c.model_db, &c.data_db, &c.inverse_db, &c.low_db, &c.high_db});
   amplitude.grid();
