@@ -140,8 +140,8 @@ struct TimedKernels {
   std::vector<MovingFinger> kernels;
 };
 
-// Only latency and memory are reported. Error and cost of a loop are not measured here, so neither loop is
-// judged.
+// The knob "loop": only latency and memory are reported. Error and cost of a loop are not measured here, so
+// neither loop is judged.
 
 constexpr double kMeasuredS = 0.5, kListenS = 0.02;
 constexpr double kQueueS = 4e-3;  // HostLoop keeps this much drive in the device's queue

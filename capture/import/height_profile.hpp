@@ -16,8 +16,6 @@
 
 namespace tacto::capture {
 
-// Tables of stylus instruments: settings before the table, printed positions, stated roughness.
-
 /// A roughness that a file states before its table, as "Ra,56.1,nm" or "Rq (um) = 0,312", and that of the
 /// heights: Ra is the mean, Rq the root mean square of the distances from their least-squares line (ISO
 /// 4287), without a roughness filter.
