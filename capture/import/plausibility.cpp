@@ -74,6 +74,13 @@ std::string count_of(std::uint64_t count, std::uint64_t all) {
   return fmt::format("{} of {} samples", count, all);
 }
 
+// The largest magnitude of a quantity on a bench for a sliding finger, in its SI unit; infinity if there is
+// no limit. The limits are wide on purpose: beyond them the unit or the scale is wrong.
+double largest_plausible(std::string_view quantity) {
+  const auto found = std::ranges::find(kBounds, quantity, &Bound::quantity);
+  return found == std::end(kBounds) ? std::numeric_limits<double>::infinity() : found->largest;
+}
+
 }  // namespace
 
 std::string scale_fault(const schema::CalibrationEntry& entry) {
@@ -189,11 +196,6 @@ double Outliers::usual_distance() const {
     if (below > rank) return upper_edge(bin);
   }
   return 0;
-}
-
-double largest_plausible(std::string_view quantity) {
-  const auto found = std::ranges::find(kBounds, quantity, &Bound::quantity);
-  return found == std::end(kBounds) ? std::numeric_limits<double>::infinity() : found->largest;
 }
 
 Plausibility::Plausibility(const schema::Channel& channel)

@@ -29,10 +29,6 @@ inline constexpr double kMostOffOwnScale = 2, kWidestInterval = 0.2;
 /// its interval. Empty if it is plausible, or if the entry has no scale.
 std::string scale_fault(const schema::CalibrationEntry& entry);
 
-/// The largest magnitude of a quantity on a bench for a sliding finger, in its SI unit; infinity if there is
-/// no limit. The limits are wide on purpose: beyond them the unit or the scale is wrong.
-double largest_plausible(std::string_view quantity);
-
 /// The time of a sample for messages: "4.227 s".
 using TimeOf = std::function<std::string(std::uint64_t sample)>;
 

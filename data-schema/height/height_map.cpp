@@ -63,15 +63,8 @@ Result<void> write_netcdf(const std::string& path, const std::string& named, con
   return file.close(named);
 }
 
-}  // namespace
-
-HeightFigures figures_of(const HeightMap& map) {
-  const auto [low, high] = std::ranges::minmax(map.height_m);
-  const double square = mean_square_step(map, 1, map.columns - 1, map.rows) +
-                        mean_square_step(map, map.columns, map.columns, map.rows - 1);
-  return {double{low}, double{high}, std::sqrt(square) / map.pitch_m};
-}
-
+// Errors, at `where`: unsuitable: no heights, more than kMostHeights, a height that is not a number or
+// beyond 1 m (with its column and row), a pitch outside 10 nm to 10 m.
 Result<void> check_height_map(const HeightMap& map, const std::string& where) {
   if (!(map.pitch_m >= kLeastHeightPitch_m && map.pitch_m <= kLargestHeightPitch_m))
     return fail(ErrorKind::unsuitable, fmt::format("its pitch is {:g} m", map.pitch_m), where,
@@ -88,6 +81,15 @@ Result<void> check_height_map(const HeightMap& map, const std::string& where) {
       ErrorKind::unsuitable,
       fmt::format("the height in column {}, row {} is {} m", at % map.columns, at / map.columns, *wrong),
       where, "heights are numbers within 1 m; fill in what the instrument did not measure");
+}
+
+}  // namespace
+
+HeightFigures figures_of(const HeightMap& map) {
+  const auto [low, high] = std::ranges::minmax(map.height_m);
+  const double square = mean_square_step(map, 1, map.columns - 1, map.rows) +
+                        mean_square_step(map, map.columns, map.columns, map.rows - 1);
+  return {double{low}, double{high}, std::sqrt(square) / map.pitch_m};
 }
 
 std::string height_map_path(const std::string& name) {

@@ -91,8 +91,9 @@ std::string asked_for(const TickBudget& budget) {
   return asked;
 }
 
-}  // namespace
-
+// RMS error of the place by looking ahead, m: with a delay d, a constant acceleration a gives an error of a
+// d (d / 2 + t), where t is the delay of the tracker's speed (for an alpha-beta filter (alpha - beta / 2) /
+// beta ticks; core FingerTracker). Valid for changes that are slow relative to both.
 double missed_place_m(const UnsteadySpeed& hand, const PrepareOptions& options, double delay_s) {
   const double acceleration =
       std::numbers::sqrt2 * std::numbers::pi * hand.rate_hz * hand.part * hand.speed_mps;
@@ -100,6 +101,8 @@ double missed_place_m(const UnsteadySpeed& hand, const PrepareOptions& options, 
   if (!options.look_ahead) return hand.speed_mps * ahead_s;
   return acceleration * ahead_s * (ahead_s / 2 + speed_lag_s(options.rate_hz));
 }
+
+}  // namespace
 
 double unsteady_speed_error(std::span<const PlacedTexture> textures, const UnsteadySpeed& hand,
                             const PrepareOptions& options, double delay_s) {

@@ -22,11 +22,6 @@ struct UnsteadySpeed {
   double rate_hz = 2;
 };
 
-/// RMS error of the place by looking ahead, m: with a delay d, a constant acceleration a gives an error of a
-/// d (d / 2 + t), where t is the delay of the tracker's speed (for an alpha-beta filter (alpha - beta / 2) /
-/// beta ticks; core FingerTracker). Valid for changes that are slow relative to both.
-double missed_place_m(const UnsteadySpeed& hand, const PrepareOptions& options, double delay_s);
-
 /// RMS error of the values read there, re the content of the band at the mean speed, for the texture with the
 /// largest error: an upper estimate, for an encoder finer than the tracker's noise (budget_promise_test: 0.75
 /// of it at most, 0.15 median, because the tracker averages over shorter times when its error is large).
