@@ -9,8 +9,8 @@
 
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
-#include "analysis/design/design.hpp"
 #include "analysis/design/design_page.hpp"
+#include "analysis/design/judged_piece.hpp"
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "playback/cli/scene_forces.hpp"

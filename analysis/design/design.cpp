@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -15,7 +14,6 @@
 #include "analysis/design/boundary.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "playback/prepare/scene/acting_load.hpp"
-#include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/stability/acting_patches.hpp"
 #include "playback/stability/adversary.hpp"
@@ -27,89 +25,6 @@ namespace tacto::analysis {
 namespace {
 
 using schema::ErrorKind;
-using schema::Piece;
-using schema::PieceShape;
-using schema::Scene;
-
-using Vector = std::array<double, 3>;
-
-constexpr double kSameDirection = 1e-9;  // of cosines
-
-double dot_of(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-Vector normal_of(const Piece& plane) {
-  const double size = std::sqrt(dot_of(plane.direction, plane.direction));
-  return {plane.direction[0] / size, plane.direction[1] / size, plane.direction[2] / size};
-}
-
-Vector place_of(const Piece& piece) {
-  return {piece.x_m, piece.y_m, piece.z_m};
-}
-
-// Of the surface of a plane along its normal.
-double height_m(const Piece& plane, double point_radius_m) {
-  return dot_of(normal_of(plane), place_of(plane)) + point_radius_m;
-}
-
-enum class Meeting {
-  none,    // at no place, or along perpendicular directions
-  summed,  // planes of the same direction
-  other
-};
-
-bool is_half_space(const Piece& piece) {
-  return piece.shape == PieceShape::plane && !(piece.thickness_m > 0);
-}
-
-Meeting meeting_of_planes(const Piece& a, const Piece& b, double radius_m) {
-  const double cosine = dot_of(normal_of(a), normal_of(b));
-  if (std::abs(cosine) < kSameDirection) return Meeting::none;
-  if (!is_half_space(a) || !is_half_space(b)) return Meeting::other;
-  const bool apart = height_m(a, radius_m) + height_m(b, radius_m) <= 0;
-  if (cosine < kSameDirection - 1) return apart ? Meeting::none : Meeting::other;
-  const bool one_leak = a.integral_leak_per_s == b.integral_leak_per_s || !(a.integral_n_per_m_s > 0) ||
-                        !(b.integral_n_per_m_s > 0);
-  return cosine > 1 - kSameDirection && one_leak ? Meeting::summed : Meeting::other;
-}
-
-Meeting meeting_of(const Piece& a, const Piece& b, double radius_m) {
-  if (a.shape == PieceShape::plane && b.shape == PieceShape::plane) return meeting_of_planes(a, b, radius_m);
-  if (b.shape == PieceShape::plane) return meeting_of(b, a, radius_m);
-  if (b.shape != PieceShape::sphere) return Meeting::other;
-  const Vector centre = place_of(b);
-  double distance_m = 0;
-  if (is_half_space(a))
-    distance_m = dot_of(normal_of(a), centre) - height_m(a, radius_m);
-  else if (a.shape == PieceShape::sphere)
-    distance_m = std::hypot(a.x_m - b.x_m, a.y_m - b.y_m, a.z_m - b.z_m) - a.radius_m - radius_m;
-  else
-    return Meeting::other;
-  return distance_m >= b.radius_m + radius_m ? Meeting::none : Meeting::other;
-}
-
-double growth_of(const Piece& piece, const DesignRequest& request) {
-  return playback::wall_growth(piece, request.device, request.rate_hz, request.hand);
-}
-
-void add_wall(Piece& sum, const Piece& other) {
-  sum.stiffness_n_per_m += other.stiffness_n_per_m;
-  sum.damping_n_s_per_m += other.damping_n_s_per_m;
-  if (other.integral_n_per_m_s > 0) sum.integral_leak_per_s = other.integral_leak_per_s;
-  sum.integral_n_per_m_s += other.integral_n_per_m_s;
-}
-
-// Of `same`, those that touch a hand which is as deep as the surface of `lowest`.
-JudgedPiece sum_down_to(const Piece& piece, const Piece& lowest, const std::vector<const Piece*>& same) {
-  JudgedPiece sum{piece, {}, {}, 0, Stability::stable};
-  for (const Piece* other : same) {
-    if (height_m(*other, 0) < height_m(lowest, 0)) continue;
-    add_wall(sum.total, *other);
-    sum.with.push_back(other->name);
-  }
-  return sum;
-}
 
 void judge(JudgedLayer& layer, const DesignRequest& request, const playback::ActingLoad& load) {
   const std::vector<std::string>& unknown = load.unknown;
@@ -276,37 +191,6 @@ bool has_larger_share(const JudgedLayer& a, const JudgedLayer& b) {
 }
 
 }  // namespace
-
-JudgedPiece judged_piece(const Scene& scene, std::size_t index, const DesignRequest& request) {
-  const Piece& piece = scene.pieces[index];
-  const bool adds = scene.contact == schema::PieceContact::add;
-  std::vector<const Piece*> same;
-  std::vector<std::string> unjudged;
-  Piece damped = piece;
-  for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
-    if (i == index) continue;
-    const Piece& other = scene.pieces[i];
-    const Meeting meeting = meeting_of(piece, other, scene.point_radius_m);
-    if (meeting == Meeting::summed && adds) same.push_back(&other);
-    if (meeting != Meeting::other) continue;
-    unjudged.push_back(other.name);
-    damped.damping_n_s_per_m += other.damping_n_s_per_m;
-  }
-  std::vector<const Piece*> depths = same;
-  depths.push_back(&piece);
-  JudgedPiece worst;
-  for (const Piece* lowest : depths) {
-    if (height_m(*lowest, 0) > height_m(piece, 0)) continue;  // there the hand is above the piece
-    JudgedPiece sum = sum_down_to(piece, *lowest, same);
-    sum.growth = growth_of(sum.total, request);
-    if (sum.growth >= worst.growth) worst = std::move(sum);
-  }
-  if (worst.growth > 1)
-    worst.verdict = Stability::unstable;
-  else if (!unjudged.empty() && (adds || growth_of(damped, request) > 1))
-    worst.verdict = Stability::not_known, worst.unjudged = std::move(unjudged);
-  return worst;
-}
 
 double JudgedLoop::limit(Holder holder, double damping) const {
   switch (holder) {
