@@ -110,9 +110,9 @@ void add_loops(const LoopFit& fit, Results& results) {
   results.figures.push_back({"lag", fmt::format("{:.3g} degrees", kDegrees * fit.lag_rad)});
   results.figures.push_back({"left", fmt::format("{:.2g} % by the operator, {:.3g} % by a line",
                                                  100 * fit.residual_part, 100 * fit.linear_residual_part)});
-  constexpr std::size_t kMostPoints = 1000;
+  constexpr std::size_t kMostLoopPoints = 1000;
   ResultCurve measured{"measured", {}, {}}, model{"operator", {}, {}, true};
-  const std::size_t step = fit.loop_v.size() / kMostPoints + 1;
+  const std::size_t step = fit.loop_v.size() / kMostLoopPoints + 1;
   for (std::size_t i = 0; i < fit.loop_v.size(); i += step) {
     measured.x.push_back(fit.loop_v[i]);
     measured.y.push_back(1e6 * fit.loop_m[i]);

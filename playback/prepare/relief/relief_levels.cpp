@@ -280,8 +280,10 @@ ForceSlopes ForceRelief::slopes(double width_m, double height_m) const {
   for (const Relief* component : {&x, &y})
     for (const float c : component->levels.front().coefficients)
       coefficient = std::max(coefficient, std::abs(double{c}));
-  constexpr double kRounding = 0x1p-22;  // of two differences of coefficients in single precision
-  const auto known = [&](double slope) { return slope > kRounding * coefficient ? slope / x.pitch_m : 0; };
+  constexpr double kSlopeRounding = 0x1p-22;  // of two differences of coefficients in single precision
+  const auto known = [&](double slope) {
+    return slope > kSlopeRounding * coefficient ? slope / x.pitch_m : 0;
+  };
   return {known(-least), known(most), known(curl)};
 }
 
