@@ -207,8 +207,7 @@ cli::Action declare_pack(CLI::App& app) {
                  "CC0-1.0, CC-BY-4.0, CC-BY-SA-4.0, CC-BY-NC-4.0, ODbL-1.0, or the address of another one");
   app.add_flag("--with-subjects", options->with_subjects,
                "Keep the codes of subjects. Default: they are removed from sidecars, notes, names and "
-               "tables; only codes "
-               "that are the 'subject' of a recording are known");
+               "tables; only codes that are the 'subject' of a recording are known");
   cli::declare_force(app, options->existing);
   return [options] { return run_pack(*options); };
 }

@@ -32,19 +32,18 @@ namespace {
 
 using cli::Report;
 using schema::ErrorKind;
-using schema::Result;
-
 using schema::Dimension;
+using schema::Result;
 
 // `trade` of a scene of force patches on a force device.
 
 // For the help of the verb.
-inline constexpr const char* kSceneTradeRule =
+constexpr const char* kSceneTradeRule =
     "With --device: the choices are the octaves of noise, the filter of triangular and square grooves, the "
     "finest level of height maps and textures, and the rates of the device. Each has its largest error "
     "against the scene in double precision, the time of a tick, its memory, and the largest stable "
-    "stiffness, "
-    "as 'design' computes it. --max-error and --max-tick choose octaves and filters; the chosen scene is "
+    "stiffness, as 'design' computes it. --max-error and --max-tick choose octaves and filters; the chosen "
+    "scene is "
     "played, rendered and explained as any other. An error that cannot be promised is refused.";
 
 struct SceneTradeOptions {
