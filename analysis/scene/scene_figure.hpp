@@ -10,6 +10,7 @@
 
 #include "analysis/scene/hand_path.hpp"
 #include "analysis/scene/relief_raster.hpp"
+#include "analysis/scene/scene_map.hpp"
 #include "data-schema/device/device.hpp"
 #include "data-schema/device/hand.hpp"
 #include "data-schema/scene/scene.hpp"
