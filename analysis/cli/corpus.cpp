@@ -8,11 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/cli/corpus_parts.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/corpus/corpus_init.hpp"
+#include "analysis/corpus/corpus_pack.hpp"
 #include "analysis/corpus/corpus_run.hpp"
 #include "analysis/corpus/corpus_status.hpp"
+#include "analysis/corpus/corpus_workflow.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/command/stop_signals.hpp"
 #include "data-schema/report/progress.hpp"
@@ -172,6 +173,92 @@ cli::Action declare_status(CLI::App& app) {
   declare_verify(app, *verify);
   CLI::App* const verb = app.get_parent();
   return [study, verify, verb] { return run_status(*study, *verify, verb->count("--json") > 0); };
+}
+
+Result<Report> run_pack(const CorpusPackOptions& options) {
+  const cli::StopSignals signals;
+  cli::Progress progress("recordings");
+  const auto pack = pack_corpus(
+      options, [&](double fraction) { progress.update(fraction); }, [&] { return signals.stop_asked(); });
+  TACTO_TRY(pack);
+  cli::Report report;
+  report.add("recordings", pack->recordings).add("files", pack->files);
+  if (pack->left_out > 0) report.add("left_out_damaged_recordings", pack->left_out);
+  if (pack->renamed > 0) report.add("renamed_because_of_a_subjects_code", pack->renamed);
+  report.add("subject_codes", options.with_subjects ? "are in the dataset" : "are removed");
+  report.add("folder", options.output);
+  return report.add("next", "cd " + cli::shell_word(options.output) + " && sha256sum -c --quiet SHA256SUMS");
+}
+
+cli::Action declare_pack(CLI::App& app) {
+  const auto options = std::make_shared<CorpusPackOptions>();
+  schema::Citation& citation = options->citation;
+  app.add_option("STUDY", options->study, "Folder of the plan")->required();
+  app.add_option("-o,--output", options->output, "Folder to write")->required();
+  app.add_option("--title", citation.title,
+                 "Title of the dataset; as the next four needed in order to cite it");
+  app.add_option("--creator", citation.creators,
+                 "A creator, if you like with ORCID: 'Doe, Jane <0000-0002-1825-0097>'; repeat it for more")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--publisher", citation.publisher, "Who publishes it: an archive, a university");
+  app.add_option("--year", citation.year, "Year of publication");
+  app.add_option("--licence,--license", citation.licence,
+                 "CC0-1.0, CC-BY-4.0, CC-BY-SA-4.0, CC-BY-NC-4.0, ODbL-1.0, or the address of another one");
+  app.add_flag("--with-subjects", options->with_subjects,
+               "Keep the codes of subjects. Default: they are removed from sidecars, notes, names and "
+               "tables; only codes that are the 'subject' of a recording are known");
+  cli::declare_force(app, options->existing);
+  return [options] { return run_pack(*options); };
+}
+
+struct WorkflowOptions {
+  CorpusWorkflowOptions workflow;
+  schema::Existing existing = schema::Existing::keep;
+};
+
+Result<Report> run_workflow(const WorkflowOptions& options) {
+  const std::string& output = options.workflow.output;
+  TACTO_TRY(schema::check_table_free(output, options.existing, is_workflow));
+  const auto workflow = corpus_workflow(options.workflow);
+  TACTO_TRY(workflow);
+  schema::PendingFiles pending;
+  TACTO_TRY(pending.write(output, workflow->text));
+  TACTO_TRY(pending.commit(options.existing));
+  const bool slurm = options.workflow.engine == WorkflowEngine::slurm;
+  cli::Report report;
+  report.add("recordings", workflow->recordings).add("shards", workflow->shards);
+  report.add("shards_in_the_file", workflow->listed.size());
+  report.add("estimated_work_s", workflow->work_s)
+      .add("estimated_work_of_a_shard_s", workflow->work_s / static_cast<double>(workflow->shards))
+      .add("estimated_from_recordings", workflow->read);
+  report.add("files", std::vector<std::string>{output});
+  return report.add("next", (slurm ? "sbatch " : "snakemake --cores 4 -s ") + cli::shell_word(output));
+}
+
+cli::Action declare_workflow(CLI::App& app) {
+  const auto options = std::make_shared<WorkflowOptions>();
+  CorpusWorkflowOptions& workflow = options->workflow;
+  app.add_option("STUDY", workflow.study, "Folder of the plan")->required();
+  cli::add_choice<WorkflowEngine>(
+      app, "--engine", workflow.engine,
+      {{"slurm", WorkflowEngine::slurm}, {"snakemake", WorkflowEngine::snakemake}},
+      "An array of Slurm, or rules of Snakemake; each task runs 'corpus run --shard I/N'")
+      ->required();
+  app.add_option("-o,--output", workflow.output, "The file to write")->required();
+  app.add_flag("--missing", workflow.missing,
+               "Only shards in which a unit is missing or damaged: to resume after tasks were killed");
+  app.add_option("--shards", workflow.shards,
+                 "Number of shards; default: as many as have a minute of work each (estimated)")
+      ->check(CLI::Range(std::size_t{1}, kMostShards));
+  app.add_option("--account", workflow.account, "For Slurm, as its option")->type_name("NAME");
+  app.add_option("--partition", workflow.partition, "For Slurm, as its option")->type_name("NAME");
+  app.add_option("--time", workflow.time, "Time limit of a shard, as Slurm writes it: 30 (minutes), 2:00:00")
+      ->type_name("LIMIT");
+  app.add_option("--mem", workflow.memory, "Memory of a shard, as Slurm writes it: 500M, 4G")
+      ->type_name("SIZE");
+  cli::declare_force(app, options->existing);
+  return [options] { return run_workflow(*options); };
 }
 
 constexpr cli::VerbPart kParts[] = {

@@ -340,6 +340,34 @@ Result<std::vector<schema::Formant>> formants_in(const std::vector<double>& valu
   return spatial::find_formants(*spectrogram, options.formant);
 }
 
+// Goes through A's formants, strongest first, and matches each with the nearest unmatched frequency in B
+// within half the resolution (1.7268 / window, as for linking ridges). If `by_place`, their extents must
+// also overlap by half of the shorter one. Both lists use one position axis.
+FormantMatch match_formants(std::span<const schema::Formant> a, std::span<const schema::Formant> b,
+                            double resolution_per_m, bool by_place) {
+  FormantMatch match;
+  std::vector<bool> taken(b.size(), false);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    double nearest = resolution_per_m / 2;
+    std::size_t found = b.size();
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const double apart = std::abs(b[j].frequency_per_m - a[i].frequency_per_m);
+      if (taken[j] || apart > nearest || (by_place && !share_places(a[i], b[j]))) continue;
+      nearest = apart;
+      found = j;
+    }
+    if (found == b.size()) {
+      match.missed.push_back(i);
+      continue;
+    }
+    taken[found] = true;
+    match.matched.emplace_back(i, found);
+  }
+  for (std::size_t j = 0; j < b.size(); ++j)
+    if (!taken[j]) match.extra.push_back(j);
+  return match;
+}
+
 void compare_formants(Comparison& comparison, const CompareOptions& options,
                       const std::function<void(double)>& progress) {
   if (!options.formants) return;
@@ -381,8 +409,11 @@ void note_units(Comparison& comparison) {
                   e.level_db > 0 ? "a thousand" : "a thousandth"));
 }
 
-}  // namespace
-
+// Uses the part of each at steady speed (spatial::steady_part; elsewhere the valid bands change from place
+// to place). The finer texture is low-passed to 0.4 cycles per sample of the coarser grid (0.35 if the ratio
+// is not an integer) and resampled by windowed sinc (error below 1e-5 of a tone). The same interpolation
+// moves B onto A's places. Errors: unsuitable: different quantities or units, no common band, fewer than 64
+// samples of either; usage: a shift that is not finite.
 Result<TexturePair> pair_textures(const Texture& a, const Texture& b, const PairOptions& options) {
   TACTO_TRY(check_alike(a, b));
   if (!(options.max_shift_m >= 0 && std::isfinite(options.max_shift_m)))
@@ -401,30 +432,7 @@ Result<TexturePair> pair_textures(const Texture& a, const Texture& b, const Pair
   return pair;
 }
 
-FormantMatch match_formants(std::span<const schema::Formant> a, std::span<const schema::Formant> b,
-                            double resolution_per_m, bool by_place) {
-  FormantMatch match;
-  std::vector<bool> taken(b.size(), false);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    double nearest = resolution_per_m / 2;
-    std::size_t found = b.size();
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const double apart = std::abs(b[j].frequency_per_m - a[i].frequency_per_m);
-      if (taken[j] || apart > nearest || (by_place && !share_places(a[i], b[j]))) continue;
-      nearest = apart;
-      found = j;
-    }
-    if (found == b.size()) {
-      match.missed.push_back(i);
-      continue;
-    }
-    taken[found] = true;
-    match.matched.emplace_back(i, found);
-  }
-  for (std::size_t j = 0; j < b.size(); ++j)
-    if (!taken[j]) match.extra.push_back(j);
-  return match;
-}
+}  // namespace
 
 Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b, const CompareOptions& options,
                            const std::function<void(double)>& progress) {

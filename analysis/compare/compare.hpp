@@ -47,14 +47,6 @@ struct TexturePair {
   double length_m() const { return static_cast<double>(a.size()) * pitch_m; }
 };
 
-/// Uses the part of each at steady speed (spatial::steady_part; elsewhere the valid bands change from place
-/// to place). The finer texture is low-passed to 0.4 cycles per sample of the coarser grid (0.35 if the ratio
-/// is not an integer) and resampled by windowed sinc (error below 1e-5 of a tone). The same interpolation
-/// moves B onto A's places. Errors: unsuitable: different quantities or units, no common band, fewer than 64
-/// samples of either; usage: a shift that is not finite.
-schema::Result<TexturePair> pair_textures(const schema::Texture& a, const schema::Texture& b,
-                                          const PairOptions& options);
-
 struct CompareOptions {
   PairOptions pair;
   /// Length of Welch's windows; by default an eighth of the shorter texture (15 segments), and at most 8
@@ -84,12 +76,6 @@ struct FormantMatch {
   std::vector<std::size_t> missed;                           ///< in A, not in B
   std::vector<std::size_t> extra;                            ///< in B, not in A
 };
-
-/// Goes through A's formants, strongest first, and matches each with the nearest unmatched frequency in B
-/// within half the resolution (1.7268 / window, as for linking ridges). If `by_place`, their extents must
-/// also overlap by half of the shorter one. Both lists use one position axis.
-FormantMatch match_formants(std::span<const schema::Formant> a, std::span<const schema::Formant> b,
-                            double resolution_per_m, bool by_place);
 
 struct Comparison {
   TexturePair pair;

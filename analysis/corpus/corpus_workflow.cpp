@@ -60,6 +60,28 @@ Result<void> check_word(const char* option, const std::string& text) {
                               "use letters, digits and _ - . , + @");
 }
 
+// A time limit as Slurm writes it (30, 10:00, 2:00:00, 1-12, 1-12:30 ...) in minutes; none for other text.
+std::optional<double> slurm_minutes(const std::string& text) {
+  const std::size_t dash = text.find('-');
+  const auto days = dash == std::string::npos ? 0.0 : whole_number(std::string_view(text).substr(0, dash));
+  auto parts = fields(std::string_view(text).substr(dash == std::string::npos ? 0 : dash + 1));
+  if (!days || !parts || parts->size() > 3) return std::nullopt;
+  // After days: hours, minutes, seconds. Otherwise minutes; minutes, seconds; hours, minutes, seconds.
+  if (dash == std::string::npos && parts->size() < 3) parts->insert(parts->begin(), 0);
+  parts->resize(3);
+  return *days * 1440 + (*parts)[0] * 60 + (*parts)[1] + (*parts)[2] / 60;
+}
+
+// A size as Slurm writes it (500M, 4G; megabytes without a letter) in megabytes; none for other text.
+std::optional<double> slurm_megabytes(const std::string& text) {
+  constexpr std::string_view kLetters = "KMGT";
+  const std::size_t letter = text.empty() ? std::string_view::npos : kLetters.find(text.back());
+  const bool bare = letter == std::string_view::npos;
+  const auto size = whole_number(std::string_view(text).substr(0, text.size() - (bare ? 0 : 1)));
+  if (!size) return std::nullopt;
+  return *size * std::pow(1024.0, bare ? 0.0 : static_cast<double>(letter) - 1);
+}
+
 Result<void> check_options(const CorpusWorkflowOptions& options) {
   TACTO_TRY(check_word("--account", options.account));
   TACTO_TRY(check_word("--partition", options.partition));
@@ -205,26 +227,6 @@ std::string snakemake_text(const CorpusWorkflowOptions& options, const CorpusWor
 
 bool is_workflow(std::string_view first_line) {
   return first_line == kMadeBy;
-}
-
-std::optional<double> slurm_minutes(const std::string& text) {
-  const std::size_t dash = text.find('-');
-  const auto days = dash == std::string::npos ? 0.0 : whole_number(std::string_view(text).substr(0, dash));
-  auto parts = fields(std::string_view(text).substr(dash == std::string::npos ? 0 : dash + 1));
-  if (!days || !parts || parts->size() > 3) return std::nullopt;
-  // After days: hours, minutes, seconds. Otherwise minutes; minutes, seconds; hours, minutes, seconds.
-  if (dash == std::string::npos && parts->size() < 3) parts->insert(parts->begin(), 0);
-  parts->resize(3);
-  return *days * 1440 + (*parts)[0] * 60 + (*parts)[1] + (*parts)[2] / 60;
-}
-
-std::optional<double> slurm_megabytes(const std::string& text) {
-  constexpr std::string_view kLetters = "KMGT";
-  const std::size_t letter = text.empty() ? std::string_view::npos : kLetters.find(text.back());
-  const bool bare = letter == std::string_view::npos;
-  const auto size = whole_number(std::string_view(text).substr(0, text.size() - (bare ? 0 : 1)));
-  if (!size) return std::nullopt;
-  return *size * std::pow(1024.0, bare ? 0.0 : static_cast<double>(letter) - 1);
 }
 
 Result<CorpusWorkflow> corpus_workflow(const CorpusWorkflowOptions& options) {

@@ -41,9 +41,4 @@ schema::Result<CorpusWorkflow> corpus_workflow(const CorpusWorkflowOptions& opti
 /// Whether a file with this first comment was made of a CorpusWorkflow::text.
 bool is_workflow(std::string_view first_line);
 
-/// A time limit as Slurm writes it (30, 10:00, 2:00:00, 1-12, 1-12:30 ...) in minutes; none for other text.
-std::optional<double> slurm_minutes(const std::string& text);
-/// A size as Slurm writes it (500M, 4G; megabytes without a letter) in megabytes; none for other text.
-std::optional<double> slurm_megabytes(const std::string& text);
-
 }  // namespace tacto::analysis

@@ -151,41 +151,6 @@ std::string damper_words(const Design& design) {
       layer_name(*lowest), stiffness_words(*lowest->simulated->limit_n_per_m), least);
 }
 
-}  // namespace
-
-cli::Report design_head(const Design& design) {
-  const DesignRequest& request = design.request;
-  cli::Report head;
-  head.add("verdict", design_verdict(design)).add("device", request.device.name);
-  head.add("judged", holder_name(request.judged, request)).add("rate_hz", request.rate_hz);
-  head.add("delay_s", request.device.delay_s);
-  if (!design.simulated.empty()) head.add("simulated", design.simulated);
-  if (const std::string words = damper_words(design); !words.empty()) head.add("damper", words);
-  return head;
-}
-
-std::vector<schema::ResultFigure> design_figures(const Design& design) {
-  const DesignRequest& request = design.request;
-  std::vector<schema::ResultFigure> figures;
-  const cli::Report head = design_head(design);
-  for (const auto& [key, value] : cli::ReportPrinter::entries(head))
-    figures.push_back({cli::labels_of({key}).front(), cli::cell_text(key, value)});
-  for (const schema::DeviceAxis& axis : request.device.axes)
-    if (axis.name != "z")
-      figures.push_back(
-          {"axis " + axis.name,
-           fmt::format("{:.4g} kg, {:.4g} N s/m, Coulomb friction {}, encoder step {}", axis.mass_kg,
-                       axis.viscous_n_s_per_m, for_people(axis.coulomb_n, Dimension::force),
-                       for_people(axis.encoder_step_m, Dimension::length))});
-  if (request.hand)
-    figures.push_back({"hand", fmt::format("{}: {:.4g} kg, {:.4g} N s/m, {:.4g} N/m", request.hand->name,
-                                           request.hand->mass_kg, request.hand->damping_n_s_per_m,
-                                           request.hand->stiffness_n_per_m)});
-  for (const Remedy& remedy : design.remedies)
-    figures.push_back({"remedy: " + remedy.change, fmt::format("{} (now {})", remedy.needed, remedy.now)});
-  return figures;
-}
-
 DesignRow layer_row(const JudgedLayer& layer, const DesignRequest& request) {
   const bool reached = layer.verdict != Stability::not_reached;
   const auto if_reached = [&](double value) { return reached ? value : NAN; };
@@ -220,6 +185,41 @@ DesignRow layer_row(const JudgedLayer& layer, const DesignRequest& request) {
   row.push_back({"verdict", std::string(to_string(layer.verdict))});
   row.push_back({"because", layer.because});
   return row;
+}
+
+}  // namespace
+
+cli::Report design_head(const Design& design) {
+  const DesignRequest& request = design.request;
+  cli::Report head;
+  head.add("verdict", design_verdict(design)).add("device", request.device.name);
+  head.add("judged", holder_name(request.judged, request)).add("rate_hz", request.rate_hz);
+  head.add("delay_s", request.device.delay_s);
+  if (!design.simulated.empty()) head.add("simulated", design.simulated);
+  if (const std::string words = damper_words(design); !words.empty()) head.add("damper", words);
+  return head;
+}
+
+std::vector<schema::ResultFigure> design_figures(const Design& design) {
+  const DesignRequest& request = design.request;
+  std::vector<schema::ResultFigure> figures;
+  const cli::Report head = design_head(design);
+  for (const auto& [key, value] : cli::ReportPrinter::entries(head))
+    figures.push_back({cli::labels_of({key}).front(), cli::cell_text(key, value)});
+  for (const schema::DeviceAxis& axis : request.device.axes)
+    if (axis.name != "z")
+      figures.push_back(
+          {"axis " + axis.name,
+           fmt::format("{:.4g} kg, {:.4g} N s/m, Coulomb friction {}, encoder step {}", axis.mass_kg,
+                       axis.viscous_n_s_per_m, for_people(axis.coulomb_n, Dimension::force),
+                       for_people(axis.encoder_step_m, Dimension::length))});
+  if (request.hand)
+    figures.push_back({"hand", fmt::format("{}: {:.4g} kg, {:.4g} N s/m, {:.4g} N/m", request.hand->name,
+                                           request.hand->mass_kg, request.hand->damping_n_s_per_m,
+                                           request.hand->stiffness_n_per_m)});
+  for (const Remedy& remedy : design.remedies)
+    figures.push_back({"remedy: " + remedy.change, fmt::format("{} (now {})", remedy.needed, remedy.now)});
+  return figures;
 }
 
 // Of the place at which a layer is judged; the same for all layers that act there.

@@ -23,8 +23,6 @@ inline constexpr const char* kDesignCsvHead = "patch,layer,type,stiffness_n_per_
 /// Keys and SI values of a row; NaN or infinity: nothing.
 using DesignRow = std::vector<std::pair<std::string, std::variant<double, std::size_t, std::string>>>;
 
-DesignRow layer_row(const JudgedLayer& layer, const DesignRequest& request);
-
 /// The tables of the verb and of the page, without empty columns.
 struct DesignTables {
   std::vector<cli::Report> layers, needs, remedies;

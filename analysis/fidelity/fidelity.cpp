@@ -31,7 +31,7 @@
 #include "playback/model/finger_path.hpp"
 #include "playback/model/spatial_content.hpp"
 #include "playback/render/reference/exact_target.hpp"
-#include "playback/session/session_columns.hpp"
+#include "playback/session/session_rows.hpp"
 #include "spatial/dsp/filter/band.hpp"
 #include "spatial/features/band_kept.hpp"
 #include "spatial/texture/valid_band.hpp"

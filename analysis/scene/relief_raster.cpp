@@ -5,17 +5,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/scene/patch_frame.hpp"
 #include "playback/render/reference/exact_scene.hpp"
 
 namespace tacto::analysis {
+namespace {
 
 using playback::ExactScene;
 using playback::PreparedScene;
 using spatial::Colour;
 using spatial::Point;
-
-namespace {
 
 // Okabe and Ito's orange and sky blue, pale.
 constexpr Colour kSpringTint{0.98, 0.86, 0.62}, kDamperTint{0.72, 0.87, 0.96};
@@ -131,6 +129,28 @@ double full_force_n(const ReliefRaster& raster) {
 }
 
 }  // namespace
+
+PatchFrame::PatchFrame(const schema::Patch& patch)
+    : centre_m_{patch.x_m, patch.y_m},
+      half_width_m_(patch.width_m / 2),
+      half_height_m_(patch.height_m / 2),
+      cosine_(std::cos(patch.angle_deg * std::numbers::pi / 180)),
+      sine_(std::sin(patch.angle_deg * std::numbers::pi / 180)) {}
+
+Point PatchFrame::in_plane(double u_m, double v_m) const {
+  return {centre_m_.x + cosine_ * u_m - sine_ * v_m, centre_m_.y + sine_ * u_m + cosine_ * v_m};
+}
+
+bool PatchFrame::holds(Point place_m) const {
+  const double x = place_m.x - centre_m_.x, y = place_m.y - centre_m_.y;
+  return std::abs(cosine_ * x + sine_ * y) <= half_width_m_ &&
+         std::abs(cosine_ * y - sine_ * x) <= half_height_m_;
+}
+
+std::array<Point, 4> PatchFrame::corners() const {
+  return {in_plane(-half_width_m_, half_height_m_), in_plane(half_width_m_, half_height_m_),
+          in_plane(half_width_m_, -half_height_m_), in_plane(-half_width_m_, -half_height_m_)};
+}
 
 std::uint8_t acts_of(const schema::ForceLayer& layer) {
   return layer.visit([](const schema::SpringLayer& /*spring*/) { return kActsSpring; },

@@ -2,15 +2,35 @@
 // The layers of a scene that act in each pixel of a picture, and the relief as hill shading.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
 #include "data-schema/device/device.hpp"
+#include "data-schema/scene/patch.hpp"
 #include "playback/prepare/scene/prepared_scene.hpp"
 #include "spatial/picture/draw/geometry.hpp"
 
 namespace tacto::analysis {
+
+// A patch in the plane: its corners, and which places it contains.
+
+/// Places in metres, as spatial::Point with y upwards.
+class PatchFrame {
+ public:
+  explicit PatchFrame(const schema::Patch& patch);
+
+  /// From the patch's axes, from its centre, to the plane.
+  spatial::Point in_plane(double u_m, double v_m) const;
+  bool holds(spatial::Point place_m) const;
+  /// Around the patch.
+  std::array<spatial::Point, 4> corners() const;
+
+ private:
+  spatial::Point centre_m_;
+  double half_width_m_, half_height_m_, cosine_, sine_;
+};
 
 /// Square pixels, from the top left: the centre of pixel (i, j) is at left_m + (i + 1/2) pixel_m, top_m -
 /// (j + 1/2) pixel_m.

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/scene/patch_frame.hpp"
+#include "analysis/scene/relief_raster.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/report/value_text.hpp"
 #include "data-schema/scene/scene.hpp"

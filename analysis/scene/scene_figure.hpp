@@ -50,8 +50,6 @@ class SceneFigure : public spatial::Figure {
   const SceneMap& map() const { return map_; }
   const ReliefRaster& raster() const { return raster_; }
   const std::optional<HandPath>& path() const { return path_; }
-  /// With a session: of each body and lasso, from the topmost patch on.
-  const std::vector<HandPath>& body_paths() const { return body_paths_; }
 
  private:
   explicit SceneFigure(ScenePicture picture) : picture_(std::move(picture)) {}
@@ -64,7 +62,7 @@ class SceneFigure : public spatial::Figure {
   ReliefRaster raster_;
   std::optional<HandPath> path_;
   std::vector<BodyOfScene> bodies_;
-  std::vector<HandPath> body_paths_;  // with a session: one for each
+  std::vector<HandPath> body_paths_;  // with a session: of each body and lasso, from the topmost patch on
 };
 
 }  // namespace tacto::analysis

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "analysis/trade/trade_page.hpp"
 #include "data-schema/base/error.hpp"
@@ -12,6 +13,10 @@
 #include "data-schema/transducer/transducer.hpp"
 
 namespace tacto::analysis {
+
+/// For each choice that was measured on all textures: the largest error, cost and latency, and the sum of the
+/// memory. Precondition: at least one trade, all with the same halves.
+Trade worst_trade(const std::vector<Trade>& trades);
 
 enum class TradeHalves { both, offline, real_time };
 

@@ -7,10 +7,21 @@
 
 #include "analysis/trade/rows/trade_row.hpp"
 #include "data-schema/base/error.hpp"
+#include "data-schema/results/trade_table.hpp"
 #include "data-schema/texture/texture.hpp"
 #include "data-schema/transducer/transducer.hpp"
 
 namespace tacto::analysis {
+
+/// Cost and error of the tick kernel's choices on this machine, for the table of measured choices:
+/// - "reading": nearest, linear, hermite, sinc, per tick: a whole tick under a moving finger (place, two
+///   levels, gain, envelope, limits) without filter; errors for 2.2 to 64 samples per period of a sine: RMS
+///   over its phases at the worst place between two samples, re the RMS of the sine; in single precision, as
+///   in the tick; the largest at so many samples per period or more.
+/// - "inverse": "tap", per tap.
+/// - "hysteresis": "undone", per tick: 16 play operators and the section behind them.
+/// Median CPU time of this thread; about a second in all.
+std::vector<schema::MeasuredChoice> measure_reading_choices();
 
 /// The texture is looped under a finger. Each choice is varied alone from the default (2 kHz, hermite at 16
 /// samples per period, full inverse of 2 ms, with prediction; fingers of 25, 100 and 200 mm/s with exact

@@ -8,7 +8,6 @@
 
 #include "capture/calibrate/travel.hpp"
 #include "capture/cli/calibrate_parts.hpp"
-#include "capture/cli/enter_key.hpp"
 #include "capture/record/watch_counts.hpp"
 #include "data-schema/report/report.hpp"
 #include "data-schema/report/terminal.hpp"

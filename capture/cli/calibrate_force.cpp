@@ -9,7 +9,6 @@
 #include "capture/calibrate/released_weight.hpp"
 #include "capture/calibrate/weights.hpp"
 #include "capture/cli/calibrate_parts.hpp"
-#include "capture/cli/enter_key.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/report/report.hpp"
 #include "firmware-host/open_device.hpp"

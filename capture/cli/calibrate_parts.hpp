@@ -9,9 +9,16 @@
 #include "capture/calibrate/uncertain.hpp"
 #include "capture/record/apply_calibration.hpp"
 #include "capture/record/take.hpp"
+#include "data-schema/base/error.hpp"
 #include "data-schema/command/verb.hpp"
 
 namespace tacto::capture {
+
+/// Prints the instruction to stderr and waits for a line on stdin. Errors: usage: stdin has ended.
+schema::Result<void> wait_for_enter(const std::string& what_to_do);
+
+/// Whether a line has arrived on stdin since the last call; does not wait. Errors: usage: stdin has ended.
+schema::Result<bool> enter_was_pressed();
 
 /// The source of the frames and the destination of the result.
 struct CalibrateOptions {

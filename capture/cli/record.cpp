@@ -31,7 +31,7 @@
 #include "data-schema/report/report_text.hpp"
 #include "data-schema/report/terminal.hpp"
 #include "data-schema/report/warnings.hpp"
-#include "firmware-host/device_to_record.hpp"
+#include "firmware-host/open_device.hpp"
 #include "firmware-host/sim/device/sim_parameters.hpp"
 
 namespace tacto::capture {
@@ -166,27 +166,6 @@ std::size_t terminal_columns() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1U : 79;
 }
 
-// The commands by which another program steers a recording: lines on stdin, answers as lines of JSON on
-// stdout. Commands: "mark LABEL", "stop". The end of the input is "stop", too, so that a recording ends with
-// the program that steers it. A line that is no command is answered by an event "error" and changes nothing.
-// Answers never wait for their reader: if the pipe is full, they are dropped. One thread.
-class CommandLines {
- public:
-  // Reads what has come, without waiting. Returns true from the command "stop" on, but not at the first
-  // call.
-  bool stopped();
-  // The labels of the marks since the last call.
-  std::vector<std::string> take_labels();
-  // Answers a mark. `time_s`: since the first frame, lost frames included.
-  static void answer(const schema::Mark& mark, double time_s);
-
- private:
-  void obey(const std::string& line);
-  std::string input_;
-  std::vector<std::string> labels_;
-  bool begun_ = false, stopped_ = false, too_long_ = false;  // the rest of a line is passed over
-};
-
 constexpr std::size_t kLongestLine = 1000;  // a pipe takes lines of up to 4096 bytes whole
 
 bool ready(int file, short events) {
@@ -203,52 +182,66 @@ void refuse(const char* why) {
   print(cli::Report().add("event", "error").add("what", why).add("remedy", "write 'mark LABEL' or 'stop'"));
 }
 
-void CommandLines::obey(const std::string& line) {
-  if (line == "stop") {
-    stopped_ = true;
-  } else if (!line.starts_with("mark ") || line.size() == 5) {
-    refuse("this line is no command");
-  } else if (!is_utf8(line)) {
-    refuse("the label is not UTF-8");
-  } else {
-    labels_.push_back(line.substr(5));
-  }
-}
-
-bool CommandLines::stopped() {
-  if (!std::exchange(begun_, true)) {  // also a program that stops at once gets a recording, of one block
-    print(cli::Report().add("event", "recording"));
-    return false;
-  }
-  char bytes[4096];
-  while (!stopped_ && ready(STDIN_FILENO, POLLIN)) {
-    const auto got = ::read(STDIN_FILENO, bytes, sizeof bytes);
-    if (got <= 0) return stopped_ = true;
-    input_.append(bytes, static_cast<std::size_t>(got));
-    for (auto end = input_.find('\n'); end != input_.npos && !stopped_; end = input_.find('\n')) {
-      const std::string line = input_.substr(0, end);
-      input_.erase(0, end + 1);
-      if (std::exchange(too_long_, false)) continue;
-      obey(line.ends_with('\r') ? line.substr(0, line.size() - 1) : line);
+// The commands by which another program steers a recording: lines on stdin, answers as lines of JSON on
+// stdout. Commands: "mark LABEL", "stop". The end of the input is "stop", too, so that a recording ends with
+// the program that steers it. A line that is no command is answered by an event "error" and changes nothing.
+// Answers never wait for their reader: if the pipe is full, they are dropped. One thread.
+class CommandLines {
+ public:
+  // Reads what has come, without waiting. Returns true from the command "stop" on, but not at the first
+  // call.
+  bool stopped() {
+    if (!std::exchange(begun_, true)) {  // also a program that stops at once gets a recording, of one block
+      print(cli::Report().add("event", "recording"));
+      return false;
     }
-    if (input_.size() <= kLongestLine) continue;
-    if (!std::exchange(too_long_, true)) refuse("this line is longer than 1000 bytes");
-    input_.clear();
+    char bytes[4096];
+    while (!stopped_ && ready(STDIN_FILENO, POLLIN)) {
+      const auto got = ::read(STDIN_FILENO, bytes, sizeof bytes);
+      if (got <= 0) return stopped_ = true;
+      input_.append(bytes, static_cast<std::size_t>(got));
+      for (auto end = input_.find('\n'); end != input_.npos && !stopped_; end = input_.find('\n')) {
+        const std::string line = input_.substr(0, end);
+        input_.erase(0, end + 1);
+        if (std::exchange(too_long_, false)) continue;
+        obey(line.ends_with('\r') ? line.substr(0, line.size() - 1) : line);
+      }
+      if (input_.size() <= kLongestLine) continue;
+      if (!std::exchange(too_long_, true)) refuse("this line is longer than 1000 bytes");
+      input_.clear();
+    }
+    return stopped_;
   }
-  return stopped_;
-}
 
-std::vector<std::string> CommandLines::take_labels() {
-  return std::exchange(labels_, {});
-}
+  // The labels of the marks since the last call.
+  std::vector<std::string> take_labels() { return std::exchange(labels_, {}); }
 
-void CommandLines::answer(const schema::Mark& mark, double time_s) {
-  print(cli::Report()
-            .add("event", "mark")
-            .add("frame", mark.frame)
-            .add("time_s", time_s)
-            .add("label", mark.label));
-}
+  // Answers a mark. `time_s`: since the first frame, lost frames included.
+  static void answer(const schema::Mark& mark, double time_s) {
+    print(cli::Report()
+              .add("event", "mark")
+              .add("frame", mark.frame)
+              .add("time_s", time_s)
+              .add("label", mark.label));
+  }
+
+ private:
+  void obey(const std::string& line) {
+    if (line == "stop") {
+      stopped_ = true;
+    } else if (!line.starts_with("mark ") || line.size() == 5) {
+      refuse("this line is no command");
+    } else if (!is_utf8(line)) {
+      refuse("the label is not UTF-8");
+    } else {
+      labels_.push_back(line.substr(5));
+    }
+  }
+
+  std::string input_;
+  std::vector<std::string> labels_;
+  bool begun_ = false, stopped_ = false, too_long_ = false;  // the rest of a line is passed over
+};
 
 constexpr int kBar = 8;
 

@@ -4,24 +4,26 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "capture/import/import.hpp"
-#include "capture/import/stylus_table.hpp"
+#include "capture/table/source.hpp"
 #include "data-schema/base/error.hpp"
 #include "data-schema/texture/texture.hpp"
 
 namespace tacto::capture {
 
-/// The largest deviation of a position from the even grid, in pitches. Heights are assumed to be at the
-/// positions of the grid. A profile with a larger deviation is not even, unless its positions are those of
-/// nearest_grid(), rounded to their last printed digit.
-inline constexpr double kMostUnevenness = 0.25;
-
-/// A pitch that is fitted to positions which are printed more coarsely is known to 1 % if the profile is at
-/// least so many printed digits long.
-inline constexpr double kFewestPrintedDigits = 100;
+/// A roughness that a file states before its table, as "Ra,56.1,nm" or "Rq (um) = 0,312", and that of the
+/// heights: Ra is the mean, Rq the root mean square of the distances from their least-squares line (ISO
+/// 4287), without a roughness filter.
+struct StatedRoughness {
+  std::string name;
+  double stated_m = 0, computed_m = 0;
+  bool agrees = false;  ///< within half of the last stated digit and kRoughnessTolerance
+};
 
 /// Heights on an even grid, and the description in their file.
 struct HeightProfile {

@@ -8,10 +8,16 @@
 #include <cmath>
 #include <limits>
 
+#include "capture/calibrate/uncertain.hpp"
 #include "data-schema/base/quantity.hpp"
 
 namespace tacto::capture {
 namespace {
+
+// In an entry, 0 degrees of freedom mean that the uncertainty is not from scatter.
+double degrees_of(const schema::CalibrationEntry& entry) {
+  return entry.degrees_of_freedom > 0 ? entry.degrees_of_freedom : std::numeric_limits<double>::infinity();
+}
 
 constexpr double kFar = 10;       // times the usual distance from the local median
 constexpr double kUsual = 0.99;   // the quantile that defines the usual distance
@@ -68,7 +74,26 @@ std::string count_of(std::uint64_t count, std::uint64_t all) {
   return fmt::format("{} of {} samples", count, all);
 }
 
+// The largest magnitude of a quantity on a bench for a sliding finger, in its SI unit; infinity if there is
+// no limit. The limits are wide on purpose: beyond them the unit or the scale is wrong.
+double largest_plausible(std::string_view quantity) {
+  const auto found = std::ranges::find(kBounds, quantity, &Bound::quantity);
+  return found == std::end(kBounds) ? std::numeric_limits<double>::infinity() : found->largest;
+}
+
 }  // namespace
+
+std::string scale_fault(const schema::CalibrationEntry& entry) {
+  if (!entry.scale) return {};
+  const double ratio = *entry.scale / entry.nominal_scale;
+  if (!(ratio >= 1 / kMostOffOwnScale && ratio <= kMostOffOwnScale))
+    return fmt::format("the scale of {} would be {:.3g} times the nominal scale of the device", entry.channel,
+                       ratio);
+  const double interval =
+      std::abs(entry.scale_uncertainty.value_or(0) / *entry.scale) * coverage_factor_95(degrees_of(entry));
+  if (interval <= kWidestInterval) return {};
+  return fmt::format("the scale of {} is known only to +-{:.0f} % (95 %)", entry.channel, 100 * interval);
+}
 
 Outliers::Outliers() : histogram_(kBins) {}
 
@@ -171,11 +196,6 @@ double Outliers::usual_distance() const {
     if (below > rank) return upper_edge(bin);
   }
   return 0;
-}
-
-double largest_plausible(std::string_view quantity) {
-  const auto found = std::ranges::find(kBounds, quantity, &Bound::quantity);
-  return found == std::end(kBounds) ? std::numeric_limits<double>::infinity() : found->largest;
 }
 
 Plausibility::Plausibility(const schema::Channel& channel)

@@ -12,13 +12,22 @@
 #include <vector>
 
 #include "capture/import/source_row.hpp"
+#include "data-schema/calibration/calibration.hpp"
 #include "data-schema/recording/recording.hpp"
 
 namespace tacto::capture {
 
-/// The largest magnitude of a quantity on a bench for a sliding finger, in its SI unit; infinity if there is
-/// no limit. The limits are wide on purpose: beyond them the unit or the scale is wrong.
-double largest_plausible(std::string_view quantity);
+// Checks whether a measured scale is plausible for its device.
+
+/// The largest factor between the scale and the nominal scale, in either direction, and the largest width of
+/// the 95 % interval as a fraction of the scale. Our choice: nominal gains are known to some ten per cent. So
+/// beyond a factor of two a unit or a weight is wrong, and beyond a fifth the nominal scale is the better
+/// one.
+inline constexpr double kMostOffOwnScale = 2, kWidestInterval = 0.2;
+
+/// The reason why the entry's scale is implausible: its ratio to the nominal scale (also a negative one), or
+/// its interval. Empty if it is plausible, or if the entry has no scale.
+std::string scale_fault(const schema::CalibrationEntry& entry);
 
 /// The time of a sample for messages: "4.227 s".
 using TimeOf = std::function<std::string(std::uint64_t sample)>;

@@ -2,12 +2,22 @@
 #include "data-schema/base/sha256.hpp"
 
 #include <fmt/format.h>
+#include <nettle/md5.h>
 #include <nettle/sha2.h>
 
 #include <array>
 #include <cstdint>
 
 namespace tacto::schema {
+
+std::string md5_of(std::string_view bytes) {
+  md5_ctx context{};
+  md5_init(&context);
+  md5_update(&context, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
+  std::array<std::uint8_t, MD5_DIGEST_SIZE> digest{};
+  md5_digest(&context, digest.size(), digest.data());
+  return fmt::format("{:02x}", fmt::join(digest, ""));
+}
 
 struct Sha256::State {
   sha256_ctx context{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SHA-256 of bytes that arrive in parts.
+// SHA-256 of bytes that arrive in parts; MD5 as X3P files contain it.
 #pragma once
 
 #include <memory>
@@ -23,5 +23,9 @@ class Sha256 {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// MD5 in lower-case hexadecimal, the checksum inside other programs' files. It finds damage, and does not
+/// protect from forgery.
+std::string md5_of(std::string_view bytes);
 
 }  // namespace tacto::schema

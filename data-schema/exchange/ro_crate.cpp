@@ -114,8 +114,7 @@ void add_people(LinkedData& graph, LinkedData& root, const Citation& citation,
   graph.push_back({{"@id", licence}, {"@type", "CreativeWork"}, {"name", citation.licence}});
 }
 
-}  // namespace
-
+// Reads a creator's text. Errors: usage, for an ORCID whose check digit (ISO 7064 mod 11-2) is wrong.
 Result<Creator> creator_of(const std::string& text) {
   const std::size_t open = text.find(" <");
   if (open == std::string::npos) return Creator{text, ""};
@@ -129,6 +128,8 @@ Result<Creator> creator_of(const std::string& text) {
                 "copy it from orcid.org");
   return Creator{text.substr(0, open), orcid};
 }
+
+}  // namespace
 
 Result<void> check_citation(const Citation& citation) {
   std::vector<std::string> missing;

@@ -24,9 +24,6 @@ struct Citation {
 /// Errors: usage: one that names all missing fields; a field that is wrong.
 Result<void> check_citation(const Citation& citation);
 
-/// Reads a creator's text. Errors: usage, for an ORCID whose check digit (ISO 7064 mod 11-2) is wrong.
-Result<Creator> creator_of(const std::string& text);
-
 struct CrateFile {
   std::string path;  ///< in the crate
   std::uint64_t bytes = 0;

@@ -16,8 +16,8 @@
 #include <utility>
 
 #include "data-schema/base/column_unit.hpp"
-#include "data-schema/base/md5.hpp"
 #include "data-schema/base/module.hpp"
+#include "data-schema/base/sha256.hpp"
 #include "data-schema/exchange/zip/zip_functions.hpp"
 #include "data-schema/files/files.hpp"
 
@@ -149,6 +149,12 @@ Result<std::string> main_xml_of(const Archive& archive) {
               archive.path());
 }
 
+std::string lower_hex(std::string_view text) {
+  std::string lower(without_blanks(text).substr(0, 32));
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
 // The document during reading.
 struct MainXml {
   const Archive& archive;
@@ -179,36 +185,27 @@ struct MainXml {
   Result<double> number_or(const char* path, double otherwise) const {
     return text(path).empty() ? Result<double>(otherwise) : number<double>(path);
   }
-  Result<double> pitch(const char* axis) const;
-  Result<void> check_sum(std::string_view content, std::string_view stated, const std::string& name);
-};
-
-Result<double> MainXml::pitch(const char* axis) const {
-  const std::string at = fmt::format("Record1/Axes/{}/", axis);
-  if (text((at + "AxisType").c_str()) != "I")
-    return unsuitable(fmt::format("has no even spacing of points: its axis {} is not incremental", axis),
-                      "resample it evenly in the program that made it");
-  const std::string increment = at + "Increment";
-  const auto pitch_m = number<double>(increment.c_str());
-  if (pitch_m && !(*pitch_m > 0)) return broken("an increment must be above 0", increment.c_str());
-  return pitch_m;
-}
-
-std::string lower_hex(std::string_view text) {
-  std::string lower(without_blanks(text).substr(0, 32));
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
-
-Result<void> MainXml::check_sum(std::string_view content, std::string_view stated, const std::string& name) {
-  if (without_blanks(stated).empty()) {
-    notes += fmt::format("; no checksum of {}", name);
-    return {};
+  Result<double> pitch(const char* axis) const {
+    const std::string at = fmt::format("Record1/Axes/{}/", axis);
+    if (text((at + "AxisType").c_str()) != "I")
+      return unsuitable(fmt::format("has no even spacing of points: its axis {} is not incremental", axis),
+                        "resample it evenly in the program that made it");
+    const std::string increment = at + "Increment";
+    const auto pitch_m = number<double>(increment.c_str());
+    if (pitch_m && !(*pitch_m > 0)) return broken("an increment must be above 0", increment.c_str());
+    return pitch_m;
   }
-  if (md5_of(content) == lower_hex(stated)) return {};
-  return fail(ErrorKind::malformed, "does not have the MD5 that the file states",
-              fmt::format("{}: {}", archive.path(), name), "copy it again from the measuring computer");
-}
+
+  Result<void> check_sum(std::string_view content, std::string_view stated, const std::string& name) {
+    if (without_blanks(stated).empty()) {
+      notes += fmt::format("; no checksum of {}", name);
+      return {};
+    }
+    if (md5_of(content) == lower_hex(stated)) return {};
+    return fail(ErrorKind::malformed, "does not have the MD5 that the file states",
+                fmt::format("{}: {}", archive.path(), name), "copy it again from the measuring computer");
+  }
+};
 
 // The matrix of points.
 struct Matrix {

@@ -76,25 +76,87 @@ const NumberFormat* number_format(std::string_view name) {
 // [content]; the length counts tag and content.
 class XdfChunks {
  public:
-  static Result<XdfChunks> open(const std::string& path);
+  static Result<XdfChunks> open(const std::string& path) {
+    XdfChunks chunks;
+    chunks.path_ = path;
+    chunks.file_.reset(std::fopen(path.c_str(), "rbe"));
+    struct stat status {};
+    if (chunks.file_ == nullptr || fstat(fileno(chunks.file_.get()), &status) != 0 ||
+        !S_ISREG(status.st_mode))
+      return fail(ErrorKind::not_found, "cannot be opened", path);
+    chunks.size_ = static_cast<std::uint64_t>(status.st_size);
+    char magic[kXdf.size()];
+    if (chunks.size_ < sizeof magic || !chunks.read(magic, sizeof magic) ||
+        std::string_view(magic, sizeof magic) != kXdf)
+      return fail(ErrorKind::malformed, "is no XDF file", path);
+    chunks.end_ = chunks.at_;
+    return chunks;
+  }
 
   // Moves to the next chunk; false at the end of the file, or where it was cut.
-  Result<bool> next();
+  Result<bool> next() {
+    if (at_ != end_ && fseeko(file_.get(), static_cast<off_t>(end_), SEEK_SET) != 0)
+      return fail(ErrorKind::not_found, "cannot be read", path_);
+    at_ = end_;
+    const std::uint64_t begin = at_;
+    const auto cut_here = [&] {
+      cut_ = fmt::format("ends inside chunk {}: its last {} bytes, from byte {} on, are not read", number_,
+                         size_ - begin, begin);
+      return false;
+    };
+    if (at_ == size_) return false;
+    ++number_;
+    char width = 0;
+    TACTO_TRY(read(&width, 1));
+    if (width != 1 && width != 4 && width != 8)
+      return broken(fmt::format("the length of a chunk has 1, 4 or 8 bytes, not {}", int{width}));
+    if (size_ - at_ < static_cast<std::uint64_t>(width)) return cut_here();
+    char raw[8] = {};
+    TACTO_TRY(read(raw, static_cast<std::uint64_t>(width)));
+    const auto length = number_from<std::uint64_t>(raw);
+    if (length < sizeof tag_) return broken(fmt::format("a chunk cannot have {} bytes", length));
+    if (size_ - at_ < length) return cut_here();
+    end_ = at_ + length;
+    const auto tag = take<std::uint16_t>();
+    TACTO_TRY(tag);
+    tag_ = *tag;
+    return true;
+  }
+
   std::uint16_t tag() const { return tag_; }
   std::uint64_t left() const { return end_ - at_; }  // bytes of the chunk
   double fraction() const { return static_cast<double>(at_) / static_cast<double>(size_); }
   const std::string& cut() const { return cut_; }
 
   // The next bytes of the chunk.
-  Result<void> take(char* bytes, std::uint64_t count);
+  Result<void> take(char* bytes, std::uint64_t count) {
+    if (count > left())
+      return broken(fmt::format("the chunk ends {} bytes too early for its content", count - left()));
+    return read(bytes, count);
+  }
+
   template <class Number>
   Result<Number> take() {
     char raw[sizeof(Number)];
     TACTO_TRY(take(raw, sizeof raw));
     return number_from<Number>(raw);
   }
-  Result<std::uint64_t> take_length();
-  Result<std::string> take_xml();
+  Result<std::uint64_t> take_length() {
+    const auto width = take<std::uint8_t>();
+    TACTO_TRY(width);
+    if (*width != 1 && *width != 4 && *width != 8)
+      return broken(fmt::format("a length has 1, 4 or 8 bytes, not {}", *width));
+    char raw[8] = {};
+    TACTO_TRY(take(raw, *width));
+    return number_from<std::uint64_t>(raw);
+  }
+
+  Result<std::string> take_xml() {
+    if (left() > kLargestXml) return broken(fmt::format("a header of {} bytes is not read", left()));
+    std::string text(left(), '\0');
+    TACTO_TRY(take(text.data(), text.size()));
+    return text;
+  }
 
   tl::unexpected<Error> broken(std::string what) const {
     return fail(ErrorKind::malformed, std::move(what),
@@ -106,7 +168,12 @@ class XdfChunks {
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  Result<void> read(char* bytes, std::uint64_t count);
+  Result<void> read(char* bytes, std::uint64_t count) {
+    if (std::fread(bytes, 1, count, file_.get()) != count)
+      return fail(ErrorKind::not_found, "cannot be read to its end", path_, "is the disk in order?");
+    at_ += count;
+    return {};
+  }
 
   std::unique_ptr<std::FILE, Close> file_;
   std::string path_, cut_;
@@ -114,81 +181,6 @@ class XdfChunks {
   std::uint64_t number_ = 0;                   // of the chunk, from 1
   std::uint16_t tag_ = 0;
 };
-
-Result<XdfChunks> XdfChunks::open(const std::string& path) {
-  XdfChunks chunks;
-  chunks.path_ = path;
-  chunks.file_.reset(std::fopen(path.c_str(), "rbe"));
-  struct stat status {};
-  if (chunks.file_ == nullptr || fstat(fileno(chunks.file_.get()), &status) != 0 || !S_ISREG(status.st_mode))
-    return fail(ErrorKind::not_found, "cannot be opened", path);
-  chunks.size_ = static_cast<std::uint64_t>(status.st_size);
-  char magic[kXdf.size()];
-  if (chunks.size_ < sizeof magic || !chunks.read(magic, sizeof magic) ||
-      std::string_view(magic, sizeof magic) != kXdf)
-    return fail(ErrorKind::malformed, "is no XDF file", path);
-  chunks.end_ = chunks.at_;
-  return chunks;
-}
-
-Result<void> XdfChunks::read(char* bytes, std::uint64_t count) {
-  if (std::fread(bytes, 1, count, file_.get()) != count)
-    return fail(ErrorKind::not_found, "cannot be read to its end", path_, "is the disk in order?");
-  at_ += count;
-  return {};
-}
-
-Result<bool> XdfChunks::next() {
-  if (at_ != end_ && fseeko(file_.get(), static_cast<off_t>(end_), SEEK_SET) != 0)
-    return fail(ErrorKind::not_found, "cannot be read", path_);
-  at_ = end_;
-  const std::uint64_t begin = at_;
-  const auto cut_here = [&] {
-    cut_ = fmt::format("ends inside chunk {}: its last {} bytes, from byte {} on, are not read", number_,
-                       size_ - begin, begin);
-    return false;
-  };
-  if (at_ == size_) return false;
-  ++number_;
-  char width = 0;
-  TACTO_TRY(read(&width, 1));
-  if (width != 1 && width != 4 && width != 8)
-    return broken(fmt::format("the length of a chunk has 1, 4 or 8 bytes, not {}", int{width}));
-  if (size_ - at_ < static_cast<std::uint64_t>(width)) return cut_here();
-  char raw[8] = {};
-  TACTO_TRY(read(raw, static_cast<std::uint64_t>(width)));
-  const auto length = number_from<std::uint64_t>(raw);
-  if (length < sizeof tag_) return broken(fmt::format("a chunk cannot have {} bytes", length));
-  if (size_ - at_ < length) return cut_here();
-  end_ = at_ + length;
-  const auto tag = take<std::uint16_t>();
-  TACTO_TRY(tag);
-  tag_ = *tag;
-  return true;
-}
-
-Result<void> XdfChunks::take(char* bytes, std::uint64_t count) {
-  if (count > left())
-    return broken(fmt::format("the chunk ends {} bytes too early for its content", count - left()));
-  return read(bytes, count);
-}
-
-Result<std::uint64_t> XdfChunks::take_length() {
-  const auto width = take<std::uint8_t>();
-  TACTO_TRY(width);
-  if (*width != 1 && *width != 4 && *width != 8)
-    return broken(fmt::format("a length has 1, 4 or 8 bytes, not {}", *width));
-  char raw[8] = {};
-  TACTO_TRY(take(raw, *width));
-  return number_from<std::uint64_t>(raw);
-}
-
-Result<std::string> XdfChunks::take_xml() {
-  if (left() > kLargestXml) return broken(fmt::format("a header of {} bytes is not read", left()));
-  std::string text(left(), '\0');
-  TACTO_TRY(take(text.data(), text.size()));
-  return text;
-}
 
 template <class Number>
 std::optional<Number> number_in(std::string_view text) {
@@ -325,12 +317,60 @@ class XdfSamples {
         take_(take),
         raw_(stream.channels * format.bytes) {}
 
-  Result<void> read(XdfChunks& chunks);
-  Result<void> pass_on();
+  Result<void> read(XdfChunks& chunks) {
+    const auto count = chunks.take_length();
+    TACTO_TRY(count);
+    for (std::uint64_t i = 0; i < *count; ++i, ++done_) {
+      const auto time_s = time(chunks);
+      TACTO_TRY(time_s);
+      if (!std::isfinite(*time_s))
+        return chunks.broken(fmt::format("the time of sample {} is not finite", done_));
+      times_s_.push_back(*time_s);
+      TACTO_TRY(chunks.take(raw_.data(), raw_.size()));
+      TACTO_TRY(add_numbers());
+      if (times_s_.size() + numbers_.size() >= kBlockNumbers) TACTO_TRY(pass_on());
+    }
+    if (chunks.left() > 0)
+      return chunks.broken(fmt::format("the chunk has {} bytes more than its samples", chunks.left()));
+    return {};
+  }
+
+  Result<void> pass_on() {
+    if (times_s_.empty()) return {};
+    TACTO_TRY(take_(times_s_, numbers_));
+    times_s_.clear();
+    numbers_.clear();
+    return {};
+  }
 
  private:
-  Result<double> time(XdfChunks& chunks);
-  Result<void> add_numbers();
+  // Periods are counted from the last stated time: their sum would round at each sample.
+  Result<double> time(XdfChunks& chunks) {
+    const auto width = chunks.take<std::uint8_t>();
+    TACTO_TRY(width);
+    if (*width == sizeof(double)) {
+      const auto stamp_s = chunks.take<double>();
+      if (stamp_s) stamp_s_ = *stamp_s, after_stamp_ = 0;
+      return stamp_s;
+    }
+    if (*width != 0) return chunks.broken(fmt::format("a time has 0 or 8 bytes, not {}", *width));
+    if (done_ > 0 && stream_.nominal_rate_hz > 0) return stamp_s_ + ++after_stamp_ / stream_.nominal_rate_hz;
+    return chunks.broken(fmt::format("sample {} of the stream '{}' has no time", done_, stream_.name));
+  }
+
+  Result<void> add_numbers() {
+    for (const std::size_t k : channels_) {
+      const char* const at = raw_.data() + k * format_.bytes;
+      numbers_.push_back(format_.number_at(at));
+      if (std::isnan(numbers_.back()) && format_.name == "int64")
+        return fail(ErrorKind::unsuitable,
+                    fmt::format("{} is beyond 2^53 and has no exact double", number_from<std::int64_t>(at)),
+                    fmt::format("{}: stream '{}', channel '{}', sample {}", path_, stream_.name,
+                                stream_.labels[k], done_),
+                    "let the sending program subtract an offset");
+    }
+    return {};
+  }
 
   const std::string& path_;
   const XdfStream& stream_;
@@ -342,60 +382,6 @@ class XdfSamples {
   std::uint64_t done_ = 0;
   double stamp_s_ = 0, after_stamp_ = 0;  // the last stated time, and the samples since
 };
-
-// Periods are counted from the last stated time: their sum would round at each sample.
-Result<double> XdfSamples::time(XdfChunks& chunks) {
-  const auto width = chunks.take<std::uint8_t>();
-  TACTO_TRY(width);
-  if (*width == sizeof(double)) {
-    const auto stamp_s = chunks.take<double>();
-    if (stamp_s) stamp_s_ = *stamp_s, after_stamp_ = 0;
-    return stamp_s;
-  }
-  if (*width != 0) return chunks.broken(fmt::format("a time has 0 or 8 bytes, not {}", *width));
-  if (done_ > 0 && stream_.nominal_rate_hz > 0) return stamp_s_ + ++after_stamp_ / stream_.nominal_rate_hz;
-  return chunks.broken(fmt::format("sample {} of the stream '{}' has no time", done_, stream_.name));
-}
-
-Result<void> XdfSamples::add_numbers() {
-  for (const std::size_t k : channels_) {
-    const char* const at = raw_.data() + k * format_.bytes;
-    numbers_.push_back(format_.number_at(at));
-    if (std::isnan(numbers_.back()) && format_.name == "int64")
-      return fail(ErrorKind::unsuitable,
-                  fmt::format("{} is beyond 2^53 and has no exact double", number_from<std::int64_t>(at)),
-                  fmt::format("{}: stream '{}', channel '{}', sample {}", path_, stream_.name,
-                              stream_.labels[k], done_),
-                  "let the sending program subtract an offset");
-  }
-  return {};
-}
-
-Result<void> XdfSamples::read(XdfChunks& chunks) {
-  const auto count = chunks.take_length();
-  TACTO_TRY(count);
-  for (std::uint64_t i = 0; i < *count; ++i, ++done_) {
-    const auto time_s = time(chunks);
-    TACTO_TRY(time_s);
-    if (!std::isfinite(*time_s))
-      return chunks.broken(fmt::format("the time of sample {} is not finite", done_));
-    times_s_.push_back(*time_s);
-    TACTO_TRY(chunks.take(raw_.data(), raw_.size()));
-    TACTO_TRY(add_numbers());
-    if (times_s_.size() + numbers_.size() >= kBlockNumbers) TACTO_TRY(pass_on());
-  }
-  if (chunks.left() > 0)
-    return chunks.broken(fmt::format("the chunk has {} bytes more than its samples", chunks.left()));
-  return {};
-}
-
-Result<void> XdfSamples::pass_on() {
-  if (times_s_.empty()) return {};
-  TACTO_TRY(take_(times_s_, numbers_));
-  times_s_.clear();
-  numbers_.clear();
-  return {};
-}
 
 }  // namespace
 

@@ -13,8 +13,8 @@ namespace tacto::schema {
 namespace {
 
 constexpr const char* kHeightMapKind = "height_map";
-constexpr std::string_view kEnding = ".height.nc";
-constexpr std::size_t kBlock = 256;  // rows and columns of a block in the file
+constexpr std::string_view kHeightEnding = ".height.nc";
+constexpr std::size_t kHeightBlock = 256;  // rows and columns of a block in the file
 
 double mean_square_step(const HeightMap& map, std::size_t stride, std::size_t columns, std::size_t rows) {
   if (columns * rows == 0) return 0;
@@ -40,12 +40,13 @@ Result<void> write_netcdf(const std::string& path, const std::string& named, con
   const int y = file.dimension("y", map.rows), x = file.dimension("x", map.columns);
   const int y_axis = file.axis("y", y, "m", "place along y"),
             x_axis = file.axis("x", x, "m", "place along x");
-  const int height = file.cells(
-      "height", {{y, x}, {std::min(map.rows, kBlock), std::min(map.columns, kBlock)}}, true, "m", "height");
+  const int height =
+      file.cells("height", {{y, x}, {std::min(map.rows, kHeightBlock), std::min(map.columns, kHeightBlock)}},
+                 true, "m", "height");
   put_axis(file, y_axis, map.rows, map.pitch_m);
   put_axis(file, x_axis, map.columns, map.pitch_m);
-  for (std::size_t row = 0; row < map.rows; row += kBlock) {
-    const std::size_t count = std::min(kBlock, map.rows - row);
+  for (std::size_t row = 0; row < map.rows; row += kHeightBlock) {
+    const std::size_t count = std::min(kHeightBlock, map.rows - row);
     file.put(height, {{row, 0}, {count, map.columns}},
              std::span(map.height_m).subspan(row * map.columns, count * map.columns));
   }
@@ -63,15 +64,8 @@ Result<void> write_netcdf(const std::string& path, const std::string& named, con
   return file.close(named);
 }
 
-}  // namespace
-
-HeightFigures figures_of(const HeightMap& map) {
-  const auto [low, high] = std::ranges::minmax(map.height_m);
-  const double square = mean_square_step(map, 1, map.columns - 1, map.rows) +
-                        mean_square_step(map, map.columns, map.columns, map.rows - 1);
-  return {double{low}, double{high}, std::sqrt(square) / map.pitch_m};
-}
-
+// Errors, at `where`: unsuitable: no heights, more than kMostHeights, a height that is not a number or
+// beyond 1 m (with its column and row), a pitch outside 10 nm to 10 m.
 Result<void> check_height_map(const HeightMap& map, const std::string& where) {
   if (!(map.pitch_m >= kLeastHeightPitch_m && map.pitch_m <= kLargestHeightPitch_m))
     return fail(ErrorKind::unsuitable, fmt::format("its pitch is {:g} m", map.pitch_m), where,
@@ -90,8 +84,17 @@ Result<void> check_height_map(const HeightMap& map, const std::string& where) {
       where, "heights are numbers within 1 m; fill in what the instrument did not measure");
 }
 
+}  // namespace
+
+HeightFigures figures_of(const HeightMap& map) {
+  const auto [low, high] = std::ranges::minmax(map.height_m);
+  const double square = mean_square_step(map, 1, map.columns - 1, map.rows) +
+                        mean_square_step(map, map.columns, map.columns, map.rows - 1);
+  return {double{low}, double{high}, std::sqrt(square) / map.pitch_m};
+}
+
 std::string height_map_path(const std::string& name) {
-  return name.ends_with(kEnding) ? name : name + std::string(kEnding);
+  return name.ends_with(kHeightEnding) ? name : name + std::string(kHeightEnding);
 }
 
 Result<void> write_height_map(const std::string& path, const HeightMap& map, Existing existing) {

@@ -30,12 +30,9 @@ struct HeightFigures {
   double lowest_m = 0, highest_m = 0;
   double rms_slope = 0;  ///< of the differences of neighbours along x and y: sqrt(mean dx^2 + mean dy^2)
 };
+
 /// Precondition: a map as check_height_map() accepts it.
 HeightFigures figures_of(const HeightMap& map);
-
-/// Errors, at `where`: unsuitable: no heights, more than kMostHeights, a height that is not a number or
-/// beyond 1 m (with its column and row), a pitch outside 10 nm to 10 m.
-Result<void> check_height_map(const HeightMap& map, const std::string& where);
 
 /// NAME.height.nc of a stem or file name.
 std::string height_map_path(const std::string& name);

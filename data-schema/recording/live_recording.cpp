@@ -26,18 +26,46 @@
 namespace tacto::schema {
 namespace {
 
+tl::unexpected<Error> not_synced(const std::string& path, int error_number) {
+  return fail(ErrorKind::cannot_write,
+              "cannot be written to the disk: " + std::generic_category().message(error_number), path);
+}
+
 // Syncs files periodically on a thread of its own. A sync may take a second on a busy disk. The writer must
 // not wait for it: frames that arrive meanwhile would stay in memory and be lost with the process.
 class BackgroundSync {
  public:
   // The files exist, and may be renamed later. Errors: cannot_write.
-  static Result<std::unique_ptr<BackgroundSync>> start(const std::vector<std::string>& paths, double every_s);
+  static Result<std::unique_ptr<BackgroundSync>> start(const std::vector<std::string>& paths,
+                                                       double every_s) {
+    std::unique_ptr<BackgroundSync> sync(new BackgroundSync(every_s));
+    for (const std::string& path : paths) {
+      const int opened = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+      if (opened < 0) return not_synced(path, errno);
+      sync->files_.push_back({path, opened});
+    }
+    sync->thread_ = std::thread([&self = *sync] { self.run(); });
+    return sync;
+  }
+
   BackgroundSync(const BackgroundSync&) = delete;
   BackgroundSync& operator=(const BackgroundSync&) = delete;
-  ~BackgroundSync();
+  ~BackgroundSync() {
+    {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+    }
+    changed_.notify_one();
+    if (thread_.joinable()) thread_.join();
+    for (const Synced& file : files_) close(file.descriptor);
+  }
 
   // Call it after each write. Does not wait for the disk. Errors: cannot_write, of a sync since then.
-  Result<void> written();
+  Result<void> written() {
+    const std::lock_guard lock(mutex_);
+    written_ = true;
+    return failure_ ? Result<void>(tl::unexpected(*failure_)) : Result<void>{};
+  }
 
  private:
   struct Synced {
@@ -45,8 +73,25 @@ class BackgroundSync {
     int descriptor = -1;
   };
   explicit BackgroundSync(double every_s) : every_s_(every_s) {}
-  void run();
-  void sync_all();
+  void run() {
+    std::unique_lock lock(mutex_);
+    while (!stop_) {
+      const bool due = std::exchange(written_, false);
+      lock.unlock();
+      if (due) sync_all();
+      lock.lock();
+      changed_.wait_for(lock, std::chrono::duration<double>(every_s_), [this] { return stop_; });
+    }
+  }
+
+  void sync_all() {
+    for (const Synced& file : files_) {
+      if (fdatasync(file.descriptor) == 0) continue;
+      const int error_number = errno;
+      const std::lock_guard lock(mutex_);
+      failure_ = not_synced(file.path, error_number).value();
+    }
+  }
 
   const double every_s_;
   std::vector<Synced> files_;  // belong to the thread while it runs
@@ -56,59 +101,6 @@ class BackgroundSync {
   std::optional<Error> failure_;
   std::thread thread_;
 };
-
-tl::unexpected<Error> not_synced(const std::string& path, int error_number) {
-  return fail(ErrorKind::cannot_write,
-              "cannot be written to the disk: " + std::generic_category().message(error_number), path);
-}
-
-Result<std::unique_ptr<BackgroundSync>> BackgroundSync::start(const std::vector<std::string>& paths,
-                                                              double every_s) {
-  std::unique_ptr<BackgroundSync> sync(new BackgroundSync(every_s));
-  for (const std::string& path : paths) {
-    const int opened = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (opened < 0) return not_synced(path, errno);
-    sync->files_.push_back({path, opened});
-  }
-  sync->thread_ = std::thread([&self = *sync] { self.run(); });
-  return sync;
-}
-
-BackgroundSync::~BackgroundSync() {
-  {
-    const std::lock_guard lock(mutex_);
-    stop_ = true;
-  }
-  changed_.notify_one();
-  if (thread_.joinable()) thread_.join();
-  for (const Synced& file : files_) close(file.descriptor);
-}
-
-Result<void> BackgroundSync::written() {
-  const std::lock_guard lock(mutex_);
-  written_ = true;
-  return failure_ ? Result<void>(tl::unexpected(*failure_)) : Result<void>{};
-}
-
-void BackgroundSync::run() {
-  std::unique_lock lock(mutex_);
-  while (!stop_) {
-    const bool due = std::exchange(written_, false);
-    lock.unlock();
-    if (due) sync_all();
-    lock.lock();
-    changed_.wait_for(lock, std::chrono::duration<double>(every_s_), [this] { return stop_; });
-  }
-}
-
-void BackgroundSync::sync_all() {
-  for (const Synced& file : files_) {
-    if (fdatasync(file.descriptor) == 0) continue;
-    const int error_number = errno;
-    const std::lock_guard lock(mutex_);
-    failure_ = not_synced(file.path, error_number).value();
-  }
-}
 
 }  // namespace
 

@@ -81,15 +81,15 @@ struct FormatName {
   const char* name;
 };
 
-constexpr FormatName kFormats[] = {
+constexpr FormatName kFormatNames[] = {
     {SampleFormat::pcm32, "pcm32"}, {SampleFormat::float32, "float32"}, {SampleFormat::float64, "float64"}};
 
 const char* name_of(SampleFormat format) {
-  return std::ranges::find(kFormats, format, &FormatName::format)->name;
+  return std::ranges::find(kFormatNames, format, &FormatName::format)->name;
 }
 
 SampleFormat format_named(std::string_view name) {
-  return std::ranges::find(kFormats, name, &FormatName::name)->format;
+  return std::ranges::find(kFormatNames, name, &FormatName::name)->format;
 }
 
 void put_number(Json& body, const char* key, const std::optional<double>& number) {

@@ -84,16 +84,17 @@ std::string without_numbers(const std::string& text) {
   return kind;
 }
 
-}  // namespace
-
-std::string sentence(const Warning& warning) {
-  return warning.about.empty() ? warning.text : warning.about + ": " + warning.text;
-}
-
+// One line for each kind, in the order of first appearance: the worst, and the number of warnings.
 std::vector<std::string> grouped(std::span<const Warning> warnings) {
   std::vector<std::string> lines;
   for (const Group& group : groups_of(warnings)) lines.push_back(line_of(group));
   return lines;
+}
+
+}  // namespace
+
+std::string sentence(const Warning& warning) {
+  return warning.about.empty() ? warning.text : warning.about + ": " + warning.text;
 }
 
 void warn_grouped(std::span<const Warning> warnings) {

@@ -23,9 +23,6 @@ struct Warning {
 /// "about: text"
 std::string sentence(const Warning& warning);
 
-/// One line for each kind, in the order of first appearance: the worst, and the number of warnings.
-std::vector<std::string> grouped(std::span<const Warning> warnings);
-
 /// Prints them on stderr, one for each kind. All of them are in the report with --json.
 void warn_grouped(std::span<const Warning> warnings);
 

@@ -1,14 +1,139 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/texture/texture_json.hpp"
 
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "data-schema/json/json_document.hpp"
-#include "data-schema/texture/certificate_json.hpp"
-#include "data-schema/texture/transform_json.hpp"
+#include "data-schema/texture/certificate.hpp"
+#include "data-schema/texture/transform.hpp"
 
 namespace tacto::schema {
 namespace {
+
+// The member `transform`.
+
+constexpr std::array<const char*, 4> kOperations = {"stretch", "gain", "mix", "filter"};
+constexpr std::array<const char*, 2> kLengthenings = {"periods", "best_fit"};
+
+// The word's place in the list; the schema allows no other words.
+template <class Word, std::size_t kCount>
+Word word_from(const std::array<const char*, kCount>& words, const std::string& text) {
+  const auto found = std::ranges::find(words, text);
+  return static_cast<Word>(found == words.end() ? 0 : found - words.begin());
+}
+
+Json step_body(const TransformStep& step) {
+  Json body = {{"operation", operation_name(step.operation)}};
+  for (const auto& [name, member] : kTransformNumbers)
+    if (step.*member) body[name] = *(step.*member);
+  if (step.keep_slope) body["keep_slope"] = *step.keep_slope;
+  if (step.lengthening) body["lengthening"] = lengthening_name(*step.lengthening);
+  if (step.joints) body["joints"] = *step.joints;
+  if (!step.weights.empty()) body["weights"] = step.weights;
+  return body;
+}
+
+TransformStep step_from(const Json& body) {
+  TransformStep step;
+  step.operation = word_from<TransformOperation>(kOperations, text_or(body, "operation"));
+  for (const auto& [name, member] : kTransformNumbers)
+    if (body.contains(name)) step.*member = body[name].get<double>();
+  if (body.contains("keep_slope")) step.keep_slope = body["keep_slope"].get<bool>();
+  if (body.contains("lengthening"))
+    step.lengthening = word_from<Lengthening>(kLengthenings, text_or(body, "lengthening"));
+  if (body.contains("joints")) step.joints = body["joints"].get<int>();
+  if (body.contains("weights")) step.weights = body["weights"].get<std::vector<double>>();
+  return step;
+}
+
+Json transform_body(const TextureTransform& transform) {
+  Json sources = Json::array(), steps = Json::array();
+  for (const auto& [texture, sha256] : transform.sources)
+    sources.push_back({{"texture", texture}, {"sha256", sha256}});
+  for (const TransformStep& step : transform.steps) steps.push_back(step_body(step));
+  return {{"sources", sources}, {"steps", steps}};
+}
+
+// Reads what transform_body made. Precondition: it fits the texture's schema.
+TextureTransform transform_from(const Json& body) {
+  TextureTransform transform;
+  for (const Json& source : body["sources"])
+    transform.sources.push_back({text_or(source, "texture"), text_or(source, "sha256")});
+  for (const Json& step : body["steps"]) transform.steps.push_back(step_from(step));
+  return transform;
+}
+
+// The member `certificate`.
+
+constexpr std::array<const char*, 3> kVerdicts = {"spatial", "temporal", "undecided"};
+
+struct PeakNumber {
+  const char* name;
+  double CertifiedPeak::*member;
+};
+
+constexpr PeakNumber kPeakNumbers[] = {
+    {"confidence", &CertifiedPeak::confidence},
+    {"frequency_per_m", &CertifiedPeak::frequency_per_m},
+    {"frequency_hz", &CertifiedPeak::frequency_hz},
+    {"rms", &CertifiedPeak::rms},
+    {"snr_db", &CertifiedPeak::snr_db},
+    {"snr_needed_db", &CertifiedPeak::snr_needed_db},
+    {"speed_ratio", &CertifiedPeak::speed_ratio},
+    {"speed_ratio_needed", &CertifiedPeak::speed_ratio_needed},
+};
+
+PeakVerdict verdict_from(const std::string& name) {
+  const auto found = std::ranges::find(kVerdicts, name);
+  return found == kVerdicts.end() ? PeakVerdict::undecided
+                                  : static_cast<PeakVerdict>(found - kVerdicts.begin());
+}
+
+Json peak_body(const CertifiedPeak& peak) {
+  Json body = {{"verdict", verdict_name(peak.verdict)}};
+  put_text(body, "reason", peak.reason);
+  for (const auto& [name, member] : kPeakNumbers) body[name] = peak.*member;
+  body["found_in"] = peak.found_in;
+  return body;
+}
+
+CertifiedPeak peak_from(const Json& body) {
+  CertifiedPeak peak;
+  peak.verdict = verdict_from(text_or(body, "verdict"));
+  peak.reason = text_or(body, "reason");
+  for (const auto& [name, member] : kPeakNumbers) peak.*member = number_or(body, name, 0);
+  if (body.contains("found_in")) peak.found_in = body["found_in"].get<std::vector<std::string>>();
+  return peak;
+}
+
+Json certificate_body(const Certificate& certificate) {
+  Json body = {{"textures", certificate.textures}, {"speeds_mps", certificate.speeds_mps}};
+  body["speed_ratio"] = certificate.speed_ratio;
+  body["confidence_needed"] = certificate.confidence_needed;
+  put_text(body, "created", certificate.created);
+  put_text(body, "creator", certificate.creator);
+  body["peaks"] = Json::array();
+  for (const CertifiedPeak& peak : certificate.peaks) body["peaks"].push_back(peak_body(peak));
+  return body;
+}
+
+// Precondition: the body fits the schema.
+Certificate certificate_from(const Json& body) {
+  Certificate certificate;
+  certificate.textures = body["textures"].get<std::vector<std::string>>();
+  certificate.speeds_mps = body["speeds_mps"].get<std::vector<double>>();
+  certificate.speed_ratio = number_or(body, "speed_ratio", 0);
+  certificate.confidence_needed = number_or(body, "confidence_needed", 0);
+  certificate.created = text_or(body, "created");
+  certificate.creator = text_or(body, "creator");
+  for (const Json& peak : body["peaks"]) certificate.peaks.push_back(peak_from(peak));
+  return certificate;
+}
 
 struct TextureText {
   const char* name;
@@ -165,6 +290,18 @@ PlaybackGain playback_gain_from(const Json& body) {
 }
 
 }  // namespace
+
+const char* operation_name(TransformOperation operation) {
+  return kOperations[static_cast<std::size_t>(operation)];
+}
+
+const char* lengthening_name(Lengthening lengthening) {
+  return kLengthenings[static_cast<std::size_t>(lengthening)];
+}
+
+std::string verdict_name(PeakVerdict verdict) {
+  return kVerdicts[static_cast<std::size_t>(verdict)];
+}
 
 Json playback_gain_body(const PlaybackGain& gain) {
   Json body = {{"gain_m_per_n", gain.gain_m_per_n}};

@@ -61,8 +61,7 @@ Result<void> require_configfs() {
       kGadgets.string(), "as root: modprobe libcomposite; mount -t configfs none /sys/kernel/config");
 }
 
-}  // namespace
-
+// The names of the device ports (USB device controllers).
 std::vector<std::string> device_ports() {
   std::vector<std::string> ports;
   std::error_code none;
@@ -71,6 +70,8 @@ std::vector<std::string> device_ports() {
   std::sort(ports.begin(), ports.end());
   return ports;
 }
+
+}  // namespace
 
 Result<std::string> choose_port(const std::string& target) {
   const std::vector<std::string> ports = device_ports();

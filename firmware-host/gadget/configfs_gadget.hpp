@@ -16,8 +16,6 @@ struct UsbIdentity {
   std::string serial, name;
 };
 
-/// The names of the device ports (USB device controllers).
-std::vector<std::string> device_ports();
 /// `target`, or the first port if that is empty. Errors: device: there is none, or none of that name (with
 /// the existing ones).
 schema::Result<std::string> choose_port(const std::string& target);

@@ -4,16 +4,30 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
 #include "firmware-host/link/wire_device.hpp"
 #include "firmware-host/tty/tty_transport.hpp"
-#include "firmware-host/tty/usb_serial_ports.hpp"
 
 namespace tacto::firmware_host {
 namespace {
 
+namespace fs = std::filesystem;
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
+
+// The folder of a USB device has a file idVendor; that of a device on another bus has none.
+bool is_on_usb(const fs::path& tty) {
+  std::error_code error;
+  fs::path folder = fs::canonical(tty / "device", error);
+  if (error) return false;
+  for (; folder.has_relative_path(); folder = folder.parent_path())
+    if (fs::exists(folder / "idVendor", error)) return true;
+  return false;
+}
 
 using Opened = Result<std::unique_ptr<Device>>;
 
@@ -31,6 +45,16 @@ Opened open_port(const TtyAddress& address) {
 }
 
 }  // namespace
+
+std::vector<std::string> usb_serial_ports(const std::string& root) {
+  std::vector<std::string> ports;
+  std::error_code error;
+  for (fs::directory_iterator tty(fs::path(root) / "sys/class/tty", error), end; !error && tty != end;
+       tty.increment(error))
+    if (is_on_usb(tty->path())) ports.push_back("/dev/" + tty->path().filename().string());
+  std::ranges::sort(ports);
+  return ports;
+}
 
 Opened open_tty_among(std::span<const TtyAddress> ports) {
   if (ports.empty())

@@ -13,6 +13,10 @@
 
 namespace tacto::firmware_host {
 
+/// "/dev/ttyACM0", ... in alphabetical order: each tty whose hardware is a USB device, by the kernel's list
+/// below `root`/sys/class/tty. Other serial ports, terminals and consoles are left out.
+std::vector<std::string> usb_serial_ports(const std::string& root = "/");
+
 /// `parameters` is the text after "tty:". Without a path it is the only device among those on USB serial
 /// ports. Errors: as parse_tty_address(), TtyTransport::open(), WireDevice::open() and open_tty_among().
 schema::Result<std::unique_ptr<Device>> open_tty_device(const std::string& uri, std::string_view parameters);

@@ -2,16 +2,107 @@
 // The cable to a device on USB.
 #pragma once
 
+#include <libusb.h>
+
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "data-schema/base/error.hpp"
 #include "firmware-host/link/transport.hpp"
-#include "firmware-host/usb/usb_connection.hpp"
 
 namespace tacto::firmware_host {
+
+// The address of a device on USB.
+
+/// The text after "usb:". Both empty: the only device.
+struct UsbAddress {
+  std::string serial;
+  std::string port;  ///< bus and the ports up to the device, in the kernel's notation: "1-2.4"
+};
+
+/// "", "serial=XYZ" or "port=1-2.4"; a serial may contain any byte except a comma. Errors: usage.
+schema::Result<UsbAddress> parse_usb_address(std::string_view parameters);
+
+/// The properties of a device that are known before it is opened.
+struct UsbName {
+  std::string serial;  ///< empty if it has none, or if this user may not read it
+  std::string port;
+};
+
+/// The URI that identifies `names[index]`: by serial, or by port if the serial is missing or not unique.
+std::string usb_uri(const std::vector<UsbName>& names, std::size_t index);
+
+/// The index of the device in `names`. Errors: not_found: it does not exist; usage: several match, with their
+/// names.
+schema::Result<std::size_t> choose_usb(const std::vector<UsbName>& names, const UsbAddress& address);
+
+// An open USB device with its interface claimed.
+
+/// A session with libusb. It scans the bus at the start, which takes milliseconds. Errors: device.
+schema::Result<std::shared_ptr<libusb_context>> begin_usb();
+
+/// Owning pointers for objects of libusb.
+struct UsbDeleter {
+  void operator()(libusb_context* context) const { libusb_exit(context); }
+  void operator()(libusb_device* device) const { libusb_unref_device(device); }
+  void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
+  void operator()(libusb_config_descriptor* descriptor) const { libusb_free_config_descriptor(descriptor); }
+  void operator()(libusb_transfer* transfer) const { libusb_free_transfer(transfer); }
+};
+
+template <class Lent>
+using UsbPointer = std::unique_ptr<Lent, UsbDeleter>;
+
+/// The interface of the wire among those of a device.
+struct UsbInterface {
+  std::uint8_t number = 0, setting = 0;
+  std::uint8_t in = 0, out = 0;  ///< addresses of the bulk endpoints
+};
+
+struct UsbFound {
+  UsbName name;
+  UsbInterface interface;
+  UsbPointer<libusb_device> device;
+};
+
+/// Every USB device with an interface of the wire, of any vendor, in the order of buses and ports, with its
+/// serial if this user may read it. Errors: device: the bus cannot be read.
+schema::Result<std::vector<UsbFound>> find_usb(libusb_context* context);
+
+std::vector<UsbName> names_of(const std::vector<UsbFound>& found);
+
+/// For one thread. Its transfers must have ended before it is destroyed.
+class UsbConnection {
+ public:
+  /// Errors: as choose_usb(); not_found: this user may not open it; device: another program uses it, or it
+  /// fails.
+  static schema::Result<UsbConnection> open(const UsbAddress& address);
+  UsbConnection(UsbConnection&&) = default;
+  UsbConnection& operator=(UsbConnection&&) = delete;
+  ~UsbConnection();
+
+  libusb_device_handle* handle() const { return handle_.get(); }
+  const UsbInterface& interface() const { return interface_; }
+  /// The URI that distinguishes it from all other devices at that time.
+  const std::string& uri() const { return uri_; }
+  /// Completes transfers until one has set `done` or the time is over.
+  schema::Result<void> handle_events(double timeout_s, int& done) const;
+
+ private:
+  UsbConnection() = default;
+  schema::Result<void> claim(const UsbFound& found);
+
+  std::shared_ptr<libusb_context> context_;
+  UsbPointer<libusb_device_handle> handle_;
+  UsbInterface interface_;
+  std::string uri_;
+};
 
 /// Bytes to a device, one transfer after the other. A transfer ends with a short packet, or an empty one if
 /// its size is a multiple of the packet size. For one thread.

@@ -5,10 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
+
+#include "playback/model/spatial_content.hpp"
 
 namespace tacto::playback {
 namespace {
+
+double speed_lag_s(double rate_hz) {
+  const double alpha = std::min(double{core::kMostAlpha}, 1 / (1 + kTrackerS * rate_hz));
+  const double beta = alpha * alpha / (2 - alpha);
+  return (alpha - beta / 2) / beta / rate_hz;
+}
 
 constexpr std::pair<std::string_view, wire::Interpolation> kInterpolations[] = {
     {"nearest", wire::Interpolation::nearest},
@@ -82,7 +91,27 @@ std::string asked_for(const TickBudget& budget) {
   return asked;
 }
 
+// RMS error of the place by looking ahead, m: with a delay d, a constant acceleration a gives an error of a
+// d (d / 2 + t), where t is the delay of the tracker's speed (for an alpha-beta filter (alpha - beta / 2) /
+// beta ticks; core FingerTracker). Valid for changes that are slow relative to both.
+double missed_place_m(const UnsteadySpeed& hand, const PrepareOptions& options, double delay_s) {
+  const double acceleration =
+      std::numbers::sqrt2 * std::numbers::pi * hand.rate_hz * hand.part * hand.speed_mps;
+  const double ahead_s = delay_s + options.loop_delay_s;
+  if (!options.look_ahead) return hand.speed_mps * ahead_s;
+  return acceleration * ahead_s * (ahead_s / 2 + speed_lag_s(options.rate_hz));
+}
+
 }  // namespace
+
+double unsteady_speed_error(std::span<const PlacedTexture> textures, const UnsteadySpeed& hand,
+                            const PrepareOptions& options, double delay_s) {
+  double steepest = 0;
+  for (const PlacedTexture& placed : textures)
+    steepest = std::max(steepest, relative_slope(placed.texture->signal, options.band.low_hz / hand.speed_mps,
+                                                 options.band.high_hz / hand.speed_mps));
+  return steepest * missed_place_m(hand, options, delay_s);
+}
 
 std::string_view to_string(wire::Interpolation interpolation) {
   return std::ranges::find(kInterpolations, interpolation,

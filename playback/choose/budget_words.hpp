@@ -3,14 +3,30 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "playback/choose/budget.hpp"
-#include "playback/choose/unsteady_speed.hpp"
+#include "playback/prepare/prepare.hpp"
 
 namespace tacto::playback {
+
+// The error of the displacement that is added when the finger's speed changes during a stroke.
+
+/// The speed is a sinusoid about a mean: v (1 + part sin(2 pi rate t)).
+struct UnsteadySpeed {
+  double speed_mps = 0.05;
+  double part = 0.1;
+  double rate_hz = 2;
+};
+
+/// RMS error of the values read there, re the content of the band at the mean speed, for the texture with the
+/// largest error: an upper estimate, for an encoder finer than the tracker's noise (budget_promise_test: 0.75
+/// of it at most, 0.15 median, because the tracker averages over shorter times when its error is large).
+double unsteady_speed_error(std::span<const PlacedTexture> textures, const UnsteadySpeed& hand,
+                            const PrepareOptions& options, double delay_s);
 
 /// Part of the predicted error: the kernel's rounding, -105 dB, and the finest content that is omitted, -100
 /// dB.

@@ -10,7 +10,7 @@
 #include "data-schema/report/progress.hpp"
 #include "data-schema/report/warnings.hpp"
 #include "data-schema/session/session_reader.hpp"
-#include "playback/cli/limits_report.hpp"
+#include "playback/cli/play_reports.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/session/force_session.hpp"
 #include "playback/session/session_export.hpp"

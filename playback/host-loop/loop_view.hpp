@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "playback/host-loop/sample_run.hpp"
+#include "playback/host-loop/tray_samples.hpp"
 
 namespace tacto::playback {
 

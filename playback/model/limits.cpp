@@ -17,6 +17,12 @@ void raise(Peak& peak, double value, double time_s) {
   peak.time_s = time_s;
 }
 
+// The gain at which the tightest peak just fits if all peaks are proportional to it: gain / used, rounded
+// down in the fourth digit.
+double proportional_fit(const Peaks& peaks, double gain_m_per_n) {
+  return schema::rounded_down(gain_m_per_n / peaks.tightest().used());
+}
+
 }  // namespace
 
 const Peak& Peaks::tightest() const {
@@ -41,10 +47,6 @@ Peaks peaks_of(std::span<const double> drive_v, std::span<const double> displace
   for (std::size_t i = 0; i < displacement_m.size(); ++i)
     raise(peaks.displacement_m, displacement_m[i], static_cast<double>(i) / rate_hz);
   return peaks;
-}
-
-double proportional_fit(const Peaks& peaks, double gain_m_per_n) {
-  return schema::rounded_down(gain_m_per_n / peaks.tightest().used());
 }
 
 double fitting_gain(double gain_m_per_n, Peaks peaks, const std::function<Peaks(double gain_m_per_n)>& at) {

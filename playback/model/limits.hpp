@@ -41,10 +41,6 @@ Peaks peaks_of(std::span<const double> drive_v, std::span<const double> displace
 /// Errors: unsuitable, if a limit is exceeded: which peak, at what time, and the largest gain that fits.
 schema::Result<void> check_limits(const Peaks& peaks, double gain_m_per_n, double default_gain_m_per_n);
 
-/// The gain at which the tightest peak just fits if all peaks are proportional to it: gain / used, rounded
-/// down in the fourth digit.
-double proportional_fit(const Peaks& peaks, double gain_m_per_n);
-
 /// The largest gain whose peaks fit, by proportional estimates that are tested, because with an energy limit
 /// or a hysteresis the peaks are not proportional to the gain. `peaks` are those at `gain_m_per_n`, `at`
 /// gives them at another gain. 0: none of 30 fits.

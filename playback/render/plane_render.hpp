@@ -9,7 +9,7 @@
 #include "data-schema/device/device.hpp"
 #include "data-schema/device/hand.hpp"
 #include "playback/model/finger_path.hpp"
-#include "playback/model/limit_counts.hpp"
+#include "playback/model/limit_tally.hpp"
 #include "playback/prepare/scene/prepared_scene.hpp"
 
 namespace tacto::playback {

@@ -7,53 +7,261 @@
 #include <cmath>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "data-schema/base/decibels.hpp"
+#include "data-schema/base/error.hpp"
 #include "data-schema/base/playback_defaults.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/recording/statistics.hpp"
+#include "firmware-host/core/kernel/profile.hpp"
+#include "playback/model/chain.hpp"
 #include "playback/model/finger_path.hpp"
 #include "playback/model/identified_band.hpp"
+#include "playback/model/limits.hpp"
 #include "playback/model/spatial_content.hpp"
 #include "playback/model/texture_lookup.hpp"
+#include "playback/prepare/kernel_drive.hpp"
 #include "playback/prepare/prepare.hpp"
 #include "playback/prepare/texture_check.hpp"
 #include "playback/prepare/texture_layout.hpp"
-#include "playback/render/kept_error.hpp"
 #include "playback/render/loop_seam.hpp"
 #include "playback/render/reference/exact_drive.hpp"
 #include "playback/render/reference/exact_target.hpp"
-#include "playback/render/render_job.hpp"
-#include "playback/render/render_kernel.hpp"
+#include "playback/render/reference/padded_spectrum.hpp"
 
 namespace tacto::playback {
+namespace {
 
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-namespace {
+constexpr double kLeftOutAtEnds_s = 1;
+
+double rms_between_ends(const std::vector<double>& values, std::size_t left_out) {
+  return schema::statistics_of(std::span(values).subspan(left_out, values.size() - 2 * left_out)).rms();
+}
+
+std::vector<double> without(std::vector<double> values, const std::vector<double>& less) {
+  std::ranges::transform(values, less, values.begin(), std::minus<>());
+  return values;
+}
+
+std::vector<double> in_band(const std::vector<double>& values, const PaddedSpectrum& target,
+                            const spatial::Band& band) {
+  auto spectrum = spectrum_of(values, target.rate_hz, target.period);
+  keep_band(spectrum, band);
+  return signal_of(spectrum);
+}
+
+// The target is filtered to the band with skirts, and so is the reference's displacement; the kernel's is
+// not.
+std::vector<double> error_of(const Rendering& rendering, const PaddedSpectrum& target,
+                             const spatial::Band& band) {
+  const auto &modelled_m = rendering.modelled_m.values, &target_m = rendering.target_m.values;
+  if (rendering.engine == Engine::kernel) return without(in_band(modelled_m, target, band), target_m);
+  return in_band(without(modelled_m, target_m), target, band);
+}
+
+// The input of one rendering, for both engines.
+
+struct RenderJob {
+  std::span<const PlacedTexture> textures;
+  const FingerPath& path;
+  const PaddedSpectrum& target;
+  Chain chain;
+  RenderOptions options;
+};
+
+// The part of render() that uses the kernel.
+
+PrepareOptions kernel_options(const RenderOptions& o, double onset_s) {
+  PrepareOptions options;
+  options.rate_hz = o.rate_hz;
+  options.metres_per_count = o.encoder_step_m;
+  options.gain_m_per_n = o.gain_m_per_n;
+  options.band = o.band;
+  options.ends = o.ends;
+  options.inverse = o.inverse;
+  options.reconstruction = o.reconstruction;
+  options.reconstruction_cutoff_hz = o.reconstruction_cutoff_hz;
+  options.hold = o.hold;
+  options.onset_s = onset_s;
+  options.interpolation = o.interpolation;
+  options.energy_rms_v = o.energy_rms_v;
+  options.energy_window_s = o.energy_window_s;
+  options.undo_hysteresis = o.undo_hysteresis;
+  return options;
+}
+
+// Writes the choice of the budget into the options.
+Result<void> decide_kernel(Rendering& rendering, const RenderJob& job, PrepareOptions& options) {
+  const TickBudget& budget = job.options.budget;
+  if (!budget.asked()) return {};
+  const auto table = schema::find_trade_table();
+  TACTO_TRY(table);
+  auto decision = decide(job.textures, job.chain.transducer, options, budget, *table);
+  TACTO_TRY(decision);
+  options = decision->chosen.in(options);
+  rendering.decision = std::move(*decision);
+  return {};
+}
+
+/// One texture along one path at any gain.
+struct KernelRun {
+  const Prepared& prepared;
+  const PrepareOptions& options;
+  const RenderJob& job;
+
+  // Peaks of the unlimited drive.
+  Peaks asked_at(double gain_m_per_n) const {
+    const auto drive_v = unlimited_drive(prepared, gain_m_per_n, job.path, options, job.target.samples);
+    Peaks peaks = modelled_from(drive_v, job.target, job.chain).peaks;
+    peaks.slew_v_per_s =
+        peaks_of(drive_v, {}, options.rate_hz, job.chain.transducer, AfterDrive::more).slew_v_per_s;
+    return peaks;
+  }
+};
+
+// `passed`: the peak that the error names; none: the tightest one.
+tl::unexpected<schema::Error> refuse(const KernelRun& run, const std::optional<Peak>& passed, bool may_clip) {
+  const RenderOptions& o = run.job.options;
+  const Peaks asked = run.asked_at(o.gain_m_per_n);
+  const double fits = fitting_gain(o.gain_m_per_n, asked, [&](double gain) { return run.asked_at(gain); });
+  return limit_passed(passed.value_or(asked.tightest()), fits, o.default_gain_m_per_n, may_clip);
+}
+
+// Reports what was clipped; a displacement beyond its limit is refused, because nothing clips it.
+Result<ExactDrive> within_limits(Rendering& rendering, const KernelRun& run, const KernelDrive& drive) {
+  const auto clipped =
+      static_cast<std::size_t>(std::max(drive.tally.amplitude_limited(), drive.tally.slew_limited()));
+  ExactDrive moved = modelled_from(drive.drive_v, run.job.target, run.job.chain);
+  const bool too_far = moved.peaks.displacement_m.used() > 1;
+  if (clipped > 0 && run.job.options.over_limit == OverLimit::refuse) return refuse(run, {}, !too_far);
+  if (too_far) return refuse(run, moved.peaks.displacement_m, false);
+  if (clipped > 0) rendering.clipping = {clipped, 0, drive.tally.removed_db()};
+  rendering.energy_limited_samples = drive.tally.energy_limited();
+  if (drive.tally.removed_any()) rendering.removed_db = drive.tally.removed_db();
+  return moved;
+}
+
+double farthest_of(const FingerPath& path) {
+  double farthest_m = 0;
+  for (const double position_m : path.position_m) farthest_m = std::max(farthest_m, std::abs(position_m));
+  return farthest_m;
+}
+
+// With several samples per count the reading range is smaller than the counting range.
+Result<void> check_read(const Prepared& prepared, const FingerPath& path, const PrepareOptions& options) {
+  const double farthest_m = farthest_of(path);
+  const double reach_m = options.metres_per_count * core::reach_counts(prepared.scale);
+  if (farthest_m <= reach_m) return {};
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format(
+          "the path reaches {:.4g} m, the kernel reads the texture up to {:.4g} m from the encoder's zero",
+          farthest_m, reach_m),
+      "--finger-path", "place path and texture (--at) nearer to it, or render with --engine reference");
+}
+
+// Beyond that count the kernel's output is zero (core/kernel/profile.cpp).
+// Errors: unsuitable, for a path beyond the range of the kernel's encoder.
+Result<void> check_counts(const FingerPath& path, const RenderOptions& o) {
+  constexpr double kFarthestCount = 1 << 29;
+  const double farthest_m = farthest_of(path);
+  if (farthest_m / o.encoder_step_m < kFarthestCount) return {};
+  return fail(ErrorKind::unsuitable,
+              fmt::format("the path reaches {:.4g} m, which is more than 2^29 encoder counts", farthest_m),
+              "--encoder-step",
+              fmt::format("use {:.3g} nm or more", std::ceil(1e9 * farthest_m / kFarthestCount * 1.01)));
+}
+
+// The kernel's drive along the job's path, and the displacement; writes to `rendering` what the limits
+// removed and what the budget chose. Errors: as prepare(), decide(); unsuitable, for a drive that its limits
+// clip (unless over_limit allows it) or a displacement beyond its limit: which peak, when, and the largest
+// gain that fits. The kernel does not limit displacement, so that is never clipped. The end of the drive is
+// not counted as a step to rest, because a playback continues.
+Result<ExactDrive> kernels_drive(Rendering& rendering, const RenderJob& job) {
+  PrepareOptions options = kernel_options(job.options, rendering.onset_s);
+  TACTO_TRY(decide_kernel(rendering, job, options));
+  const auto prepared = prepare(job.textures, job.chain.transducer, options);
+  TACTO_TRY(prepared);
+  TACTO_TRY(check_read(*prepared, job.path, options));
+  const KernelDrive drive = kernel_drive(*prepared, job.path, options, job.target.samples);
+  auto moved = within_limits(rendering, {*prepared, options, job}, drive);
+  if (!moved) return moved;
+  rendering.warnings.insert(rendering.warnings.end(), prepared->notes.begin(), prepared->notes.end());
+  rendering.delay_s = prepared->delay_left_s;
+  return moved;
+}
 
 /// Textures at their positions, continued beyond their ends, along one path. The path must outlive this.
 class TexturePath {
  public:
   /// Errors: as as_played().
-  static schema::Result<TexturePath> make(std::span<const PlacedTexture> textures, const FingerPath& path,
-                                          Ends ends);
+  static Result<TexturePath> make(std::span<const PlacedTexture> textures, const FingerPath& path,
+                                  Ends ends) {
+    TexturePath texture_path(path);
+    const auto [low_m, high_m] = std::ranges::minmax(path.position_m);
+    texture_path.start_m_ = textures.front().at_m, texture_path.end_m_ = texture_path.start_m_;
+    for (const PlacedTexture& placed : textures) {
+      auto played = as_played(*placed.texture, placed.at_m, prepared_ends(*placed.texture, ends), low_m,
+                              high_m, "path");
+      TACTO_TRY(played);
+      const PlayedSignal& signal = texture_path.signals_.emplace_back(std::move(*played));
+      texture_path.layers_.push_back({TextureLookup(signal.signal, signal.at_m), placed.weight});
+      texture_path.start_m_ = std::min(texture_path.start_m_, placed.at_m);
+      texture_path.end_m_ = std::max(texture_path.end_m_, placed.at_m + placed.texture->signal.length_m());
+    }
+    return texture_path;
+  }
 
   /// Number of grid samples at which the finger is outside all textures.
-  std::size_t count_outside(const ReadingGrid& grid) const;
+  std::size_t count_outside(const ReadingGrid& grid) const {
+    const auto positions = positions_along(*path_, grid.rate_hz, grid.samples);
+    return static_cast<std::size_t>(std::ranges::count_if(positions, [&](double x) {
+      return std::ranges::none_of(layers_, [&](const Layer& layer) { return layer.lookup.contains(x); });
+    }));
+  }
+
   /// The error for a path outside all textures: unsuitable, with their positions.
-  tl::unexpected<schema::Error> outside_textures() const;
+  tl::unexpected<schema::Error> outside_textures() const {
+    const auto [low, high] = std::ranges::minmax(path_->position_m);
+    const bool several = layers_.size() > 1;
+    const auto shown = [](double length_m) {
+      return schema::for_people(length_m, schema::Dimension::length);
+    };
+    return schema::fail(
+        schema::ErrorKind::unsuitable,
+        fmt::format("the finger moves from {} to {}, outside the texture{}, which {} at {} and {} {} long",
+                    shown(low), shown(high), several ? "s" : "", several ? "begin" : "begins",
+                    shown(start_m_), several ? "are" : "is", shown(end_m_ - start_m_)),
+        "path", several ? "move them in the scene" : "--at moves the texture");
+  }
+
   /// The widest fade at their ends.
-  double fade_m() const;
+  double fade_m() const {
+    double widest_m = 0;
+    for (const Layer& layer : layers_) widest_m = std::max(widest_m, layer.lookup.fade_m());
+    return widest_m;
+  }
+
   /// As exact_target, for the sum of the textures, each times its weight and gain_m_per_n.
   PaddedSpectrum target(const ReadingGrid& grid, const spatial::Band& band, double gain_m_per_n,
-                        double onset_s) const;
+                        double onset_s) const {
+    std::vector<double> readings = reading_places(*path_, grid);
+    for (double& value : readings) {
+      double force_n = 0;
+      for (const Layer& layer : layers_) force_n += layer.weight * layer.lookup(value);
+      value = gain_m_per_n * force_n;
+    }
+    return target_of_readings(std::move(readings), grid, band, onset_s);
+  }
 
  private:
   struct Layer {
@@ -67,59 +275,6 @@ class TexturePath {
   std::vector<Layer> layers_;
   double start_m_ = 0, end_m_ = 0;
 };
-
-Result<TexturePath> TexturePath::make(std::span<const PlacedTexture> textures, const FingerPath& path,
-                                      Ends ends) {
-  TexturePath texture_path(path);
-  const auto [low_m, high_m] = std::ranges::minmax(path.position_m);
-  texture_path.start_m_ = textures.front().at_m, texture_path.end_m_ = texture_path.start_m_;
-  for (const PlacedTexture& placed : textures) {
-    auto played =
-        as_played(*placed.texture, placed.at_m, prepared_ends(*placed.texture, ends), low_m, high_m, "path");
-    TACTO_TRY(played);
-    const PlayedSignal& signal = texture_path.signals_.emplace_back(std::move(*played));
-    texture_path.layers_.push_back({TextureLookup(signal.signal, signal.at_m), placed.weight});
-    texture_path.start_m_ = std::min(texture_path.start_m_, placed.at_m);
-    texture_path.end_m_ = std::max(texture_path.end_m_, placed.at_m + placed.texture->signal.length_m());
-  }
-  return texture_path;
-}
-
-std::size_t TexturePath::count_outside(const ReadingGrid& grid) const {
-  const auto positions = positions_along(*path_, grid.rate_hz, grid.samples);
-  return static_cast<std::size_t>(std::ranges::count_if(positions, [&](double x) {
-    return std::ranges::none_of(layers_, [&](const Layer& layer) { return layer.lookup.contains(x); });
-  }));
-}
-
-tl::unexpected<schema::Error> TexturePath::outside_textures() const {
-  const auto [low, high] = std::ranges::minmax(path_->position_m);
-  const bool several = layers_.size() > 1;
-  const auto shown = [](double length_m) { return schema::for_people(length_m, schema::Dimension::length); };
-  return schema::fail(
-      schema::ErrorKind::unsuitable,
-      fmt::format("the finger moves from {} to {}, outside the texture{}, which {} at {} and {} {} long",
-                  shown(low), shown(high), several ? "s" : "", several ? "begin" : "begins", shown(start_m_),
-                  several ? "are" : "is", shown(end_m_ - start_m_)),
-      "path", several ? "move them in the scene" : "--at moves the texture");
-}
-
-double TexturePath::fade_m() const {
-  double widest_m = 0;
-  for (const Layer& layer : layers_) widest_m = std::max(widest_m, layer.lookup.fade_m());
-  return widest_m;
-}
-
-PaddedSpectrum TexturePath::target(const ReadingGrid& grid, const spatial::Band& band, double gain_m_per_n,
-                                   double onset_s) const {
-  std::vector<double> readings = reading_places(*path_, grid);
-  for (double& value : readings) {
-    double force_n = 0;
-    for (const Layer& layer : layers_) force_n += layer.weight * layer.lookup(value);
-    value = gain_m_per_n * force_n;
-  }
-  return target_of_readings(std::move(readings), grid, band, onset_s);
-}
 
 // Beyond this the padded transforms alone need over a gigabyte.
 constexpr double kMostSamples = 1 << 24;
@@ -377,6 +532,17 @@ void warn_of_model(Rendering& rendering, const schema::Transducer& transducer, c
 }
 
 }  // namespace
+
+double left_out_at_ends_s(const Rendering& rendering) {
+  return std::min(std::max(kLeftOutAtEnds_s, rendering.onset_s), rendering.target_m.duration_s() / 4);
+}
+
+double error_between_ends(const Rendering& rendering, const PaddedSpectrum& target,
+                          const spatial::Band& band) {
+  const auto left_out = static_cast<std::size_t>(left_out_at_ends_s(rendering) * target.rate_hz);
+  return rms_between_ends(error_of(rendering, target, band), left_out) /
+         rms_between_ends(rendering.target_m.values, left_out);
+}
 
 Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPath& path,
                          const schema::Transducer& transducer, const RenderOptions& options,

@@ -17,6 +17,7 @@
 #include "playback/model/finger_path.hpp"
 #include "playback/model/limits.hpp"
 #include "playback/prepare/prepare.hpp"
+#include "playback/render/reference/padded_spectrum.hpp"
 #include "spatial/dsp/filter/band.hpp"
 
 namespace tacto::playback {
@@ -120,5 +121,14 @@ schema::Result<Rendering> render(std::span<const PlacedTexture> textures, const 
 schema::Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
                                  const schema::Transducer& transducer, const RenderOptions& options,
                                  const std::function<void(double)>& progress = {});
+
+/// Duration left out at each end: 1 s, or the onset if that is longer; at most a quarter of the rendering. If
+/// the finger moves at an end of its path, there is a step, which no drive in the band can follow.
+double left_out_at_ends_s(const Rendering& rendering);
+
+/// RMS over the band of modelled - target, re that of the target, 1; without left_out_at_ends_s() at each
+/// end. NaN if the target is zero in between.
+double error_between_ends(const Rendering& rendering, const PaddedSpectrum& target,
+                          const spatial::Band& band);
 
 }  // namespace tacto::playback

@@ -8,7 +8,7 @@
 
 #include "data-schema/files/files.hpp"
 #include "data-schema/session/session_reader.hpp"
-#include "playback/model/limit_counts.hpp"
+#include "playback/model/limit_tally.hpp"
 
 namespace tacto::playback {
 

@@ -123,4 +123,19 @@ double part_read(const schema::SessionReader& reader);
 /// A progress function for a part of the whole, mapped to the range `from` to `to`.
 std::function<void(double)> part_of(const std::function<void(double)>& whole, double from, double to);
 
+// The ticks of a session in memory, as columns.
+
+/// One row per tick; all columns have the same length.
+struct SessionColumns {
+  schema::SessionHeader header;
+  std::vector<std::uint64_t> tick;
+  std::vector<double> position_m;  ///< as SessionRow::position_m
+  std::vector<double> drive_v;
+  std::optional<std::uint64_t> lost_at;  ///< the first tick that is missing
+  std::uint64_t lost = 0;                ///< includes those after the last tick
+};
+
+/// A whole session. Errors: as session_overview; unsuitable: more than 2^24 ticks (28 min at 10 kHz; memory).
+schema::Result<SessionColumns> read_session_columns(const std::string& name);
+
 }  // namespace tacto::playback

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "data-schema/session/session.hpp"
-#include "playback/model/limit_counts.hpp"
+#include "playback/model/limit_tally.hpp"
 
 namespace tacto::playback {
 

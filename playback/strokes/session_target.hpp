@@ -34,7 +34,7 @@ schema::Result<schema::Texture> same_texture(const schema::SessionTexture& playe
 
 /// Gain x textures along the path between the recorded counts (monotone cubics through the places where the
 /// count changed), read exactly (render/reference/exact_target.hpp). Gain and changes of texture follow the
-/// kernel's ramps and fades (texture_mix.hpp), and are delayed like the drive that looked ahead: by
+/// kernel's ramps and fades (judged_rows.hpp), and are delayed like the drive that looked ahead: by
 /// look_ahead_ticks. The envelope is that of the drive (core/kernel/envelope.hpp).
 class TargetReader {
  public:

@@ -75,7 +75,7 @@ struct StrokeListener {
 /// filled, for one stop at most so many that the rows before it have no influence after it. Predicted: the
 /// recorded drive through the model of the transducer's file (with the hysteresis of the file): the
 /// actuator's response if that file is correct, without a finger on it. Measured, if the device reports its
-/// tray: the session's samples (measured_rows.hpp). All in the same band. A stroke is at least 5 mm long. The
+/// tray: the session's samples (block_judge.hpp). All in the same band. A stroke is at least 5 mm long. The
 /// effect of the limits: read_unlimited_where_known(), with a note if it is unknown. Memory depends neither
 /// on the length of the session nor on that of a stroke: it is that of a block (JudgedBlocks; 200,000 rows at
 /// 10 kHz) and its textures, of the strokes kept, and of the commands. A block has less than 2^24 readings.

@@ -2,23 +2,34 @@
 // tactograph spectrogram: pictures and tables of the spatial spectra of textures.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "data-schema/base/error.hpp"
+#include "data-schema/base/quantity.hpp"
 #include "data-schema/command/budget_options.hpp"
 #include "data-schema/command/output_options.hpp"
+#include "data-schema/command/verb.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/report/progress.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
+#include "data-schema/spectrogram/spectrogram_writer.hpp"
 #include "spatial/cli/formant_row.hpp"
-#include "spatial/cli/spectrogram_files.hpp"
-#include "spatial/cli/spectrogram_run.hpp"
 #include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
 #include "spatial/features/formants.hpp"
+#include "spatial/picture/figure.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
 #include "spatial/picture/spectrogram_output.hpp"
 #include "spatial/spectrogram/budget.hpp"
+#include "spatial/spectrogram/spectrogram_maker.hpp"
 #include "spatial/spectrogram/spectrogram_summary.hpp"
+#include "spatial/spectrogram/spectrogram_tally.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -28,6 +39,211 @@ using schema::Dimension;
 using schema::ErrorKind;
 using schema::Result;
 using schema::SpectrogramHeader;
+
+// The outputs of a run of 'tactograph spectrogram': tables and netCDF row by row, pictures at the end; they
+// appear together or not at all.
+
+class SpectrogramFiles {
+ public:
+  // Precondition: check_outputs(paths). Errors: cannot_write.
+  Result<void> open(std::span<const std::string> paths, bool several, bool compress) {
+    for (const std::string& path : paths) {
+      const OutputForm form = form_of(path);
+      if (form == OutputForm::picture) {
+        pictures_.push_back(path);
+        continue;
+      }
+      const auto temporary = pending_.add(path);
+      TACTO_TRY(temporary);
+      const auto open =
+          form == OutputForm::netcdf ? schema::open_spectrogram_nc : schema::open_spectrogram_csv;
+      auto writer = open(*temporary, {several, compress, path});
+      TACTO_TRY(writer);
+      writers_.push_back(std::move(*writer));
+    }
+    return {};
+  }
+
+  // Whether a figure is needed.
+  bool has_pictures() const { return !pictures_.empty(); }
+
+  Result<void> begin(const schema::SpectrogramHeader& header) {
+    for (const auto& writer : writers_)
+      if (auto begun = writer->begin(header); !begun) return begun;
+    return {};
+  }
+
+  Result<void> rows(std::size_t first, std::span<const float> cells) {
+    for (const auto& writer : writers_)
+      if (auto written = writer->rows(first, cells); !written) return written;
+    return {};
+  }
+
+  // Ends all files, draws the pictures (`figure` may be null if there are none) and renames all files
+  // together. Errors: of the writers and the figure; cannot_write; usage, if a file that must not be
+  // replaced has the name.
+  Result<void> finish(const Figure* figure, schema::Existing existing) {
+    for (const auto& writer : writers_)
+      if (auto closed = writer->close(); !closed) return closed;
+    writers_.clear();
+    for (const std::string& path : pictures_)
+      if (auto added = add_figure(pending_, path, *figure); !added) return added;
+    return pending_.commit(existing);
+  }
+
+ private:
+  schema::PendingFiles pending_;
+  std::vector<std::unique_ptr<schema::SpectrogramWriter>> writers_;
+  std::vector<std::string> pictures_;
+};
+
+// A run of 'tactograph spectrogram': computes texture after texture with one maker and writes all files.
+
+void warn_of_odd_options(const SpectrogramOptions& options, double pitch_m) {
+  if (options.hop_m > options.window_m)
+    cli::warn(
+        fmt::format("the hop of {} is longer than the window of {}: the parts between windows are ignored",
+                    schema::length_for_people(options.hop_m), schema::length_for_people(options.window_m)));
+  if (options.max_frequency_per_m > 0.5 / pitch_m)
+    cli::warn(fmt::format("a grid of {} contains no frequencies above {}", schema::length_for_people(pitch_m),
+                          schema::for_people(0.5 / pitch_m, Dimension::spatial_frequency)));
+}
+
+void warn_if_little_is_seen(const NamedTexture& texture, const SpectrogramHeader& header) {
+  const double length_m = texture.texture.signal.length_m();
+  const double seen_m = header.position_m.back() - header.position_m.front();
+  if (seen_m < 0.25 * length_m)
+    cli::warn(
+        fmt::format("{}: is only slightly longer than the window, so the spectrogram covers only {} of {}; "
+                    "use a shorter --window",
+                    texture.path, schema::length_for_people(seen_m), schema::length_for_people(length_m)));
+}
+
+template <class T>
+tl::unexpected<schema::Error> naming(const NamedTexture& texture, const Result<T>& failed) {
+  schema::Error error = failed.error();
+  if (error.kind == ErrorKind::unsuitable) error.where = texture.path + ": " + error.where;
+  return tl::unexpected(error);
+}
+
+// Stores only a few numbers of each spectrogram; with `keep` (for pictures) also all of it, and its texture.
+class SpectrogramRun {
+ public:
+  struct Line {
+    std::string name;
+    std::size_t positions = 0;
+    SpectrogramTally tally;
+  };
+
+  // `lowest_per_m`: lower limit of the band over which the lines are summed. Default: that of the pictures.
+  SpectrogramRun(const SpectrogramOptions& options, std::optional<double> lowest_per_m,
+                 SpectrogramFiles& files, bool keep)
+      : options_(options), asked_lowest_per_m_(lowest_per_m), files_(files), keep_(keep) {}
+
+  // Errors: of the inputs, the maker and the files; unsuitable, with both names, for a texture with another
+  // pitch or quantity than the first.
+  Result<void> transform(TextureInputs& inputs) {
+    expected_ = inputs.expected();
+    for (;;) {
+      auto texture = inputs.next();
+      TACTO_TRY(texture);
+      if (!*texture) break;
+      if (auto taken = take(std::move(**texture)); !taken) return taken;
+    }
+    if (lines_.empty()) return schema::fail(ErrorKind::unsuitable, "none of the given files is a texture");
+    return {};
+  }
+
+  // After transform(): one line for each texture, and their common values.
+  const std::vector<Line>& lines() const { return lines_; }
+  const schema::SpectrogramHeader& first() const { return *first_; }
+  const Decimation& decimation() const { return maker_->decimation(); }
+  double lowest_per_m() const { return asked_lowest_per_m_.value_or(lowest_shown_per_m(lowest_, *first_)); }
+  const std::vector<NamedTexture>& textures() const { return textures_; }
+  const std::vector<schema::Spectrogram>& spectrograms() const { return spectrograms_; }
+
+ private:
+  Result<void> take(NamedTexture texture) {
+    const auto ready = first_ ? check_alike(texture) : prepare(texture);
+    if (!ready) return ready;
+    auto header = maker_->describe(texture.texture);
+    if (!header) return naming(texture, header);
+    header->name = texture.name;
+    warn_if_little_is_seen(texture, *header);
+    if (!first_) {
+      first_ = *header;
+      lowest_ = INFINITY;
+    }
+    lowest_ = std::min(lowest_, lowest_of_interest_per_m(texture.texture));
+    lines_.push_back({texture.name, header->position_m.size(), {*header, lowest_per_m()}});
+    if (auto made = make(texture, *header); !made) return naming(texture, made);
+    if (keep_) textures_.push_back(std::move(texture));
+    return {};
+  }
+
+  // The number of rows is estimated from the first texture, because most others are about as long.
+  Result<void> prepare(const NamedTexture& first) {
+    const auto& signal = first.texture.signal;
+    const auto shape = frame_shape(options_, signal.pitch_m);
+    TACTO_TRY(shape);
+    auto maker = SpectrogramMaker::prepare(options_, signal.pitch_m,
+                                           expected_ * (1 + signal.values.size() / shape->hop));
+    TACTO_TRY(maker);
+    maker_.emplace(std::move(*maker));
+    first_path_ = first.path;
+    warn_of_odd_options(options_, signal.pitch_m);
+    return {};
+  }
+
+  Result<void> check_alike(const NamedTexture& other) const {
+    const double pitch_m = first_->pitch_m;
+    const auto& texture = other.texture;
+    if (std::abs(texture.signal.pitch_m - pitch_m) > 1e-9 * pitch_m)
+      return schema::fail(
+          ErrorKind::unsuitable,
+          fmt::format("has a grid of {}, but {} has {}", schema::length_for_people(texture.signal.pitch_m),
+                      first_path_, schema::length_for_people(pitch_m)),
+          other.path, "make one spectrogram of each, or make textures with equal grids ('spatial --grid')");
+    if (texture.quantity != first_->quantity || texture.unit != first_->unit)
+      return schema::fail(
+          ErrorKind::unsuitable,
+          fmt::format("contains {}, but {} contains {}", texture.quantity, first_path_, first_->quantity),
+          other.path, "make one spectrogram of each");
+    return {};
+  }
+
+  Result<void> make(const NamedTexture& texture, const SpectrogramHeader& header) {
+    if (auto begun = files_.begin(header); !begun) return begun;
+    if (keep_) spectrograms_.push_back({header, {}});
+    const auto before = static_cast<double>(lines_.size() - 1),
+               rows = static_cast<double>(header.position_m.size());
+    return maker_->make(
+        texture.texture, [&](std::size_t first, std::span<const float> cells) -> Result<void> {
+          lines_.back().tally.add(first, cells);
+          if (keep_) {
+            auto& kept = spectrograms_.back().cells;
+            kept.insert(kept.end(), cells.begin(), cells.end());
+          }
+          progress_.update(
+              std::min(1.0, (before + static_cast<double>(first) / rows) / static_cast<double>(expected_)));
+          return files_.rows(first, cells);
+        });
+  }
+
+  SpectrogramOptions options_;
+  std::optional<double> asked_lowest_per_m_;
+  SpectrogramFiles& files_;
+  bool keep_;
+  cli::Progress progress_{"spectrogram"};
+  std::size_t expected_ = 0;
+  std::optional<SpectrogramMaker> maker_;
+  std::optional<schema::SpectrogramHeader> first_;
+  std::string first_path_;
+  double lowest_ = 0;
+  std::vector<Line> lines_;
+  std::vector<NamedTexture> textures_;
+  std::vector<schema::Spectrogram> spectrograms_;
+};
 
 struct SpectrogramVerbOptions {
   std::vector<std::string> names, outputs;

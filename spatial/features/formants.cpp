@@ -154,36 +154,6 @@ class RowPeaks {
   std::size_t valley_bins_ = 1;
 };
 
-// The expected density of a cell without the line in it, by ordered statistics of its neighbours (Rohling
-// 1983, IEEE Trans. AES 19(4)): the median of the known cells that are within 1.5 windows along position and
-// between 3.5 and 16 bins of the unpadded window (1 / window) away in frequency, over ln 2, because cells of
-// noise have an exponential distribution. Before that, each cell is divided by a power law k^a fitted to the
-// mean spectrum (Theil and Sen's robust slope), and by the median of its row.
-class SpectrogramBackground {
- public:
-  // Precondition: one range per row.
-  SpectrogramBackground(const schema::Spectrogram& spectrogram, std::span<const BinRange> known);
-  // unit^2 m; NaN if too few neighbours are known.
-  double at(std::size_t row, std::size_t bin) const;
-
- private:
-  void whiten(const schema::Spectrogram& spectrogram);
-  void whiten_row(const schema::Spectrogram& spectrogram, std::size_t row);
-  double median_around(std::size_t row, std::size_t bin);
-
-  std::vector<BinRange> known_;
-  std::vector<double> trend_;     // by bin
-  std::vector<double> row_gain_;  // by row
-  std::vector<float> whitened_;
-  std::size_t rows_ = 0, bins_ = 0;
-  std::size_t rows_apart_ = 1, bins_apart_ = 1;  // of the lattice on which it is computed
-  std::size_t lattice_bins_ = 0;
-  std::vector<double> lattice_;
-  std::vector<float> cells_;
-  double unpadded_bin_ = 1;  // in bins
-  double window_rows_ = 1;
-};
-
 constexpr double kFloorGuard =
     3.5;  // unpadded bins: half of Blackman's main lobe is 3, and half a lattice step
 constexpr double kFloorReach = 16;   // unpadded bins
@@ -227,63 +197,86 @@ double exponent_of(const Spectrogram& spectrogram, std::span<const BinRange> kno
   return robust_slope(x, y);
 }
 
-SpectrogramBackground::SpectrogramBackground(const Spectrogram& spectrogram, std::span<const BinRange> known)
-    : known_(known.begin(), known.end()), rows_(spectrogram.position_m.size()), bins_(spectrogram.bins) {
-  unpadded_bin_ = 1 / (spectrogram.window_m * spectrogram.frequency_step_per_m);
-  window_rows_ = spectrogram.window_m / spectrogram.hop_m;
-  rows_apart_ = at_least_one(window_rows_ / 4);
-  bins_apart_ = at_least_one(unpadded_bin_);
-  lattice_bins_ = 1 + (bins_ - 1) / bins_apart_;
-  whiten(spectrogram);
-  for (std::size_t row = 0; row < rows_; row += rows_apart_)
-    for (std::size_t bin = 0; bin < bins_; bin += bins_apart_)
-      lattice_.push_back(median_around(row, bin) / std::numbers::ln2);
-}
-
-void SpectrogramBackground::whiten(const Spectrogram& spectrogram) {
-  const double exponent = exponent_of(spectrogram, known_);
-  for (std::size_t bin = 0; bin < bins_; ++bin)
-    trend_.push_back(std::pow(static_cast<double>(std::max<std::size_t>(bin, 1)), exponent));
-  whitened_.assign(rows_ * bins_, 0);
-  for (std::size_t row = 0; row < rows_; ++row) whiten_row(spectrogram, row);
-}
-
-void SpectrogramBackground::whiten_row(const Spectrogram& spectrogram, std::size_t row) {
-  BinRange& known = known_[row];
-  const std::span cells = std::span(whitened_).subspan(row * bins_, bins_);
-  for (std::size_t bin = known.first; bin < known.end; ++bin)
-    cells[bin] = static_cast<float>(static_cast<double>(spectrogram.at(row, bin)) / trend_[bin]);
-  cells_.assign(cells.begin() + static_cast<std::ptrdiff_t>(known.first),
-                cells.begin() + static_cast<std::ptrdiff_t>(known.end));
-  row_gain_.push_back(median_of(cells_));
-  // A row of zeros has no background, so none of its bins is used.
-  if (!(row_gain_[row] > 0)) known.end = known.first;
-  for (std::size_t bin = known.first; bin < known.end; ++bin)
-    cells[bin] = static_cast<float>(static_cast<double>(cells[bin]) / row_gain_[row]);
-}
-
-double SpectrogramBackground::median_around(std::size_t row, std::size_t bin) {
-  const std::size_t along = at_least_one(kAlong * window_rows_);
-  const std::size_t stride = at_least_one(window_rows_ / 8);
-  const std::size_t guard = at_least_one(std::ceil(kFloorGuard * unpadded_bin_));
-  const std::size_t reach = at_least_one(kFloorReach * unpadded_bin_);
-  cells_.clear();
-  const std::size_t first_row = row > along ? row - along : 0;
-  for (std::size_t r = first_row; r < std::min(rows_, row + along + 1); r += stride) {
-    const std::size_t from = std::max(known_[r].first, bin > reach ? bin - reach : 0);
-    const std::size_t to = std::min(known_[r].end, bin + reach + 1);
-    for (std::size_t b = from; b < to; ++b)
-      if ((b > bin ? b - bin : bin - b) >= guard) cells_.push_back(whitened_[r * bins_ + b]);
+// The expected density of a cell without the line in it, by ordered statistics of its neighbours (Rohling
+// 1983, IEEE Trans. AES 19(4)): the median of the known cells that are within 1.5 windows along position and
+// between 3.5 and 16 bins of the unpadded window (1 / window) away in frequency, over ln 2, because cells of
+// noise have an exponential distribution. Before that, each cell is divided by a power law k^a fitted to the
+// mean spectrum (Theil and Sen's robust slope), and by the median of its row.
+class SpectrogramBackground {
+ public:
+  // Precondition: one range per row.
+  SpectrogramBackground(const Spectrogram& spectrogram, std::span<const BinRange> known)
+      : known_(known.begin(), known.end()), rows_(spectrogram.position_m.size()), bins_(spectrogram.bins) {
+    unpadded_bin_ = 1 / (spectrogram.window_m * spectrogram.frequency_step_per_m);
+    window_rows_ = spectrogram.window_m / spectrogram.hop_m;
+    rows_apart_ = at_least_one(window_rows_ / 4);
+    bins_apart_ = at_least_one(unpadded_bin_);
+    lattice_bins_ = 1 + (bins_ - 1) / bins_apart_;
+    whiten(spectrogram);
+    for (std::size_t row = 0; row < rows_; row += rows_apart_)
+      for (std::size_t bin = 0; bin < bins_; bin += bins_apart_)
+        lattice_.push_back(median_around(row, bin) / std::numbers::ln2);
   }
-  return cells_.size() < kFewest ? std::numeric_limits<double>::quiet_NaN() : median_of(cells_);
-}
 
-double SpectrogramBackground::at(std::size_t row, std::size_t bin) const {
-  const std::size_t last_row = (rows_ - 1) / rows_apart_;
-  const std::size_t lattice_row = std::min(last_row, (row + rows_apart_ / 2) / rows_apart_);
-  const std::size_t lattice_bin = std::min(lattice_bins_ - 1, (bin + bins_apart_ / 2) / bins_apart_);
-  return lattice_[lattice_row * lattice_bins_ + lattice_bin] * trend_[bin] * row_gain_[row];
-}
+  // unit^2 m; NaN if too few neighbours are known.
+  double at(std::size_t row, std::size_t bin) const {
+    const std::size_t last_row = (rows_ - 1) / rows_apart_;
+    const std::size_t lattice_row = std::min(last_row, (row + rows_apart_ / 2) / rows_apart_);
+    const std::size_t lattice_bin = std::min(lattice_bins_ - 1, (bin + bins_apart_ / 2) / bins_apart_);
+    return lattice_[lattice_row * lattice_bins_ + lattice_bin] * trend_[bin] * row_gain_[row];
+  }
+
+ private:
+  void whiten(const Spectrogram& spectrogram) {
+    const double exponent = exponent_of(spectrogram, known_);
+    for (std::size_t bin = 0; bin < bins_; ++bin)
+      trend_.push_back(std::pow(static_cast<double>(std::max<std::size_t>(bin, 1)), exponent));
+    whitened_.assign(rows_ * bins_, 0);
+    for (std::size_t row = 0; row < rows_; ++row) whiten_row(spectrogram, row);
+  }
+
+  void whiten_row(const Spectrogram& spectrogram, std::size_t row) {
+    BinRange& known = known_[row];
+    const std::span cells = std::span(whitened_).subspan(row * bins_, bins_);
+    for (std::size_t bin = known.first; bin < known.end; ++bin)
+      cells[bin] = static_cast<float>(static_cast<double>(spectrogram.at(row, bin)) / trend_[bin]);
+    cells_.assign(cells.begin() + static_cast<std::ptrdiff_t>(known.first),
+                  cells.begin() + static_cast<std::ptrdiff_t>(known.end));
+    row_gain_.push_back(median_of(cells_));
+    // A row of zeros has no background, so none of its bins is used.
+    if (!(row_gain_[row] > 0)) known.end = known.first;
+    for (std::size_t bin = known.first; bin < known.end; ++bin)
+      cells[bin] = static_cast<float>(static_cast<double>(cells[bin]) / row_gain_[row]);
+  }
+
+  double median_around(std::size_t row, std::size_t bin) {
+    const std::size_t along = at_least_one(kAlong * window_rows_);
+    const std::size_t stride = at_least_one(window_rows_ / 8);
+    const std::size_t guard = at_least_one(std::ceil(kFloorGuard * unpadded_bin_));
+    const std::size_t reach = at_least_one(kFloorReach * unpadded_bin_);
+    cells_.clear();
+    const std::size_t first_row = row > along ? row - along : 0;
+    for (std::size_t r = first_row; r < std::min(rows_, row + along + 1); r += stride) {
+      const std::size_t from = std::max(known_[r].first, bin > reach ? bin - reach : 0);
+      const std::size_t to = std::min(known_[r].end, bin + reach + 1);
+      for (std::size_t b = from; b < to; ++b)
+        if ((b > bin ? b - bin : bin - b) >= guard) cells_.push_back(whitened_[r * bins_ + b]);
+    }
+    return cells_.size() < kFewest ? std::numeric_limits<double>::quiet_NaN() : median_of(cells_);
+  }
+
+  std::vector<BinRange> known_;
+  std::vector<double> trend_;     // by bin
+  std::vector<double> row_gain_;  // by row
+  std::vector<float> whitened_;
+  std::size_t rows_ = 0, bins_ = 0;
+  std::size_t rows_apart_ = 1, bins_apart_ = 1;  // of the lattice on which it is computed
+  std::size_t lattice_bins_ = 0;
+  std::vector<double> lattice_;
+  std::vector<float> cells_;
+  double unpadded_bin_ = 1;  // in bins
+  double window_rows_ = 1;
+};
 
 // Sorted by frequency. A parabola through the levels of three bins gives the position of the maximum.
 std::vector<RidgePoint> ridge_points(const Spectrogram& spectrogram, std::size_t row, BinRange known,

@@ -208,8 +208,8 @@ double unevenness_evidence(const StrokeLines& stroke, const Vibration& vibration
   return std::clamp(nats, -kMaxUnevennessEvidence, kMaxUnevennessEvidence);
 }
 
-}  // namespace
-
+// Sampled at eight times the band's upper limit, by linear interpolation of the texture's samples. Errors:
+// unsuitable, if neither band nor mean speed is known.
 Result<TimeCourse> time_course(const Texture& texture) {
   const Slowness slowness = slowness_of(texture);
   if (slowness.s_per_m.empty())
@@ -224,6 +224,8 @@ Result<TimeCourse> time_course(const Texture& texture) {
   course.values = resampled(texture, times, course.interval_s);
   return course;
 }
+
+}  // namespace
 
 Result<StrokeLines> stroke_lines(const std::string& name, const Texture& whole) {
   if (whole.signal.values.empty()) return schema::fail(ErrorKind::unsuitable, "has no samples", name);

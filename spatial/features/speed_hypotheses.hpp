@@ -39,10 +39,6 @@ struct TimeCourse {
   double unevenness = 0;      ///< standard deviation of the speed over time, over its mean
 };
 
-/// Sampled at eight times the band's upper limit, by linear interpolation of the texture's samples. Errors:
-/// unsuitable, if neither band nor mean speed is known.
-schema::Result<TimeCourse> time_course(const schema::Texture& texture);
-
 /// One vibration of a texture: a line over position, over time, or both.
 struct Vibration {
   double frequency_per_m = 0, sigma_per_m = 0;

@@ -207,12 +207,69 @@ class Takes {
   explicit Takes(const SpatialOptions& options, std::string stem)
       : options_(options), stem_(std::move(stem)), means_{{"-forward", {}}, {"-backward", {}}} {}
 
-  Result<void> add(const std::string& recording, const std::function<void(double)>& progress);
-  Result<Report> finish();
+  // All warnings of a recording contain its name.
+  Result<void> add(const std::string& recording, const std::function<void(double)>& progress) {
+    warnings_.clear();
+    TooShort& too_short = too_short_.emplace_back();
+    auto take = open_take(options_, recording, warnings_, too_short);
+    if (!take && take.error().kind != ErrorKind::unsuitable) return schema::forward_error(take);
+    std::size_t strokes = 0;
+    if (!take && !too_short.nothing_left) excluded_.push_back(take.error());
+    if (take) TACTO_TRY(check_origin(recording, take->maker.record().header()));
+    if (take)
+      for (const AverageGroup& group : average_groups(take->jobs, options_.both_ways, "")) {
+        const bool backward = !options_.both_ways && group.jobs.front().stroke.direction < 0;
+        TextureAverager& averager = means_[backward ? 1 : 0].averager;
+        const std::size_t before = averager.strokes();
+        const auto added =
+            add_strokes(take->maker, group.jobs, {options_, warnings_, progress, true}, averager);
+        if (!added) return added;
+        strokes += averager.strokes() - before;
+      }
+    for (const std::string& warning : warnings_)
+      cli::warn(warning.starts_with(recording) ? warning : fmt::format("{}: {}", recording, warning));
+    takes_.push_back(Report().add("recording", recording).add("strokes_averaged", strokes));
+    return {};
+  }
+
+  Result<Report> finish() {
+    if (const auto said = too_short_sentence(too_short_)) cli::warn(*said);
+    for (const schema::Error& error : cli::by_cause(excluded_))
+      cli::warn("excluded: " + schema::message(error));
+    schema::PendingFiles pending;
+    std::vector<Report> rows;
+    for (const Mean& mean : means_) {
+      if (mean.averager.strokes() == 0) continue;
+      const std::string stem = stem_of(mean);
+      const auto texture = mean.averager.finish(name_of(options_.align));
+      if (!texture) {
+        cli::warn(fmt::format("{}: no average: {}", stem, schema::message(texture.error())));
+        continue;
+      }
+      TACTO_TRY(schema::check_texture_free(stem, options_.existing));
+      TACTO_TRY(schema::add_texture(pending, stem, *texture));
+      for (const TextureWarning& warning : texture_warnings(*texture)) cli::warn(stem + ": " + warning.text);
+      rows.push_back(average_row(stem, *texture));
+    }
+    if (rows.empty())
+      return schema::fail(ErrorKind::unsuitable, "no two strokes of these recordings can be averaged", stem_,
+                          "the warnings give the reasons; --list shows the positions of the strokes");
+    TACTO_TRY(pending.commit(options_.existing));
+    return Report().add("takes", std::move(takes_)).add("averages", std::move(rows));
+  }
 
  private:
-  std::string stem_of(const Mean& mean) const;
-  Result<void> check_origin(const std::string& recording, const schema::RecordingHeader& header);
+  std::string stem_of(const Mean& mean) const {
+    const bool both = means_.front().averager.strokes() > 0 && means_.back().averager.strokes() > 0;
+    return both ? stem_ + mean.ending : stem_;
+  }
+
+  Result<void> check_origin(const std::string& recording, const schema::RecordingHeader& header) {
+    origins_.push_back({recording, header.surface, header.simulated, header.sha256});
+    const Origin one = origins_.back();
+    TACTO_TRY(check_not_twice(one, {origins_.begin(), origins_.end() - 1}));
+    return options_.mix ? Result<void>() : check_not_mixed(one, origins_.front());
+  }
 
   const SpatialOptions& options_;
   std::string stem_;
@@ -223,69 +280,6 @@ class Takes {
   std::vector<TooShort> too_short_;
   std::vector<schema::Error> excluded_;
 };
-
-Result<void> Takes::check_origin(const std::string& recording, const schema::RecordingHeader& header) {
-  origins_.push_back({recording, header.surface, header.simulated, header.sha256});
-  const Origin one = origins_.back();
-  TACTO_TRY(check_not_twice(one, {origins_.begin(), origins_.end() - 1}));
-  return options_.mix ? Result<void>() : check_not_mixed(one, origins_.front());
-}
-
-// All warnings of a recording contain its name.
-Result<void> Takes::add(const std::string& recording, const std::function<void(double)>& progress) {
-  warnings_.clear();
-  TooShort& too_short = too_short_.emplace_back();
-  auto take = open_take(options_, recording, warnings_, too_short);
-  if (!take && take.error().kind != ErrorKind::unsuitable) return schema::forward_error(take);
-  std::size_t strokes = 0;
-  if (!take && !too_short.nothing_left) excluded_.push_back(take.error());
-  if (take) TACTO_TRY(check_origin(recording, take->maker.record().header()));
-  if (take)
-    for (const AverageGroup& group : average_groups(take->jobs, options_.both_ways, "")) {
-      const bool backward = !options_.both_ways && group.jobs.front().stroke.direction < 0;
-      TextureAverager& averager = means_[backward ? 1 : 0].averager;
-      const std::size_t before = averager.strokes();
-      const auto added =
-          add_strokes(take->maker, group.jobs, {options_, warnings_, progress, true}, averager);
-      if (!added) return added;
-      strokes += averager.strokes() - before;
-    }
-  for (const std::string& warning : warnings_)
-    cli::warn(warning.starts_with(recording) ? warning : fmt::format("{}: {}", recording, warning));
-  takes_.push_back(Report().add("recording", recording).add("strokes_averaged", strokes));
-  return {};
-}
-
-std::string Takes::stem_of(const Mean& mean) const {
-  const bool both = means_.front().averager.strokes() > 0 && means_.back().averager.strokes() > 0;
-  return both ? stem_ + mean.ending : stem_;
-}
-
-Result<Report> Takes::finish() {
-  if (const auto said = too_short_sentence(too_short_)) cli::warn(*said);
-  for (const schema::Error& error : cli::by_cause(excluded_))
-    cli::warn("excluded: " + schema::message(error));
-  schema::PendingFiles pending;
-  std::vector<Report> rows;
-  for (const Mean& mean : means_) {
-    if (mean.averager.strokes() == 0) continue;
-    const std::string stem = stem_of(mean);
-    const auto texture = mean.averager.finish(name_of(options_.align));
-    if (!texture) {
-      cli::warn(fmt::format("{}: no average: {}", stem, schema::message(texture.error())));
-      continue;
-    }
-    TACTO_TRY(schema::check_texture_free(stem, options_.existing));
-    TACTO_TRY(schema::add_texture(pending, stem, *texture));
-    for (const TextureWarning& warning : texture_warnings(*texture)) cli::warn(stem + ": " + warning.text);
-    rows.push_back(average_row(stem, *texture));
-  }
-  if (rows.empty())
-    return schema::fail(ErrorKind::unsuitable, "no two strokes of these recordings can be averaged", stem_,
-                        "the warnings give the reasons; --list shows the positions of the strokes");
-  TACTO_TRY(pending.commit(options_.existing));
-  return Report().add("takes", std::move(takes_)).add("averages", std::move(rows));
-}
 
 Result<void> check_options(const SpatialOptions& options) {
   if (!options.chosen_by.budget.asked() && !options.chosen_by.explain) return {};

@@ -2,8 +2,11 @@
 // A spectrogram as coloured pixels on a logarithmic frequency axis; the interface to OpenCV.
 #pragma once
 
+#include <string>
+
 #include "data-schema/base/error.hpp"
 #include "data-schema/spectrogram/spectrogram.hpp"
+#include "spatial/picture/draw/canvas.hpp"
 #include "spatial/picture/draw/geometry.hpp"
 #include "spatial/spectrogram/spectrogram_summary.hpp"
 
@@ -24,5 +27,8 @@ std::uint32_t level_pixel(double level_db, const LevelRange& levels);
 /// Preconditions: 0 < low_per_m < high_per_m, size at least 1 x 1. Errors: internal, with OpenCV's message.
 schema::Result<Pixels> heatmap(const schema::Spectrogram& spectrogram, double low_per_m, double high_per_m,
                                const LevelRange& levels, int width, int height);
+
+/// A bar from the darkest colour at the bottom to the brightest, with an axis of levels on the right.
+void draw_level_bar(Canvas& canvas, const Box& bar, const LevelRange& levels, const std::string& caption);
 
 }  // namespace tacto::spatial

@@ -12,7 +12,7 @@
 #include "spatial/picture/draw/heading.hpp"
 #include "spatial/picture/draw/shown_range.hpp"
 #include "spatial/picture/formant_ridges.hpp"
-#include "spatial/picture/level_bar.hpp"
+#include "spatial/picture/heatmap.hpp"
 #include "spatial/picture/spectrogram_layout.hpp"
 #include "spatial/picture/trace.hpp"
 #include "spatial/picture/valid_band.hpp"

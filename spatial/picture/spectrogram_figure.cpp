@@ -12,7 +12,7 @@
 #include "spatial/picture/draw/hatch.hpp"
 #include "spatial/picture/draw/shown_range.hpp"
 #include "spatial/picture/formant_ridges.hpp"
-#include "spatial/picture/level_bar.hpp"
+#include "spatial/picture/heatmap.hpp"
 #include "spatial/picture/trace.hpp"
 #include "spatial/picture/valid_band.hpp"
 #include "spatial/spectrogram/spectrogram_summary.hpp"
@@ -22,30 +22,6 @@ namespace {
 
 using schema::ErrorKind;
 using schema::Result;
-
-// The inputs and steps of the drawing. Axes in mm and 1/mm, placed on the panel's spectrogram.
-struct PanelPainter {
-  Canvas& canvas;
-  const schema::Texture& texture;
-  const schema::Spectrogram& spectrogram;
-  const Heading& heading;
-  PanelLayout layout;
-  Axis position;
-  Axis frequency;
-  LevelRange levels;
-  std::span<const schema::Formant> formants;
-
-  // Errors: those of heatmap().
-  schema::Result<void> paint();
-
- private:
-  void paint_trace();
-  schema::Result<void> paint_heat();
-  void paint_wavelengths();
-  void paint_mean();
-  void paint_bar();
-  void paint_notes();
-};
 
 constexpr double kCaptionGap = 50;
 constexpr std::size_t kLabels = 12;
@@ -73,136 +49,151 @@ Axis wavelength_axis(const Axis& frequency) {
   return {AxisScale::logarithmic, 1 / frequency.high, 1 / frequency.low, frequency.at_high, frequency.at_low};
 }
 
-schema::Result<void> PanelPainter::paint() {
-  draw_heading(canvas, {layout.heading.x, layout.heading.y}, heading);
-  paint_trace();
-  if (auto painted = paint_heat(); !painted) return painted;
-  paint_wavelengths();
-  paint_mean();
-  paint_bar();
-  paint_notes();
-  return {};
-}
+// The inputs and steps of the drawing. Axes in mm and 1/mm, placed on the panel's spectrogram.
+struct PanelPainter {
+  Canvas& canvas;
+  const schema::Texture& texture;
+  const schema::Spectrogram& spectrogram;
+  const Heading& heading;
+  PanelLayout layout;
+  Axis position;
+  Axis frequency;
+  LevelRange levels;
+  std::span<const schema::Formant> formants;
 
-void PanelPainter::paint_trace() {
-  const auto& signal = texture.signal;
-  const DisplayUnit unit = display_unit(texture.unit, largest_of(signal.values));
-  std::vector<double> x(signal.values.size());
-  std::vector<double> y(signal.values.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    x[i] = 1e3 * signal.position_m(i);
-    y[i] = unit.factor * signal.values[i];
+  // Errors: those of heatmap().
+  schema::Result<void> paint() {
+    draw_heading(canvas, {layout.heading.x, layout.heading.y}, heading);
+    paint_trace();
+    if (auto painted = paint_heat(); !painted) return painted;
+    paint_wavelengths();
+    paint_mean();
+    paint_bar();
+    paint_notes();
+    return {};
   }
-  const ShownRange shown = shown_range(y);
-  const Axis axis = value_axis(shown, layout.trace);
-  const auto ticks = ticks_of(axis, 5);
-  draw_grid(canvas, layout.trace, true, axis, ticks);
-  canvas.clip(layout.trace);
-  for (const auto& piece : trace(x, y, position, axis, canvas.pixels_per_point()))
-    canvas.polyline(piece, {kTrace, 0.6});
-  canvas.release();
-  if (shown.beyond > 0)
-    canvas.text({layout.trace.right() - 4, layout.trace.y + 3}, out_of_range_text(shown, unit.text),
-                {.size = 8.5, .colour = kGreyInk, .align_x = 1, .align_y = 0});
-  canvas.frame(layout.trace, {});
-  draw_axis(canvas, layout.trace, Side::left, axis, ticks);
-  draw_axis(canvas, layout.trace, Side::bottom, position, without_labels(ticks_of(position, 10)));
-  draw_caption(canvas, layout.trace, Side::left,
-               fmt::format("{} ({})", axis_name(texture.quantity), unit.text), kCaptionGap);
-}
 
-schema::Result<void> PanelPainter::paint_heat() {
-  const Box area = covered(layout.heat, position, spectrogram);
-  const auto pixels = heatmap(spectrogram, 1e3 * frequency.low, 1e3 * frequency.high, levels,
-                              static_cast<int>(std::lround(area.width * canvas.pixels_per_point())),
-                              static_cast<int>(std::lround(area.height * canvas.pixels_per_point())));
-  TACTO_TRY(pixels);
-  const double start = position.place(1e3 * texture.signal.origin_m);
-  const double end = position.place(1e3 * (texture.signal.origin_m + texture.signal.length_m()));
-  canvas.fill({start, layout.heat.y, end - start, layout.heat.height}, kNoWindow);
-  canvas.image(area, *pixels);
-  if (!texture.valid_band.empty()) draw_valid_band(canvas, area, texture.valid_band, position, frequency);
-  draw_formants(canvas, area, formants, position, frequency, kLabels);
-  canvas.frame(layout.heat, {});
-  draw_axis(canvas, layout.heat, Side::bottom, position, ticks_of(position, 10));
-  draw_axis(canvas, layout.heat, Side::left, frequency, ticks_of(frequency, 6));
-  draw_caption(canvas, layout.heat, Side::bottom, "position (mm)", 29);
-  draw_caption(canvas, layout.heat, Side::left, "spatial frequency (1/mm)", kCaptionGap);
-  return {};
-}
-
-void PanelPainter::paint_wavelengths() {
-  const Axis wavelength = wavelength_axis(frequency);
-  draw_axis(canvas, layout.heat, Side::right, wavelength, ticks_of(wavelength, 6));
-  draw_caption(canvas, layout.heat, Side::right, "wavelength (mm)", 45);
-}
-
-void PanelPainter::paint_mean() {
-  const LevelReference reference = level_reference(spectrogram);
-  const Axis level{AxisScale::linear, levels.low_db, levels.high_db, layout.mean.x, layout.mean.right()};
-  std::vector<double> frequencies_per_mm;
-  std::vector<double> levels_db;
-  const auto mean = mean_spectrum(spectrogram);
-  for (std::size_t k = 1; k < mean.size(); ++k) {
-    frequencies_per_mm.push_back(1e-3 * spectrogram.frequency_per_m(k));
-    levels_db.push_back(std::max(level_db(mean[k], reference), levels.low_db - 100));
+ private:
+  void paint_trace() {
+    const auto& signal = texture.signal;
+    const DisplayUnit unit = display_unit(texture.unit, largest_of(signal.values));
+    std::vector<double> x(signal.values.size());
+    std::vector<double> y(signal.values.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] = 1e3 * signal.position_m(i);
+      y[i] = unit.factor * signal.values[i];
+    }
+    const ShownRange shown = shown_range(y);
+    const Axis axis = value_axis(shown, layout.trace);
+    const auto ticks = ticks_of(axis, 5);
+    draw_grid(canvas, layout.trace, true, axis, ticks);
+    canvas.clip(layout.trace);
+    for (const auto& piece : trace(x, y, position, axis, canvas.pixels_per_point()))
+      canvas.polyline(piece, {kTrace, 0.6});
+    canvas.release();
+    if (shown.beyond > 0)
+      canvas.text({layout.trace.right() - 4, layout.trace.y + 3}, out_of_range_text(shown, unit.text),
+                  {.size = 8.5, .colour = kGreyInk, .align_x = 1, .align_y = 0});
+    canvas.frame(layout.trace, {});
+    draw_axis(canvas, layout.trace, Side::left, axis, ticks);
+    draw_axis(canvas, layout.trace, Side::bottom, position, without_labels(ticks_of(position, 10)));
+    draw_caption(canvas, layout.trace, Side::left,
+                 fmt::format("{} ({})", axis_name(texture.quantity), unit.text), kCaptionGap);
   }
-  const auto level_ticks = ticks_of(level, 3);
-  draw_grid(canvas, layout.mean, false, level, level_ticks);
-  draw_grid(canvas, layout.mean, true, frequency, ticks_of(frequency, 6));
-  canvas.clip(layout.mean);
-  for (auto piece : trace(frequencies_per_mm, levels_db, frequency, level, canvas.pixels_per_point())) {
-    for (Point& point : piece) std::swap(point.x, point.y);
-    canvas.polyline(piece, {kTrace, 1});
+
+  schema::Result<void> paint_heat() {
+    const Box area = covered(layout.heat, position, spectrogram);
+    const auto pixels = heatmap(spectrogram, 1e3 * frequency.low, 1e3 * frequency.high, levels,
+                                static_cast<int>(std::lround(area.width * canvas.pixels_per_point())),
+                                static_cast<int>(std::lround(area.height * canvas.pixels_per_point())));
+    TACTO_TRY(pixels);
+    const double start = position.place(1e3 * texture.signal.origin_m);
+    const double end = position.place(1e3 * (texture.signal.origin_m + texture.signal.length_m()));
+    canvas.fill({start, layout.heat.y, end - start, layout.heat.height}, kNoWindow);
+    canvas.image(area, *pixels);
+    if (!texture.valid_band.empty()) draw_valid_band(canvas, area, texture.valid_band, position, frequency);
+    draw_formants(canvas, area, formants, position, frequency, kLabels);
+    canvas.frame(layout.heat, {});
+    draw_axis(canvas, layout.heat, Side::bottom, position, ticks_of(position, 10));
+    draw_axis(canvas, layout.heat, Side::left, frequency, ticks_of(frequency, 6));
+    draw_caption(canvas, layout.heat, Side::bottom, "position (mm)", 29);
+    draw_caption(canvas, layout.heat, Side::left, "spatial frequency (1/mm)", kCaptionGap);
+    return {};
   }
-  canvas.release();
-  canvas.frame(layout.mean, {});
-  draw_axis(canvas, layout.mean, Side::bottom, level, level_ticks);
-  draw_caption(canvas, layout.mean, Side::bottom, "mean (dB)", 29);
-}
 
-void PanelPainter::paint_bar() {
-  const std::string unit = typeset(level_reference(spectrogram).unit);
-  draw_level_bar(canvas, layout.bar, levels, fmt::format("power spectral density (dB re {})", unit));
-}
+  void paint_wavelengths() {
+    const Axis wavelength = wavelength_axis(frequency);
+    draw_axis(canvas, layout.heat, Side::right, wavelength, ticks_of(wavelength, 6));
+    draw_caption(canvas, layout.heat, Side::right, "wavelength (mm)", 45);
+  }
 
-// The legend of lines and greys, in the corner that the plots leave free.
-void PanelPainter::paint_notes() {
-  const TextStyle style{.size = 9.5, .colour = kGreyInk, .align_y = 0.5};
-  const Box& box = layout.notes;
-  double y = box.y + 6;
-  const auto swatch = [&](const Colour& colour) {
-    canvas.fill({box.x, y - 4.5, 18, 9},
-                level_colour(std::lerp(levels.low_db, levels.high_db, 0.35), levels));
-    canvas.fill({box.x, y - 4.5, 18, 9}, colour);
-  };
-  const auto note = [&](const std::string& text) {
-    canvas.text({box.x + 24, y}, text, style);
+  void paint_mean() {
+    const LevelReference reference = level_reference(spectrogram);
+    const Axis level{AxisScale::linear, levels.low_db, levels.high_db, layout.mean.x, layout.mean.right()};
+    std::vector<double> frequencies_per_mm;
+    std::vector<double> levels_db;
+    const auto mean = mean_spectrum(spectrogram);
+    for (std::size_t k = 1; k < mean.size(); ++k) {
+      frequencies_per_mm.push_back(1e-3 * spectrogram.frequency_per_m(k));
+      levels_db.push_back(std::max(level_db(mean[k], reference), levels.low_db - 100));
+    }
+    const auto level_ticks = ticks_of(level, 3);
+    draw_grid(canvas, layout.mean, false, level, level_ticks);
+    draw_grid(canvas, layout.mean, true, frequency, ticks_of(frequency, 6));
+    canvas.clip(layout.mean);
+    for (auto piece : trace(frequencies_per_mm, levels_db, frequency, level, canvas.pixels_per_point())) {
+      for (Point& point : piece) std::swap(point.x, point.y);
+      canvas.polyline(piece, {kTrace, 1});
+    }
+    canvas.release();
+    canvas.frame(layout.mean, {});
+    draw_axis(canvas, layout.mean, Side::bottom, level, level_ticks);
+    draw_caption(canvas, layout.mean, Side::bottom, "mean (dB)", 29);
+  }
+
+  void paint_bar() {
+    const std::string unit = typeset(level_reference(spectrogram).unit);
+    draw_level_bar(canvas, layout.bar, levels, fmt::format("power spectral density (dB re {})", unit));
+  }
+
+  // The legend of lines and greys, in the corner that the plots leave free.
+  void paint_notes() {
+    const TextStyle style{.size = 9.5, .colour = kGreyInk, .align_y = 0.5};
+    const Box& box = layout.notes;
+    double y = box.y + 6;
+    const auto swatch = [&](const Colour& colour) {
+      canvas.fill({box.x, y - 4.5, 18, 9},
+                  level_colour(std::lerp(levels.low_db, levels.high_db, 0.35), levels));
+      canvas.fill({box.x, y - 4.5, 18, 9}, colour);
+    };
+    const auto note = [&](const std::string& text) {
+      canvas.text({box.x + 24, y}, text, style);
+      y += 15;
+    };
+    const double rms = band_rms(spectrogram, 1e3 * frequency.low);
+    const DisplayUnit unit = display_unit(texture.unit, rms);
+    canvas.text({box.x, y},
+                fmt::format("RMS {:.4g} {}, {:.2g} to {:.3g} /mm", unit.factor * rms, unit.text,
+                            frequency.low, frequency.high),
+                style);
     y += 15;
-  };
-  const double rms = band_rms(spectrogram, 1e3 * frequency.low);
-  const DisplayUnit unit = display_unit(texture.unit, rms);
-  canvas.text({box.x, y},
-              fmt::format("RMS {:.4g} {}, {:.2g} to {:.3g} /mm", unit.factor * rms, unit.text, frequency.low,
-                          frequency.high),
-              style);
-  y += 15;
-  if (!texture.valid_band.empty()) {
+    if (!texture.valid_band.empty()) {
+      swatch({0, 0, 0, 0});
+      canvas.line({box.x, y}, {box.x + 18, y}, kBandPen);
+      note("limits of the valid band");
+      swatch({0, 0, 0, 0});
+      draw_hatch(canvas, {box.x, y - 4.5, 18, 9});
+      note("outside it: not measured");
+    }
+    swatch(kNoWindow);
+    note("no whole window");
+    if (formants.empty()) return;
     swatch({0, 0, 0, 0});
-    canvas.line({box.x, y}, {box.x + 18, y}, kBandPen);
-    note("limits of the valid band");
-    swatch({0, 0, 0, 0});
-    draw_hatch(canvas, {box.x, y - 4.5, 18, 9});
-    note("outside it: not measured");
+    const Point ridge[] = {{box.x + 2, y}, {box.x + 16, y}};
+    draw_ridge(canvas, ridge);
+    note("formants");
   }
-  swatch(kNoWindow);
-  note("no whole window");
-  if (formants.empty()) return;
-  swatch({0, 0, 0, 0});
-  const Point ridge[] = {{box.x + 2, y}, {box.x + 16, y}};
-  draw_ridge(canvas, ridge);
-  note("formants");
-}
+};
 
 // Window, hop, bins, speed, direction and band in one line.
 std::string method_facts(const schema::Texture& texture, const schema::Spectrogram& spectrogram) {

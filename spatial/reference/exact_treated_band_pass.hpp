@@ -10,6 +10,13 @@
 
 namespace tacto::spatial::reference {
 
+// Truncation of the Fourier transform by its definition, in extended precision.
+
+/// The result of fourier_filter with Edges::none and no gain: each frequency of the record that is in the
+/// band, summed directly. Cost: size x (frequencies in the band) steps, so for records of some thousand
+/// samples.
+std::vector<double> exact_band_pass(std::span<const double> values, double sample_rate_hz, Band band);
+
 /// The filter of BlockFourierFilter, summed directly at the record's own rate: the record continues beyond
 /// its ends for 8 periods of `lowest_hz` (mirrored about a baseline over 2 periods, tapered to the end's
 /// level), then at a constant level; the kernel ends at `reach_s`. Each value costs 2 reach_s sample_rate_hz

@@ -115,8 +115,11 @@ MonotonePath path_through(std::span<const Block> blocks, std::span<const double>
   return path;
 }
 
-}  // namespace
-
+// The way (position x direction) averaged over the longest window (2^k samples on each side, at most an
+// eighth of all) that moves no position by more than 6 standard deviations of its noise; unchanged if there
+// is none. An average A is applied as 2 A - A A (Tukey's twicing), which does not change a motion of
+// constant acceleration. A window would blur slips after a stick, so the window stays short where there are
+// any.
 std::vector<double> smoothed_way(std::span<const double> way_m, double noise_m) {
   for (std::size_t half = std::bit_floor(way_m.size() / 16); half >= 1; half /= 2) {
     std::vector<double> smoothed = twiced(way_m, half);
@@ -124,6 +127,8 @@ std::vector<double> smoothed_way(std::span<const double> way_m, double noise_m) 
   }
   return {way_m.begin(), way_m.end()};
 }
+
+}  // namespace
 
 MonotonePath monotone_path(std::span<const double> position_m, int direction, PositionError error) {
   std::vector<double> way(position_m.begin(), position_m.end());

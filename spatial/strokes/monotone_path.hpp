@@ -36,11 +36,4 @@ struct PositionError {
 /// to the neighbours. The result is empty if fewer than 2 different positions remain.
 MonotonePath monotone_path(std::span<const double> position_m, int direction, PositionError error);
 
-/// The way (position x direction) averaged over the longest window (2^k samples on each side, at most an
-/// eighth of all) that moves no position by more than 6 standard deviations of its noise; unchanged if there
-/// is none. An average A is applied as 2 A - A A (Tukey's twicing), which does not change a motion of
-/// constant acceleration. A window would blur slips after a stick, so the window stays short where there are
-/// any.
-std::vector<double> smoothed_way(std::span<const double> way_m, double noise_m);
-
 }  // namespace tacto::spatial

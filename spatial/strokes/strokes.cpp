@@ -22,6 +22,12 @@ constexpr double kReboundShare = 0.05;  // of the distance before or after: a re
 
 using Strokes = std::vector<Stroke>;
 
+double longest_of(const Strokes& strokes) {
+  double longest_m = 0;
+  for (const Stroke& stroke : strokes) longest_m = std::max(longest_m, stroke.advance_m());
+  return longest_m;
+}
+
 // A section without gaps, searched with one window.
 class Search {
  public:
@@ -34,17 +40,98 @@ class Search {
         kRestResolutions * facts_.resolution_m() / static_cast<double>(window_) * rate_hz_;
     return std::max(dither_mps, kRest * facts_.travelling_mps);
   }
-  schema::Result<Strokes> strokes() const;
+  schema::Result<Strokes> strokes() const {
+    auto runs = runs_above(section_, rest_mps(), shortest_run_m(), nullptr);
+    if (!runs) return runs;
+    Strokes strokes = joined(*runs);
+    const double shortest = schema::kShortestOfLongest * longest_of(strokes);
+    std::erase_if(strokes, [&](const Stroke& run) { return run.advance_m() < shortest; });
+    Strokes found;
+    for (const Stroke& run : strokes) TACTO_TRY(append_strokes(run, found));
+    return found;
+  }
 
  private:
   std::size_t pause() const { return static_cast<std::size_t>(std::ceil(schema::kStrokePause_s * rate_hz_)); }
   double shortest_run_m() const { return kShortestRun * facts_.resolution_m(); }
+  // Runs in `range` with a speed above the threshold, each in one direction and at least `shortest_m` long,
+  // and the largest speed of each.
   schema::Result<Strokes> runs_above(FrameRange range, double threshold_mps, double shortest_m,
-                                     std::vector<double>* fastest_mps) const;
-  Strokes joined(const Strokes& runs) const;
-  bool goes_on(const Strokes& strokes, std::size_t i, const Stroke& run) const;
-  schema::Result<double> own_speed(FrameRange range) const;
-  schema::Result<void> append_strokes(const Stroke& run, Strokes& strokes) const;
+                                     std::vector<double>* fastest_mps) const {
+    Strokes runs;
+    std::vector<double> fastest;
+    const auto end_run = [&] {
+      if (runs.empty() || runs.back().advance_m() >= shortest_m) return;
+      runs.pop_back();
+      fastest.pop_back();
+    };
+    int before = 0;
+    const auto visit = [&](std::size_t frame, double speed_mps, double position_m) {
+      const int now = std::abs(speed_mps) > threshold_mps ? (speed_mps > 0 ? 1 : -1) : 0;
+      if (now != before && before != 0) end_run();
+      if (now != 0 && now != before) {
+        runs.push_back({{frame, frame}, now, position_m, position_m, {}, false});
+        fastest.push_back(0);
+      }
+      before = now;
+      if (now == 0) return;
+      runs.back().frames.end = frame + 1;
+      runs.back().to_m = position_m;
+      fastest.back() = std::max(fastest.back(), std::abs(speed_mps));
+    };
+    TACTO_TRY(visit_speeds(read_, section_, range, rate_hz_, window_, visit));
+    if (before != 0) end_run();
+    if (fastest_mps != nullptr) *fastest_mps = std::move(fastest);
+    return runs;
+  }
+
+  Strokes joined(const Strokes& runs) const {
+    Strokes result;
+    for (const Stroke& run : runs) {
+      const std::size_t n = result.size();
+      const bool back =
+          n >= 2 && goes_on(result, n - 2, run) &&
+          result[n - 1].advance_m() < kReboundShare * std::max(result[n - 2].advance_m(), run.advance_m());
+      if (back) result.pop_back();
+      if (back || (n >= 1 && goes_on(result, n - 1, run))) {
+        result.back().frames.end = run.frames.end;
+        result.back().to_m = run.to_m;
+      } else {
+        result.push_back(run);
+      }
+    }
+    return result;
+  }
+
+  // Whether a run continues the i-th stroke, after a pause or after a short movement back.
+  bool goes_on(const Strokes& strokes, std::size_t i, const Stroke& run) const {
+    return strokes[i].direction == run.direction && run.frames.begin - strokes[i].frames.end < pause();
+  }
+
+  schema::Result<double> own_speed(FrameRange range) const {
+    LogHistogram speeds;
+    const auto count = [&](std::size_t, double speed_mps, double) { speeds.add(std::abs(speed_mps)); };
+    TACTO_TRY(visit_speeds(read_, section_, range, rate_hz_, window_, count));
+    return speeds.median_by_sum();
+  }
+
+  // The parts of a run that are strokes, by thresholds from the run's own speed.
+  schema::Result<void> append_strokes(const Stroke& run, Strokes& strokes) const {
+    const auto own_mps = own_speed(run.frames);
+    TACTO_TRY(own_mps);
+    std::vector<double> fastest_mps;
+    auto parts = runs_above(run.frames, kSlowest * *own_mps, facts_.resolution_m(), &fastest_mps);
+    TACTO_TRY(parts);
+    const Strokes all = joined(*parts);
+    std::size_t p = 0;
+    for (const Stroke& part : all) {
+      double fastest = 0;
+      for (; p < parts->size() && (*parts)[p].frames.end <= part.frames.end; ++p)
+        if ((*parts)[p].direction == part.direction) fastest = std::max(fastest, fastest_mps[p]);
+      if (part.direction == run.direction && fastest > kReachedShare * *own_mps) strokes.push_back(part);
+    }
+    return {};
+  }
 
   const ReadFrames& read_;
   FrameRange section_;
@@ -52,102 +139,6 @@ class Search {
   const PositionFacts& facts_;
   std::size_t window_;
 };
-
-double longest_of(const Strokes& strokes) {
-  double longest_m = 0;
-  for (const Stroke& stroke : strokes) longest_m = std::max(longest_m, stroke.advance_m());
-  return longest_m;
-}
-
-// Runs in `range` with a speed above the threshold, each in one direction and at least `shortest_m` long, and
-// the largest speed of each.
-schema::Result<Strokes> Search::runs_above(FrameRange range, double threshold_mps, double shortest_m,
-                                           std::vector<double>* fastest_mps) const {
-  Strokes runs;
-  std::vector<double> fastest;
-  const auto end_run = [&] {
-    if (runs.empty() || runs.back().advance_m() >= shortest_m) return;
-    runs.pop_back();
-    fastest.pop_back();
-  };
-  int before = 0;
-  const auto visit = [&](std::size_t frame, double speed_mps, double position_m) {
-    const int now = std::abs(speed_mps) > threshold_mps ? (speed_mps > 0 ? 1 : -1) : 0;
-    if (now != before && before != 0) end_run();
-    if (now != 0 && now != before) {
-      runs.push_back({{frame, frame}, now, position_m, position_m, {}, false});
-      fastest.push_back(0);
-    }
-    before = now;
-    if (now == 0) return;
-    runs.back().frames.end = frame + 1;
-    runs.back().to_m = position_m;
-    fastest.back() = std::max(fastest.back(), std::abs(speed_mps));
-  };
-  TACTO_TRY(visit_speeds(read_, section_, range, rate_hz_, window_, visit));
-  if (before != 0) end_run();
-  if (fastest_mps != nullptr) *fastest_mps = std::move(fastest);
-  return runs;
-}
-
-// Whether a run continues the i-th stroke, after a pause or after a short movement back.
-bool Search::goes_on(const Strokes& strokes, std::size_t i, const Stroke& run) const {
-  return strokes[i].direction == run.direction && run.frames.begin - strokes[i].frames.end < pause();
-}
-
-Strokes Search::joined(const Strokes& runs) const {
-  Strokes result;
-  for (const Stroke& run : runs) {
-    const std::size_t n = result.size();
-    const bool back =
-        n >= 2 && goes_on(result, n - 2, run) &&
-        result[n - 1].advance_m() < kReboundShare * std::max(result[n - 2].advance_m(), run.advance_m());
-    if (back) result.pop_back();
-    if (back || (n >= 1 && goes_on(result, n - 1, run))) {
-      result.back().frames.end = run.frames.end;
-      result.back().to_m = run.to_m;
-    } else {
-      result.push_back(run);
-    }
-  }
-  return result;
-}
-
-schema::Result<double> Search::own_speed(FrameRange range) const {
-  LogHistogram speeds;
-  const auto count = [&](std::size_t, double speed_mps, double) { speeds.add(std::abs(speed_mps)); };
-  TACTO_TRY(visit_speeds(read_, section_, range, rate_hz_, window_, count));
-  return speeds.median_by_sum();
-}
-
-// The parts of a run that are strokes, by thresholds from the run's own speed.
-schema::Result<void> Search::append_strokes(const Stroke& run, Strokes& strokes) const {
-  const auto own_mps = own_speed(run.frames);
-  TACTO_TRY(own_mps);
-  std::vector<double> fastest_mps;
-  auto parts = runs_above(run.frames, kSlowest * *own_mps, facts_.resolution_m(), &fastest_mps);
-  TACTO_TRY(parts);
-  const Strokes all = joined(*parts);
-  std::size_t p = 0;
-  for (const Stroke& part : all) {
-    double fastest = 0;
-    for (; p < parts->size() && (*parts)[p].frames.end <= part.frames.end; ++p)
-      if ((*parts)[p].direction == part.direction) fastest = std::max(fastest, fastest_mps[p]);
-    if (part.direction == run.direction && fastest > kReachedShare * *own_mps) strokes.push_back(part);
-  }
-  return {};
-}
-
-schema::Result<Strokes> Search::strokes() const {
-  auto runs = runs_above(section_, rest_mps(), shortest_run_m(), nullptr);
-  if (!runs) return runs;
-  Strokes strokes = joined(*runs);
-  const double shortest = schema::kShortestOfLongest * longest_of(strokes);
-  std::erase_if(strokes, [&](const Stroke& run) { return run.advance_m() < shortest; });
-  Strokes found;
-  for (const Stroke& run : strokes) TACTO_TRY(append_strokes(run, found));
-  return found;
-}
 
 // The parts of a section between its strokes, a pause away from them.
 std::vector<FrameRange> between(FrameRange section, const Strokes& strokes, std::size_t pause) {

@@ -21,7 +21,7 @@ struct Stroke {
   int direction = 1;                                ///< +1 if the encoder counts up
   double from_m = 0, to_m = 0;                      ///< positions of the first and last frame
   std::optional<double> force_n = std::nullopt;     ///< mean normal force, if it is known
-  bool finger_up = false;                           ///< according to that force; see finger_contact.hpp
+  bool finger_up = false;                           ///< according to that force; see touch_record.hpp
   std::optional<PositionJump> jump = std::nullopt;  ///< of the position, which cuts it: not a whole stroke
 
   double advance_m() const { return direction * (to_m - from_m); }

@@ -2,6 +2,8 @@
 // A recording as position of the finger and strokes: the input of `spatial`.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,8 +12,6 @@
 
 #include "data-schema/base/error.hpp"
 #include "data-schema/recording/recording.hpp"
-#include "spatial/strokes/bridged_source.hpp"
-#include "spatial/strokes/counter_wraps.hpp"
 #include "spatial/strokes/frame_range.hpp"
 #include "spatial/strokes/monotone_path.hpp"
 #include "spatial/strokes/position_facts.hpp"
@@ -20,6 +20,88 @@
 #include "spatial/strokes/touch_source.hpp"
 
 namespace tacto::spatial {
+
+// Whether the finger was on the surface during a stroke, from the normal force.
+
+/// The smallest normal force that counts as touch: 20 mN, a fifth of the lightest load of touch studies (0.1
+/// N) and the weight of 2 g.
+inline constexpr double kLightestTouch_n = 0.02;
+/// Share of the force of the hardest pressed stroke of the record: the offset that a load cell may have if it
+/// was not set to zero.
+inline constexpr double kUpShareOfHardest = 0.1;
+
+/// A stroke with a mean normal force below this was made with the finger up: a tenth of the force of the
+/// hardest pressed stroke, at least 20 mN. Precondition: the strokes have a normal force.
+double finger_up_below_n(std::span<const Stroke> strokes);
+
+/// The reason for users: which of the two thresholds applies.
+std::string why_finger_up(double threshold_n);
+
+// Overflows of counters of 16, 24 or 32 bits: the frame of each, and the counts to add from there on.
+
+/// From `frame` on, `turns` x 2^bits counts are added to the stored value.
+struct CounterTurn {
+  std::size_t frame = 0;
+  int turns = 0;
+};
+
+/// The wraps of a counter, sorted by frame; `bits` is 0 if it never wrapped.
+struct CounterWraps {
+  int bits = 0;
+  std::vector<CounterTurn> turns;
+  /// Adds the missing counts to values that begin at frame `first`.
+  void unwrap(std::size_t first, std::span<double> counts) const;
+  /// Number of wraps within [begin, end).
+  std::size_t count_in(std::size_t begin, std::size_t end) const;
+};
+
+/// Finds wraps in the stored numbers of a record, which are added in order. A wrap is a step of 2^16, 2^24 or
+/// 2^32 whole counts within a tolerance that follows from the finger's steps before and after it: twice the
+/// larger one and 16 counts, over a gap multiplied by its missing frames. The whole record must span fewer
+/// counts than that. A counter that was set to 0 by hand is not a wrap, nor is a jump between numbers that
+/// are not whole.
+class CounterWrapFinder {
+ public:
+  explicit CounterWrapFinder(std::span<const schema::Gap> gaps) : gaps_(gaps) {}
+  void add(std::span<const double> counts);
+  /// After the last add(), once.
+  CounterWraps finish();
+  double lowest() const { return lowest_; }
+  double highest() const { return highest_; }
+
+ private:
+  // Tests a step of counts into frame `frame`; `before` and `after` are the steps on both sides.
+  void judge(double before, double step, double after, std::size_t frame);
+  std::uint64_t missing_before(std::size_t frame) const;
+
+  std::span<const schema::Gap> gaps_;
+  std::array<std::vector<CounterTurn>, 3> found_;  // of 16, 24, 32 bits
+  double lowest_ = 0, highest_ = 0;
+  double value_ = 0, step_ = 0, step_before_ = 0;
+  std::size_t frames_ = 0;
+};
+
+// Short gaps of a recording, filled by interpolation, so that a stroke does not end at them.
+
+/// A longer gap ends a stroke: in frames, and from the frame before it to the frame after it.
+inline constexpr std::uint64_t kMostFilledFrames = 4;
+inline constexpr double kLongestFilled_s = 0.5e-3;
+
+struct BridgedTouch {
+  std::unique_ptr<TouchSource> source;
+  schema::RecordingHeader header;  ///< `frames` counts the filled ones, `gaps` are the others
+  std::vector<FrameRange> filled;  ///< by frame, in the numbers of `source`
+};
+
+/// Fills gaps of at most kMostFilledFrames and kLongestFilled_s: a quarter of a period at the usual upper end
+/// of the band, 500 Hz. The value by the cubic through the two frames before and after the gap; of a sine of
+/// 500 Hz at 10 kHz its error is 0.2 % of the amplitude for one missing frame, 3 % for four (the remainder of
+/// Lagrange's formula: prod |x - x_i| / 24 times the fourth derivative). Position and normal force on the
+/// straight line: at 10 m/s^2 the error is below 0.3 um. A gap stays if fewer than two frames are between it
+/// and the next one or an end, or if the position moves over it faster than a finger (kFastestFinger_mps).
+/// Errors: of reading.
+schema::Result<BridgedTouch> bridge_short_gaps(std::unique_ptr<TouchSource> source,
+                                               schema::RecordingHeader header);
 
 /// Reads sections of the position. A short record (1e6 frames, 8 MB) is held in memory; of a longer one only
 /// what was requested. The source must outlive it.

@@ -18,6 +18,8 @@ namespace {
 using schema::ErrorKind;
 using MaybeIndex = std::optional<std::size_t>;
 
+constexpr std::string_view kUsual = "tangential_force";  // the channel that becomes a texture
+
 MaybeIndex channel_of(const schema::RecordingHeader& header, std::string_view quantity) {
   const auto found = std::ranges::find(header.channels, quantity, &schema::Channel::quantity);
   if (found == header.channels.end()) return std::nullopt;
@@ -30,7 +32,6 @@ std::string names_of(const schema::RecordingHeader& header) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-constexpr std::string_view kUsual = "tangential_force";
 std::string list_of(const schema::RecordingHeader& header, const std::vector<std::size_t>& channels) {
   std::vector<std::string> words;
   for (const std::size_t i : channels)

@@ -14,7 +14,6 @@
 #include "data-schema/base/statistics.hpp"
 #include "spatial/dsp/resample/windowed_sinc.hpp"
 #include "spatial/numbers/band_at.hpp"
-#include "spatial/transform/band_limit.hpp"
 #include "spatial/transform/period.hpp"
 #include "spatial/transform/transformed.hpp"
 

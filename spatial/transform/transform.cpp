@@ -18,7 +18,6 @@
 #include "spatial/numbers/welch.hpp"
 #include "spatial/texture/space_filter.hpp"
 #include "spatial/texture/valid_band.hpp"
-#include "spatial/transform/band_limit.hpp"
 #include "spatial/transform/period.hpp"
 #include "spatial/transform/transformed.hpp"
 

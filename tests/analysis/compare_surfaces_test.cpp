@@ -9,7 +9,6 @@
 #include <numbers>
 #include <random>
 
-#include "analysis/compare/stroke_levels.hpp"
 #include "tests/analysis/compare_textures.hpp"
 
 namespace tacto::analysis {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the thresholds of `compare`'s two maximum statistics (analysis/compare/narrow_bands.cpp).
+"""Makes the thresholds of `compare`'s two maximum statistics (analysis/compare/verdict.cpp).
 
 Not a test: it takes some minutes. Run it by hand with `python3 tests/analysis/compare_thresholds.py` when a statistic changes, and copy
 the last column of each table. Pairs are white Gaussian noise; seeds are fixed. The statistics are written here a second time, in NumPy.

@@ -11,6 +11,7 @@
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "spatial/picture/draw/style.hpp"
+#include "tests/playback/unlimited_device.hpp"
 #include "tests/spatial/decoded_png.hpp"
 
 namespace tacto::analysis {
@@ -22,18 +23,7 @@ using spatial::samples::decode_png;
 using spatial::samples::DecodedPng;
 
 constexpr double kFigureRateHz = 1000;
-
-// The limits are so high that none is active; the encoder's step is far below a pixel.
-schema::Device fine_device() {
-  schema::Device device = *schema::read_device("sandpaper-1990");
-  for (schema::DeviceAxis& axis : device.axes) {
-    axis.peak_force_n = axis.continuous_force_n = 1e9;
-    axis.encoder_step_m = 1e-7;
-  }
-  device.peak_force_n = device.continuous_force_n = 1e9;
-  device.slew_n_per_s = 1e15;
-  return device;
-}
+constexpr double kFineStep_m = 1e-7;  // of the encoder, far below a pixel
 
 schema::ForceLayer grooved(schema::GrooveProfile profile, double period_m, double depth_m, double kappa_n,
                            double direction_deg, double filter_m) {
@@ -56,7 +46,8 @@ ScenePicture picture_of(std::vector<Patch> patches) {
   picture.name = "bench";
   picture.scene.patches = std::move(patches);
   picture.rate_hz = kFigureRateHz;
-  auto prepared = playback::prepare_scene(picture.scene, "bench.scene.json", fine_device(), kFigureRateHz);
+  auto prepared = playback::prepare_scene(picture.scene, "bench.scene.json",
+                                          playback::unlimited_device(kFineStep_m), kFigureRateHz);
   EXPECT_TRUE(prepared) << message(prepared.error());
   picture.prepared = std::move(*prepared);
   return picture;
@@ -117,7 +108,7 @@ TEST(ReliefRaster, HasTheForcesOfTheKernel) {
   const PixelGrid grid{-0.0151, 0.0149, kPixel, 1500, 1500};
   const ReliefRaster raster = relief_raster(picture.prepared, kFigureRateHz, grid);
 
-  const schema::Device device = fine_device();
+  const schema::Device device = playback::unlimited_device(kFineStep_m);
   const auto setup = playback::force_setup_of(device, kFigureRateHz);
   const core::SceneView view = picture.prepared.view();
   std::vector<float> live(view.live_words());

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/trade/realtime_choices.hpp"
 #include "analysis/trade/realtime_half.hpp"
 
 namespace tacto::analysis {

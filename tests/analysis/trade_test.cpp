@@ -7,13 +7,11 @@
 #include <numbers>
 #include <random>
 
-#include "analysis/trade/offline/offline_choices.hpp"
+#include "analysis/trade/measured_trade.hpp"
 #include "analysis/trade/offline/offline_half.hpp"
 #include "analysis/trade/offline/spectrogram_errors.hpp"
-#include "analysis/trade/offline/spectrogram_pairs.hpp"
 #include "analysis/trade/rows/pareto.hpp"
 #include "analysis/trade/trade_page.hpp"
-#include "analysis/trade/worst_trade.hpp"
 #include "playback/choose/budget_words.hpp"
 #include "spatial/spectrogram/budget.hpp"
 #include "spatial/spectrogram/spectrogram.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/import/plausible_scale.hpp"
+#include "capture/import/plausibility.hpp"
 
 #include <gtest/gtest.h>
 

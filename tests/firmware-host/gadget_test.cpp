@@ -8,9 +8,9 @@
 
 #include "firmware-host/core/wire/device_messages.hpp"
 #include "firmware-host/core/wire/frame_decoder.hpp"
-#include "firmware-host/gadget/functionfs_descriptors.hpp"
+#include "firmware-host/gadget/gadget.hpp"
 #include "firmware-host/gadget/gadget_loop.hpp"
-#include "firmware-host/gadget/gadget_options.hpp"
+#include "firmware-host/gadget/usb_link.hpp"
 #include "tests/firmware-host/faulty_link.hpp"
 
 namespace tacto::firmware_host {

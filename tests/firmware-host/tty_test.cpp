@@ -16,7 +16,6 @@
 #include "firmware-host/open_device.hpp"
 #include "firmware-host/tty/tty_device.hpp"
 #include "firmware-host/tty/tty_transport.hpp"
-#include "firmware-host/tty/usb_serial_ports.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 #include "tests/firmware-host/pty_board.hpp"
 

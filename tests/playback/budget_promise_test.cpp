@@ -7,7 +7,6 @@
 #include "line_textures.hpp"
 #include "playback/choose/budget.hpp"
 #include "playback/choose/budget_words.hpp"
-#include "playback/choose/unsteady_speed.hpp"
 #include "playback/prepare/undone_chain.hpp"
 #include "playback/render/reference/padded_spectrum.hpp"
 #include "tests/measured.hpp"

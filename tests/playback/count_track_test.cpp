@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Counts that arrive several at a time, late and by another clock, as in a loop on the host.
-#include "playback/host-loop/count_track.hpp"
+#include "playback/host-loop/host_board.hpp"
 
 #include <gtest/gtest.h>
 

@@ -14,10 +14,8 @@
 #include "firmware-host/core/scene/relief.hpp"
 #include "firmware-host/core/scene/turn.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
-#include "playback/prepare/relief/relief_coefficients.hpp"
 #include "playback/prepare/relief/relief_levels.hpp"
 #include "playback/render/reference/exact_noise.hpp"
-#include "spatial/dsp/fourier/cosine_transform.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::playback {

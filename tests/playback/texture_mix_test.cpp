@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shares of textures in a session's rows, against the kernel's own texture player.
-#include "playback/strokes/texture_mix.hpp"
+#include "playback/strokes/judged_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/strokes/counter_wraps.hpp"
+#include "spatial/strokes/touch_record.hpp"
 
 #include <gtest/gtest.h>
 

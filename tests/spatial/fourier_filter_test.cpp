@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "spatial/reference/exact_band_pass.hpp"
+#include "spatial/reference/exact_treated_band_pass.hpp"
 
 namespace tacto::spatial {
 namespace {

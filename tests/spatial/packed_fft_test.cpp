@@ -13,8 +13,6 @@
 #include <string>
 
 #include "spatial/dsp/filter/trend.hpp"
-#include "spatial/dsp/fourier/fft_wisdom.hpp"
-#include "spatial/dsp/fourier/packed_frames.hpp"
 #include "spatial/dsp/resample/decimator.hpp"
 #include "spatial/dsp/resample/low_pass.hpp"
 #include "spatial/reference/exact_short_time.hpp"

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "spatial/strokes/bridged_source.hpp"
+#include "spatial/strokes/touch_record.hpp"
 #include "tests/spatial/bare_finger.hpp"
 #include "tests/spatial/force_and_position.hpp"
 #include "tests/spatial/strokes_of.hpp"

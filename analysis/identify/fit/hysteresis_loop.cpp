@@ -187,8 +187,11 @@ Result<void> check_loops(std::span<const double> v, std::span<const double> x) {
   return {};
 }
 
-}  // namespace
-
+// The noise is half the mean square of neighbours' differences (von Neumann 1941). The residual beyond it is
+// a misfit, if white noise would cause it in at most 5 of 10,000 cases. Noise: the covariance of the
+// weights. Misfit: play operators that the operator lacks, one in the middle of each two of its thresholds,
+// with weights like its own, scaled to explain the misfit. Each changes the operator independently, minus
+// the part that the fit would absorb.
 OperatorErrors operator_errors(const FittedOperator& fitted) {
   OperatorErrors errors;
   const auto samples = static_cast<double>(fitted.left.size());
@@ -203,6 +206,8 @@ OperatorErrors operator_errors(const FittedOperator& fitted) {
   if (misfit) add_misfit(found, play_operators, samples * (all - noise), errors);
   return errors;
 }
+
+}  // namespace
 
 namespace {
 

@@ -26,13 +26,6 @@ struct OperatorErrors {
   std::vector<schema::Hysteresis> by_noise, by_misfit;
 };
 
-/// The noise is half the mean square of neighbours' differences (von Neumann 1941). The residual beyond it is
-/// a misfit, if white noise would cause it in at most 5 of 10,000 cases. Noise: the covariance of the
-/// weights. Misfit: play operators that the operator lacks, one in the middle of each two of its thresholds,
-/// with weights like its own, scaled to explain the misfit. Each changes the operator independently, minus
-/// the part that the fit would absorb.
-OperatorErrors operator_errors(const FittedOperator& fitted);
-
 /// The result of a fit to slow loops. `opening`: the largest loop's height at zero drive over its whole
 /// height.
 struct LoopFit {

@@ -48,7 +48,7 @@ class PlaysInStep {
   std::vector<double> thresholds_v_, v_, real_, imag_;
 };
 
-constexpr int kMostRounds = 10;
+constexpr int kMostJointRounds = 10;
 constexpr double kPoleStep = 1e-3;  // relative step of the finite difference
 constexpr double kRoughPart =
     0.5;  // then the residuals of the emulated bender (32 play operators) have the noise's size
@@ -303,7 +303,7 @@ Result<JointFit> fit_jointly(const BodeData& sweep, const SweptDrive& drive, con
   Assumed assumed{base, 0};
   assumed.transducer.reconstruction_cutoff_hz.reset();
   ModelChoice model = choice;  // after the first round the one that was chosen in it, until all settles
-  while (!joint.settled && joint.rounds < kMostRounds) {
+  while (!joint.settled && joint.rounds < kMostJointRounds) {
     const auto linear = linear_sweep(assumed, {sweep, drive, loops}, joint);
     TACTO_TRY(linear);
     joint.response = fit_response(*linear, model, base);

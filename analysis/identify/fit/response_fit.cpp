@@ -119,6 +119,30 @@ void put_parameters(const ResponseFitter& fitter, const ResponseModel& model, Re
   put_curve(fitter, model, fit);
 }
 
+// Bartlett's test (1937) of a part of the band against the rest, with a mean of 0, for every part of an
+// eighth, a sixth, a quarter, a third and a half of the frequencies. The threshold for the largest statistic
+// is 22: for white Gaussian residuals of 16 to 1,000 frequencies, 5 in 10,000 exceed 18.4 to 22.6 (40,000
+// draws each). Fewer than 16 frequencies, and parts without residuals, are not tested. Precondition: equal
+// numbers of residuals and frequencies.
+NoiseEvenness evenness_of(std::span<const std::complex<double>> residuals,
+                          std::span<const double> frequency_hz) {
+  const std::size_t n = residuals.size();
+  if (n < kFewest) return {};
+  const std::vector<double> sums = sums_of_squares(residuals);
+  NoiseEvenness found;
+  double most = kMostUneven;
+  for (const std::size_t fraction : kFractions) {
+    const std::size_t length = std::max(n / fraction, kShortest);
+    for (std::size_t begin = 0; begin + length <= n; ++begin) {
+      const ModelComparison compared = part_and_rest(sums, begin, length);
+      if (compared.statistic <= most) continue;
+      most = compared.statistic;
+      found = {true, frequency_hz[begin], frequency_hz[begin + length - 1], compared.times};
+    }
+  }
+  return found;
+}
+
 // The complete fit from one starting point, without suggestions.
 ResponseFit fitted_from(const BodeData& data, const ResponseModel& model, std::vector<double> start) {
   ResponseFit fit;
@@ -275,30 +299,6 @@ BodeData with_noise_of_residuals(BodeData data, std::span<const std::complex<dou
 }
 
 }  // namespace
-
-NoiseEvenness evenness_of(std::span<const std::complex<double>> residuals,
-                          std::span<const double> frequency_hz) {
-  const std::size_t n = residuals.size();
-  if (n < kFewest) return {};
-  const std::vector<double> sums = sums_of_squares(residuals);
-  NoiseEvenness found;
-  double most = kMostUneven;
-  for (const std::size_t fraction : kFractions) {
-    const std::size_t length = std::max(n / fraction, kShortest);
-    for (std::size_t begin = 0; begin + length <= n; ++begin) {
-      const ModelComparison compared = part_and_rest(sums, begin, length);
-      if (compared.statistic <= most) continue;
-      most = compared.statistic;
-      found = {true, frequency_hz[begin], frequency_hz[begin + length - 1], compared.times};
-    }
-  }
-  return found;
-}
-
-std::string uneven_residuals_words(const NoiseEvenness& evenness) {
-  return fmt::format("the residuals are {:.2g} times as large from {:.4g} to {:.4g} Hz as elsewhere",
-                     evenness.times, evenness.low_hz, evenness.high_hz);
-}
 
 std::string evenness_words(const NoiseEvenness& evenness) {
   return fmt::format(

@@ -2,13 +2,14 @@
 #include "analysis/identify/measure/taps.hpp"
 
 #include <fmt/format.h>
-
 #include <Eigen/Dense>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
+#include "analysis/identify/measure/number_table.hpp"
 #include "data-schema/base/statistics.hpp"
 
 namespace tacto::analysis {
@@ -22,6 +23,7 @@ using Eigen::VectorXd;
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
+
 using Complex = std::complex<double>;
 
 constexpr double kAfterPeakS = 1e-3, kRingingS = 12e-3;
@@ -259,6 +261,21 @@ Result<TapsPrediction> predict_taps(const Taps& taps, std::size_t fitted) {
   prediction.waveform_error = median_of_values(std::move(predicted));
   prediction.shape_error = median_of_values(std::move(shaped));
   return prediction;
+}
+
+schema::Result<Taps> read_taps(const std::string& path, double rate_hz) {
+  const auto table = read_numbers(path);
+  TACTO_TRY(table);
+  if (table->names.size() < 2)
+    return schema::fail(schema::ErrorKind::malformed,
+                        "it has one column: taps need a column of tap numbers and one of values", path);
+  Taps taps{rate_hz, {}};
+  for (std::size_t row = 0; row < table->rows(); ++row) {
+    const std::string name = fmt::format("{:g}", table->at(row, 0));
+    if (taps.taps.empty() || taps.taps.back().name != name) taps.taps.push_back({name, {}});
+    taps.taps.back().value.push_back(table->at(row, table->names.size() - 1));
+  }
+  return taps;
 }
 
 }  // namespace tacto::analysis

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/identify/report/bode_curves.hpp"
+#include "analysis/identify/fit/shared_errors.hpp"
+#include "analysis/identify/measure/angles.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/report/value_text.hpp"
 #include "spatial/picture/draw/axes.hpp"
 #include "spatial/picture/draw/canvas.hpp"
@@ -22,10 +24,45 @@ using spatial::Box;
 using spatial::Canvas;
 using spatial::Point;
 
+double decibels(double part) {
+  return schema::amplitude_db(part);
+}
+
+double reference_of(const ResponseFit& fit) {
+  if (const FittedParameter* gain = fit.find("gain_m_per_v")) return gain->value;
+  const auto largest = std::ranges::max_element(fit.curve, {}, [](auto h) { return std::abs(h); });
+  return fit.data.direction == Direction::actuator ? std::abs(fit.curve.front()) : std::abs(*largest);
+}
+
+void put_model(const ResponseFit& fit, double reference, BodeCurves& c) {
+  c.model_deg = carried_phase_deg(fit.curve);
+  for (std::size_t i = 0; i < fit.curve.size(); ++i) {
+    c.model_db.push_back(decibels(std::abs(fit.curve[i]) / reference));
+    c.inverse_db.push_back(-c.model_db.back());
+    c.inverse_deg.push_back(-c.model_deg[i]);
+    if (fit.band.empty()) continue;
+    c.low_db.push_back(c.model_db.back() - decibels(1 + fit.band[i]));
+    c.high_db.push_back(c.model_db.back() + decibels(1 + fit.band[i]));
+  }
+}
+
+void put_data(const ResponseFit& fit, double reference, BodeCurves& c) {
+  const std::vector<double> model_deg = carried_phase_deg(fit.modelled);
+  for (std::size_t i = 0; i < fit.data.size(); ++i) {
+    const auto model = fit.modelled[i], measured = fit.data.response[i];
+    c.data_db.push_back(decibels(std::abs(measured) / reference));
+    c.data_deg.push_back(model_deg[i] + std::arg(measured / model) * kDegrees);
+  }
+  for (const auto& residual : turned_residuals(fit.data, fit.modelled)) {
+    c.along.push_back(residual.real());
+    c.across.push_back(residual.imag());
+  }
+}
+
 constexpr spatial::Size kBodePage{720, 640};
-constexpr double kMargin = 14, kLeft = 66, kWidth = 630, kTop = 76;
+constexpr double kBodeMargin = 14, kLeft = 66, kWidth = 630, kTop = 76;
 constexpr double kHeights[] = {230, 150, 80};
-constexpr double kGap = 14;
+constexpr double kPanelGap = 14;
 constexpr double kDot = 1.6;
 constexpr double kNearResidual = 1.96;  // 95 % of normal noise is within this
 
@@ -40,7 +77,7 @@ struct Panel {
         std::initializer_list<const std::vector<double>*> shown)
       : canvas(on), hz(frequencies) {
     double top = first_top;
-    for (int above = 0; above < row; ++above) top += kHeights[above] + kGap;
+    for (int above = 0; above < row; ++above) top += kHeights[above] + kPanelGap;
     box = {kLeft, top, kWidth, kHeights[row]};
     double low = INFINITY, high = -INFINITY;
     for (const auto* values : shown)
@@ -127,10 +164,19 @@ std::string facts_of(const ResponseFit& fit) {
 }
 
 spatial::Heading heading_of(const ResponseFit& fit) {
-  return spatial::heading_of(title_of(fit), facts_of(fit), fit.data.simulated, kBodePage.width - 2 * kMargin);
+  return spatial::heading_of(title_of(fit), facts_of(fit), fit.data.simulated,
+                             kBodePage.width - 2 * kBodeMargin);
 }
 
 }  // namespace
+
+BodeCurves bode_curves(const ResponseFit& fit) {
+  BodeCurves c;
+  const double reference = reference_of(fit);
+  put_model(fit, reference, c);
+  put_data(fit, reference, c);
+  return c;
+}
 
 spatial::Size BodeFigure::page() const {
   return {kBodePage.width, kBodePage.height + heading_of(fit).extra()};
@@ -141,7 +187,7 @@ schema::Result<void> BodeFigure::draw(Canvas& canvas) const {
   const auto& hz = fit.data.frequency_hz;
   const spatial::Heading heading = heading_of(fit);
   const double top = kTop + heading.extra();
-  spatial::draw_heading(canvas, {kMargin, kMargin}, heading);
+  spatial::draw_heading(canvas, {kBodeMargin, kBodeMargin}, heading);
   draw_bode_legend(canvas, top, !fit.band.empty());
   const Panel amplitude(canvas, hz, top, 0, {&c.model_db, &c.data_db, &c.inverse_db, &c.low_db, &c.high_db});
   amplitude.grid();

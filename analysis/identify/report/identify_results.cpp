@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "analysis/identify/measure/angles.hpp"
-#include "analysis/identify/report/bode_curves.hpp"
-#include "analysis/identify/report/interval_words.hpp"
+#include "analysis/identify/report/bode_figure.hpp"
 #include "data-schema/report/value_text.hpp"
 
 namespace tacto::analysis {
@@ -17,6 +17,18 @@ namespace {
 using schema::ResultCurve;
 using schema::ResultPicture;
 using schema::Results;
+
+constexpr double kLeastDigits = 5, kMostDigits = 17;  // a double has 17 significant digits
+
+// Decimal exponent of the first digit: 2 for 547.7, -5 for 2e-05.
+double place_of(double value) {
+  return std::floor(std::log10(std::abs(value)));
+}
+
+int digits_of(const FittedParameter& p) {
+  const double shows_two = place_of(p.value) - place_of(0.5 * (p.high - p.low)) + 2;
+  return static_cast<int>(std::clamp(shows_two, kLeastDigits, kMostDigits));
+}
 
 constexpr const char* kBodeFrequency = "frequency (Hz)";
 
@@ -98,9 +110,9 @@ void add_loops(const LoopFit& fit, Results& results) {
   results.figures.push_back({"lag", fmt::format("{:.3g} degrees", kDegrees * fit.lag_rad)});
   results.figures.push_back({"left", fmt::format("{:.2g} % by the operator, {:.3g} % by a line",
                                                  100 * fit.residual_part, 100 * fit.linear_residual_part)});
-  constexpr std::size_t kMostPoints = 1000;
+  constexpr std::size_t kMostLoopPoints = 1000;
   ResultCurve measured{"measured", {}, {}}, model{"operator", {}, {}, true};
-  const std::size_t step = fit.loop_v.size() / kMostPoints + 1;
+  const std::size_t step = fit.loop_v.size() / kMostLoopPoints + 1;
   for (std::size_t i = 0; i < fit.loop_v.size(); i += step) {
     measured.x.push_back(fit.loop_v[i]);
     measured.y.push_back(1e6 * fit.loop_m[i]);
@@ -133,6 +145,17 @@ std::vector<ResultPicture> tap_pictures(const TapsFit& fit) {
 }
 
 }  // namespace
+
+std::string interval_words(const FittedParameter& p, bool claimed) {
+  if (p.held) return fmt::format("{:.5g}, held", p.value);
+  if (!claimed) return fmt::format("{:.5g}, without interval", p.value);
+  const int digits = digits_of(p);
+  return fmt::format("{:#.{}g} ({:#.{}g} to {:#.{}g})", p.value, digits, p.low, digits, p.high, digits);
+}
+
+bool interval_is_hidden(const FittedParameter& p, int digits) {
+  return fmt::format("{:.{}g}", p.low, digits) == fmt::format("{:.{}g}", p.high, digits);
+}
 
 Results identify_results(const ResponseFit& fit, const schema::Transducer& base,
                          const schema::Transducer& found) {

@@ -4,13 +4,97 @@
 
 #include "firmware-host/core/firmware/board.hpp"
 #include "firmware-host/core/firmware/profile_upload.hpp"
-#include "firmware-host/core/firmware/scene_upload.hpp"
-#include "firmware-host/core/firmware/stream_blocks.hpp"
 #include "firmware-host/core/firmware/ticker.hpp"
+#include "firmware-host/core/scene/scene_block.hpp"
+#include "firmware-host/core/wire/device_messages.hpp"
 #include "firmware-host/core/wire/frame_decoder.hpp"
 #include "firmware-host/core/wire/sequence_check.hpp"
 
 namespace tacto::core {
+
+// Collects records into messages without gaps.
+
+/// Frames of one samples message. For the main loop.
+class SampleBlock {
+ public:
+  void begin(uint8_t channels, uint8_t frames) noexcept;
+  bool fits(const Record& record) const noexcept;
+  void add(const Record& record) noexcept;
+  bool full() const noexcept { return block_.count >= frames_; }
+  bool empty() const noexcept { return block_.count == 0; }
+  void clear() noexcept { block_.count = 0; }
+  const wire::Samples& message() const noexcept { return block_; }
+
+ private:
+  wire::Samples block_;
+  uint8_t frames_ = 1;
+};
+
+/// Ticks of one ticks message. For the main loop.
+class TickBlock {
+ public:
+  void begin(uint8_t ticks) noexcept { limit_ = ticks, block_.count = 0; }
+  bool fits(const Record& record) const noexcept;
+  void add(const Record& record) noexcept;
+  bool full() const noexcept { return block_.count >= limit_; }
+  bool empty() const noexcept { return block_.count == 0; }
+  void clear() noexcept { block_.count = 0; }
+  const wire::Ticks& message() const noexcept { return block_; }
+
+ private:
+  wire::Ticks block_;
+  uint8_t limit_ = 1;
+};
+
+/// Ticks of one axis_ticks message. For the main loop.
+class AxisTickBlock {
+ public:
+  void begin(uint8_t ticks, uint8_t axes) noexcept { limit_ = ticks, block_.axes = axes, block_.count = 0; }
+  bool fits(const Record& record) const noexcept;
+  void add(const Record& record) noexcept;
+  bool full() const noexcept { return block_.count >= limit_; }
+  bool empty() const noexcept { return block_.count == 0; }
+  void clear() noexcept { block_.count = 0; }
+  const wire::AxisTicks& message() const noexcept { return block_; }
+
+ private:
+  wire::AxisTicks block_;
+  uint8_t limit_ = 1;
+};
+
+// Receives a scene part by part.
+
+/// Stores the block in memory of the board, followed by the memory for what changes while it plays. Parts
+/// come in order; a repeated part is written again. Only a block that read_scene_block() accepts can be
+/// armed. For the main loop.
+class SceneUpload {
+ public:
+  /// `memory` holds `words` numbers of 4 bytes.
+  SceneUpload(float* memory, uint32_t words) noexcept : memory_(memory), words_(words) {}
+
+  uint32_t most_bytes() const noexcept { return (words_ - live_words()) * 4; }
+  Reply part(const wire::ScenePart& message) noexcept;
+  void forget() noexcept { here_ = 0, complete_ = false; }
+
+  bool complete() const noexcept { return complete_; }
+  uint32_t here() const noexcept { return here_; }
+  const SceneView& view() const noexcept { return view_; }
+  float* live() const noexcept { return memory_ + (words_ - live_words()); }
+
+ private:
+  // SceneView::live_words() of the largest scene; in a small memory a block of half of it cannot need more.
+  uint32_t live_words() const noexcept {
+    constexpr uint32_t kMost =
+        kMostSceneLayers * (kMostLayerNumbers + kPatchWords) + kMostSceneBodies * (kBodyStateWords + 1);
+    return words_ / 2 < kMost ? words_ / 2 : kMost;
+  }
+
+  float* memory_;
+  uint32_t words_;
+  uint32_t bytes_ = 0, here_ = 0;
+  bool complete_ = false;
+  SceneView view_;
+};
 
 /// Starts with no output and no stream. Call tick() in the timer's interrupt, and poll() in the main loop as
 /// often as possible: tick() may interrupt poll() anywhere, poll() never runs within a tick (one core; a host

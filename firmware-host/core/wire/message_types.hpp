@@ -95,7 +95,6 @@ enum class FaultCode : uint8_t {
   converter = 6,       ///< a converter gave no sample
   ring_full = 7,       ///< the host did not read the stream; detail: records lost so far
 };
-inline constexpr uint8_t kFaultCodes = 8;
 
 /// Bits of a tick's flags.
 enum TickFlag : uint32_t {

@@ -12,8 +12,8 @@
 #include "firmware-host/link/hosted_board.hpp"
 #include "firmware-host/sim/bench/actuated_tray.hpp"
 #include "firmware-host/sim/device/emulated_board.hpp"
-#include "firmware-host/sim/device/frame_source.hpp"
 #include "firmware-host/sim/device/sim_parameters.hpp"
+#include "firmware-host/sim/device/sim_run.hpp"
 #include "firmware-host/sim/device/tray_sensor.hpp"
 #include "firmware-host/sim/physics/surface.hpp"
 

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "data-schema/transducer/transducer.hpp"
 #include "firmware-host/sim/bench/bench.hpp"
 #include "firmware-host/sim/bench/lvdt.hpp"
-#include "firmware-host/sim/device/frame_source.hpp"
 #include "firmware-host/sim/device/sim_parameters.hpp"
 #include "firmware-host/sim/physics/converter.hpp"
 #include "firmware-host/sim/physics/finger_path.hpp"
@@ -18,6 +18,21 @@
 #include "firmware-host/sim/physics/spline_noise.hpp"
 
 namespace tacto::firmware_host {
+
+// The interface of the emulated device's sources of frames.
+
+class FrameSource {
+ public:
+  FrameSource() = default;
+  FrameSource(const FrameSource&) = delete;
+  FrameSource& operator=(const FrameSource&) = delete;
+  virtual ~FrameSource() = default;
+
+  /// Computes one sample period, and the frame at its end: one code per channel. False if it cannot continue.
+  virtual bool next(std::span<std::int32_t> frame) = 0;
+  /// The count of the encoder at the end of that period.
+  virtual std::int32_t encoder_count() const = 0;
+};
 
 /// After the ATI Nano17 of Wiertlewski 2011, section III-D (calibration SI-12-0.12: 12 N tangentially, 17 N
 /// normally, resolution 1/320 N): slow, and much noisier than the piezo. A first-order low-pass, noise of the

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -11,13 +12,34 @@
 #include "data-schema/base/raised_cosine.hpp"
 #include "firmware-host/core/scene/relief.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
-#include "playback/prepare/relief/relief_coefficients.hpp"
-#include "spatial/dsp/fourier/cosine_transform.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::playback {
 namespace {
 
 using spatial::GridSize;
+
+// (c[i-1] + 4 c[i] + c[i+1]) / 6 = h[i], with c[-1] = c[0] and c[n] = c[n-1]: elimination forwards, then
+// backwards.
+class SplineSystem {
+ public:
+  explicit SplineSystem(std::size_t size) : above_(size) {
+    for (std::size_t i = 0; i < size; ++i) above_[i] = 1 / (diagonal(i) - (i > 0 ? above_[i - 1] : 0));
+  }
+
+  void solve(double* values, std::size_t stride) const {
+    const std::size_t n = above_.size();
+    double before = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      before = values[i * stride] = (6 * values[i * stride] - before) * above_[i];
+    for (std::size_t i = n - 1; i > 0; --i) values[(i - 1) * stride] -= above_[i - 1] * values[i * stride];
+  }
+
+ private:
+  double diagonal(std::size_t i) const { return 4 + (i == 0 ? 1 : 0) + (i + 1 == above_.size() ? 1 : 0); }
+
+  std::vector<double> above_;  // of the eliminated rows: 1 over the diagonal
+};
 
 constexpr double kLeastPower = 1e-6;  // -60 dB; cubic splines of 12 samples a period have images of -61 dB
 constexpr double kSamplesPerPeriod = 12, kPassed = 0.8;  // of a level's highest frequency
@@ -217,6 +239,16 @@ std::vector<double> heights_with_slope(const std::vector<double>& slope, double 
 
 }  // namespace
 
+std::vector<float> relief_coefficients(std::span<const double> heights, std::size_t columns,
+                                       std::size_t rows) {
+  assert(columns > 0 && rows > 0 && heights.size() == columns * rows);
+  std::vector<double> c(heights.begin(), heights.end());
+  const SplineSystem along_x(columns), along_y(rows);
+  for (std::size_t row = 0; row < rows; ++row) along_x.solve(c.data() + row * columns, 1);
+  for (std::size_t column = 0; column < columns; ++column) along_y.solve(c.data() + column, columns);
+  return {c.begin(), c.end()};
+}
+
 // At the samples and halfway between them.
 double Relief::curvature_per_m(double width_m, double height_m) const {
   double largest = 0;
@@ -248,8 +280,10 @@ ForceSlopes ForceRelief::slopes(double width_m, double height_m) const {
   for (const Relief* component : {&x, &y})
     for (const float c : component->levels.front().coefficients)
       coefficient = std::max(coefficient, std::abs(double{c}));
-  constexpr double kRounding = 0x1p-22;  // of two differences of coefficients in single precision
-  const auto known = [&](double slope) { return slope > kRounding * coefficient ? slope / x.pitch_m : 0; };
+  constexpr double kSlopeRounding = 0x1p-22;  // of two differences of coefficients in single precision
+  const auto known = [&](double slope) {
+    return slope > kSlopeRounding * coefficient ? slope / x.pitch_m : 0;
+  };
   return {known(-least), known(most), known(curl)};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,15 @@
 #include "data-schema/scene/force_grid.hpp"
 
 namespace tacto::playback {
+
+// The B-spline coefficients of a height map, computed before playback.
+
+/// Coefficients of the cubic B-spline surface that goes through all heights, in the heights' order (row by
+/// row), with the outermost coefficients continued beyond the edges, as core::relief_at() does. Solves one
+/// tridiagonal system per row and column in double precision. Precondition: heights.size() = columns x rows,
+/// both at least 1.
+std::vector<float> relief_coefficients(std::span<const double> heights, std::size_t columns,
+                                       std::size_t rows);
 
 struct ReliefLevel {
   std::size_t columns = 0, rows = 0;

@@ -61,31 +61,6 @@ struct KernelSpectrum {
   std::size_t length, reach;               // taps -reach ... reach, 2 reach < length
 };
 
-// Convolution of an endless signal with a long kernel, in blocks of Fourier transforms (Stockham 1966).
-class OverlapSave {
- public:
-  using Sink = std::function<void(std::span<const double>)>;
-  explicit OverlapSave(KernelSpectrum kernel);
-
-  // Continues the signal, which was 0 before its first value. `sink` receives the values of the convolution
-  // at the signal's own indices, in order and as soon as they are known.
-  void push(std::span<const double> values, const Sink& sink);
-  // The signal continues with a constant `level`; outputs values until there are `count` since the start.
-  // Then the object is ready for the next signal.
-  void finish(double level, std::size_t count, const Sink& sink);
-  void reset();
-
- private:
-  std::size_t hop() const { return kernel_.length - 2 * kernel_.reach; }
-  void run_block(std::size_t target, const Sink& sink);
-
-  KernelSpectrum kernel_;
-  RealFft fft_;
-  std::vector<double> block_, result_;
-  std::vector<std::complex<double>> spectrum_;
-  std::size_t filled_ = 0, given_ = 0;
-};
-
 // The spectrum of a symmetric kernel, taps 0 ... reach.
 KernelSpectrum kernel_spectrum(std::span<const double> taps, std::size_t length) {
   assert(!taps.empty() && 2 * (taps.size() - 1) < length);
@@ -97,49 +72,66 @@ KernelSpectrum kernel_spectrum(std::span<const double> taps, std::size_t length)
   return kernel;
 }
 
-OverlapSave::OverlapSave(KernelSpectrum kernel)
-    : kernel_(std::move(kernel)),
-      fft_(kernel_.length),
-      block_(kernel_.length),
-      result_(kernel_.length),
-      spectrum_(kernel_.bins.size()) {
-  reset();
-}
-
-// A block begins `reach` before the first value of its output.
-void OverlapSave::reset() {
-  std::ranges::fill(block_, 0.0);
-  filled_ = kernel_.reach;
-  given_ = 0;
-}
-
-void OverlapSave::run_block(std::size_t target, const Sink& sink) {
-  fft_.forward(block_, spectrum_);
-  for (std::size_t k = 0; k < spectrum_.size(); ++k) spectrum_[k] *= kernel_.bins[k];
-  fft_.inverse(spectrum_, result_);
-  given_ += target;
-  sink(std::span(result_).subspan(kernel_.reach, target));
-  std::copy(block_.begin() + static_cast<std::ptrdiff_t>(hop()), block_.end(), block_.begin());
-  filled_ = 2 * kernel_.reach;
-}
-
-void OverlapSave::push(std::span<const double> values, const Sink& sink) {
-  while (!values.empty()) {
-    const std::size_t size = std::min(values.size(), kernel_.length - filled_);
-    std::ranges::copy(values.first(size), block_.begin() + static_cast<std::ptrdiff_t>(filled_));
-    filled_ += size;
-    values = values.subspan(size);
-    if (filled_ == kernel_.length) run_block(hop(), sink);
+// Convolution of an endless signal with a long kernel, in blocks of Fourier transforms (Stockham 1966).
+class OverlapSave {
+ public:
+  using Sink = std::function<void(std::span<const double>)>;
+  explicit OverlapSave(KernelSpectrum kernel)
+      : kernel_(std::move(kernel)),
+        fft_(kernel_.length),
+        block_(kernel_.length),
+        result_(kernel_.length),
+        spectrum_(kernel_.bins.size()) {
+    reset();
   }
-}
 
-void OverlapSave::finish(double level, std::size_t count, const Sink& sink) {
-  while (given_ < count) {
-    std::fill(block_.begin() + static_cast<std::ptrdiff_t>(filled_), block_.end(), level);
-    run_block(std::min(hop(), count - given_), sink);
+  // Continues the signal, which was 0 before its first value. `sink` receives the values of the convolution
+  // at the signal's own indices, in order and as soon as they are known.
+  void push(std::span<const double> values, const Sink& sink) {
+    while (!values.empty()) {
+      const std::size_t size = std::min(values.size(), kernel_.length - filled_);
+      std::ranges::copy(values.first(size), block_.begin() + static_cast<std::ptrdiff_t>(filled_));
+      filled_ += size;
+      values = values.subspan(size);
+      if (filled_ == kernel_.length) run_block(hop(), sink);
+    }
   }
-  reset();
-}
+
+  // The signal continues with a constant `level`; outputs values until there are `count` since the start.
+  // Then the object is ready for the next signal.
+  void finish(double level, std::size_t count, const Sink& sink) {
+    while (given_ < count) {
+      std::fill(block_.begin() + static_cast<std::ptrdiff_t>(filled_), block_.end(), level);
+      run_block(std::min(hop(), count - given_), sink);
+    }
+    reset();
+  }
+
+  // A block begins `reach` before the first value of its output.
+  void reset() {
+    std::ranges::fill(block_, 0.0);
+    filled_ = kernel_.reach;
+    given_ = 0;
+  }
+
+ private:
+  std::size_t hop() const { return kernel_.length - 2 * kernel_.reach; }
+  void run_block(std::size_t target, const Sink& sink) {
+    fft_.forward(block_, spectrum_);
+    for (std::size_t k = 0; k < spectrum_.size(); ++k) spectrum_[k] *= kernel_.bins[k];
+    fft_.inverse(spectrum_, result_);
+    given_ += target;
+    sink(std::span(result_).subspan(kernel_.reach, target));
+    std::copy(block_.begin() + static_cast<std::ptrdiff_t>(hop()), block_.end(), block_.begin());
+    filled_ = 2 * kernel_.reach;
+  }
+
+  KernelSpectrum kernel_;
+  RealFft fft_;
+  std::vector<double> block_, result_;
+  std::vector<std::complex<double>> spectrum_;
+  std::size_t filled_ = 0, given_ = 0;
+};
 
 KernelSpectrum with_gain(KernelSpectrum kernel, double rate_hz, const SpectralGain& gain) {
   const double bin_hz = rate_hz / static_cast<double>(kernel.length);

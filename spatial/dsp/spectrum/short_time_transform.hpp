@@ -10,7 +10,6 @@
 
 #include "data-schema/base/error.hpp"
 #include "spatial/dsp/fourier/packed_fft.hpp"
-#include "spatial/dsp/fourier/packed_frames.hpp"
 #include "spatial/dsp/resample/decimation.hpp"
 #include "spatial/dsp/resample/decimator.hpp"
 

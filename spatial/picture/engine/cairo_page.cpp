@@ -107,7 +107,26 @@ class CairoPage : public Page {
     cairo_fill(cairo_.get());
   }
 
-  void image(const Box& box, const Pixels& pixels, std::string png) override;
+  void image(const Box& box, const Pixels& pixels, std::string png) override {
+    cairo_t* cairo = cairo_.get();
+    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels.width, pixels.height));
+    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) return;
+    unsigned char* rows = cairo_image_surface_get_data(surface.get());
+    const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
+    const auto width = static_cast<std::size_t>(pixels.width);
+    for (std::size_t y = 0; y < static_cast<std::size_t>(pixels.height); ++y)
+      std::memcpy(rows + y * stride, pixels.rgb.data() + y * width, width * sizeof(std::uint32_t));
+    cairo_surface_mark_dirty(surface.get());
+    attach_png(surface.get(), std::move(png));
+    cairo_save(cairo);
+    cairo_translate(cairo, box.x, box.y);
+    cairo_scale(cairo, box.width / pixels.width, box.height / pixels.height);
+    cairo_set_source_surface(cairo, surface.get(), 0, 0);
+    cairo_pattern_set_filter(cairo_get_source(cairo), CAIRO_FILTER_NEAREST);
+    cairo_rectangle(cairo, 0, 0, pixels.width, pixels.height);
+    cairo_fill(cairo);
+    cairo_restore(cairo);
+  }
 
   Size text_size(const std::string& text, const TextStyle& style) override {
     const Font font(pango_font_description_from_string("DejaVu Sans"));
@@ -141,7 +160,14 @@ class CairoPage : public Page {
 
   void release() override { cairo_restore(cairo_.get()); }
 
-  schema::Result<std::string> encode() override;
+  schema::Result<std::string> encode() override {
+    if (png_) cairo_surface_write_to_png_stream(surface_.get(), append, &bytes_);
+    cairo_surface_finish(surface_.get());
+    for (const cairo_status_t status : {cairo_status(cairo_.get()), cairo_surface_status(surface_.get())})
+      if (status != CAIRO_STATUS_SUCCESS && status != CAIRO_STATUS_SURFACE_FINISHED)
+        return schema::fail(schema::ErrorKind::internal, cairo_status_to_string(status), "picture");
+    return bytes_;
+  }
 
  private:
   void ink(const Colour& colour) {
@@ -178,36 +204,6 @@ class CairoPage : public Page {
   Cairo cairo_;
   Layout layout_;
 };
-
-void CairoPage::image(const Box& box, const Pixels& pixels, std::string png) {
-  cairo_t* cairo = cairo_.get();
-  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels.width, pixels.height));
-  if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) return;
-  unsigned char* rows = cairo_image_surface_get_data(surface.get());
-  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
-  const auto width = static_cast<std::size_t>(pixels.width);
-  for (std::size_t y = 0; y < static_cast<std::size_t>(pixels.height); ++y)
-    std::memcpy(rows + y * stride, pixels.rgb.data() + y * width, width * sizeof(std::uint32_t));
-  cairo_surface_mark_dirty(surface.get());
-  attach_png(surface.get(), std::move(png));
-  cairo_save(cairo);
-  cairo_translate(cairo, box.x, box.y);
-  cairo_scale(cairo, box.width / pixels.width, box.height / pixels.height);
-  cairo_set_source_surface(cairo, surface.get(), 0, 0);
-  cairo_pattern_set_filter(cairo_get_source(cairo), CAIRO_FILTER_NEAREST);
-  cairo_rectangle(cairo, 0, 0, pixels.width, pixels.height);
-  cairo_fill(cairo);
-  cairo_restore(cairo);
-}
-
-schema::Result<std::string> CairoPage::encode() {
-  if (png_) cairo_surface_write_to_png_stream(surface_.get(), append, &bytes_);
-  cairo_surface_finish(surface_.get());
-  for (const cairo_status_t status : {cairo_status(cairo_.get()), cairo_surface_status(surface_.get())})
-    if (status != CAIRO_STATUS_SUCCESS && status != CAIRO_STATUS_SURFACE_FINISHED)
-      return schema::fail(schema::ErrorKind::internal, cairo_status_to_string(status), "picture");
-  return bytes_;
-}
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware-host/usb/usb_address.hpp"
+#include "firmware-host/usb/usb_transport.hpp"
 
 #include <gtest/gtest.h>
 
