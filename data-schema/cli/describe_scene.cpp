@@ -86,6 +86,11 @@ cli::Report row_of(const Piece& piece) {
   add_above_0("damping_n_s_per_m", piece.damping_n_s_per_m);
   add_above_0("arrest_mass_kg", piece.arrest_mass_kg);
   add_above_0("integral_bound_n", piece.integral_bound_n);
+  if (const auto& transient = piece.transient) {
+    row.add("transient_amplitude_n_s_per_m", transient->amplitude_n_s_per_m);
+    row.add("transient_frequency_hz", transient->frequency_hz);
+    row.add("transient_decay_per_s", transient->decay_per_s);
+  }
   return row;
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,13 @@ enum class PieceContact { ghost, add };
 
 /// Of x^2, y^2, z^2, xy, yz, xz, x, y, z and 1.
 inline constexpr std::size_t kQuadricTerms = 10;
+
+/// At a contact with the speed v inwards: beta v sin(2 pi f t) e^(-a t) (Fiene and Kuchenbecker 2007).
+struct ContactTransient {
+  double amplitude_n_s_per_m = 0;  ///< beta
+  double frequency_hz = 0;         ///< f
+  double decay_per_s = 0;          ///< a
+};
 
 struct Piece {
   std::string name;  ///< different for each piece of a scene
@@ -33,6 +41,7 @@ struct Piece {
   double integral_n_per_m_s = 0;   ///< growth of the force with depth and time
   double integral_bound_n = 0;     ///< most of that force
   double integral_leak_per_s = 0;  ///< share of that force which is lost per second
+  std::optional<ContactTransient> transient = std::nullopt;
 };
 
 /// "plane", "sphere", "cylinder", "quadric".

@@ -48,6 +48,10 @@ Piece piece_from(const Json& body) {
     for (std::size_t i = 0; i < kQuadricTerms; ++i) piece.coefficients[i] = body["coefficients"][i];
   piece.stiffness_n_per_m = body["stiffness_n_per_m"];
   for (const auto& [name, value] : kPieceNumbers) piece.*value = number_or(body, name, 0);
+  if (body.contains("transient")) {
+    const Json& transient = body["transient"];
+    piece.transient = {transient["amplitude_n_s_per_m"], transient["frequency_hz"], transient["decay_per_s"]};
+  }
   return piece;
 }
 
@@ -60,6 +64,10 @@ Json piece_body(const Piece& piece) {
   body["stiffness_n_per_m"] = piece.stiffness_n_per_m;
   for (const auto& [name, value] : kPieceNumbers)
     if (piece.*value != 0) body[name] = piece.*value;
+  if (piece.transient)
+    body["transient"] = {{"amplitude_n_s_per_m", piece.transient->amplitude_n_s_per_m},
+                         {"frequency_hz", piece.transient->frequency_hz},
+                         {"decay_per_s", piece.transient->decay_per_s}};
   return body;
 }
 

@@ -255,13 +255,19 @@ bool nearest_face(const PieceTable& quadric, SpaceVector hand, SpaceVector& near
   return true;
 }
 
-float wall_force(const float* number, WallState& state, const WallTouch& touch) noexcept {
-  if (!(touch.depth_m > 0)) {
-    if (touch.outside_m > kLetGo_m) state = {};
-    return 0;
-  }
+float wall_force(const float* number, const TransientTable& transient, WallState& state,
+                 const WallTouch& touch) noexcept {
+  if (!(touch.depth_m > 0) && touch.outside_m > kLetGo_m) state = {};
+  const float s = state.transient_n, c = state.quadrature_n;
+  const bool ended = s * s + c * c < kTransientEnd_n * kTransientEnd_n;
+  state.transient_n = ended ? 0 : s + (transient.loss * s + transient.turn * c);
+  state.quadrature_n = ended ? 0 : c + (transient.loss * c - transient.turn * s);
+  if (!(touch.depth_m > 0)) return 0;
   const float inwards_mps = touch.speed_mps < 0 ? -touch.speed_mps : 0;
-  if (state.touched == 0) state.impulse_ns = number[kPieceArrestMass] * inwards_mps;
+  if (state.touched == 0) {
+    state.impulse_ns = number[kPieceArrestMass] * inwards_mps;
+    state.quadrature_n = transient.amplitude_n_s_per_m * inwards_mps;
+  }
   state.touched = 1;
   if (inwards_mps == 0) state.impulse_ns = 0;
   const float deep_m = touch.depth_m > kIntegralRest * touch.grain_m ? touch.depth_m : 0,
@@ -269,8 +275,8 @@ float wall_force(const float* number, WallState& state, const WallTouch& touch) 
                                                            number[kPieceIntegralLeak] * state.integral_n),
               bound_n = number[kPieceIntegralBound];
   state.integral_n = grown_n < 0 ? 0 : grown_n > bound_n ? bound_n : grown_n;
-  float force_n =
-      number[kPieceStiffness] * touch.depth_m - number[kPieceDamping] * touch.speed_mps + state.integral_n;
+  float force_n = number[kPieceStiffness] * touch.depth_m - number[kPieceDamping] * touch.speed_mps +
+                  state.integral_n + state.transient_n;
   force_n = force_n > 0 ? force_n : 0;
   const float asked_n = state.impulse_ns / touch.tick_s, left_n = touch.most_force_n - force_n;
   const float given_n = asked_n < left_n ? asked_n : left_n;

@@ -27,6 +27,8 @@ constexpr float kMostSquaredSigma = 0x1p66F, kLeastCore = 0.24F, kMostCore = 1.4
 constexpr float kMostAtomForce = 1;  // N per unit
 
 constexpr float kMostPiece_kg = 100, kMostIntegral = 1e7F, kMostLeak_per_s = 1000;
+constexpr float kMostTransient_n_s_per_m = 1e4F;
+constexpr float kMostKept = 1 - 1e-6F;  // of a transient's square from tick to tick: it decays
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
 
 bool is_direction(float cosine, float sine) noexcept {
@@ -190,7 +192,14 @@ SceneFault check_field(const SceneView& view, const SceneLayer& layer, uint32_t 
              : SceneFault::value;
 }
 
+bool sound(const TransientTable& table) noexcept {
+  const float kept = 1 + table.loss;
+  return within(table.amplitude_n_s_per_m, 0, kMostTransient_n_s_per_m) && within(table.loss, -2, 0) &&
+         within(table.turn, -1, 1) && within(kept * kept + table.turn * table.turn, 0, kMostKept);
+}
+
 bool sound(const PieceTable& table, SceneLayerKind kind) noexcept {
+  if (!sound(table.transient)) return false;
   for (const float rest_m : table.rest_m)
     if (!within(rest_m, -kFarthestRest_m, kFarthestRest_m)) return false;
   const float most = kind == SceneLayerKind::quadric ? kMostCoefficient : kLargestPiece_m;

@@ -71,7 +71,7 @@ enum PieceNumber : uint32_t {
   kPieceNumbers = 6
 };
 /// Behind these numbers of a piece: its state (WallState), 0 in a block.
-inline constexpr uint32_t kWallStateWords = 3;
+inline constexpr uint32_t kWallStateWords = 5;
 enum FieldNumber : uint32_t { kFieldScale = 0, kFieldZ = 1 };
 enum ForceMapNumber : uint32_t { kForceMapGain = 0 };
 
@@ -254,13 +254,23 @@ static_assert(sizeof(MoverTable) == 8);
 /// radius; of a sphere the radius). With the radius of the point that touches.
 enum PieceForm : uint32_t { kPieceDirection = 0, kPieceSize = 3, kPieceFormWords = 10 };
 
+/// A contact's transient beta v sin(w t) e^(-a t): from tick to tick (s, c) += (loss s + turn c, loss c -
+/// turn s), from (0, beta v) on; s is the force. loss = e^(-a T) cos(w T) - 1, turn = e^(-a T) sin(w T),
+/// computed in double precision.
+struct TransientTable {
+  float amplitude_n_s_per_m = 0;  ///< beta; 0: none
+  float loss = -1, turn = 0;
+};
+static_assert(sizeof(TransientTable) == 12);
+
 /// A solid in space. Its origin is at whole counts of the axes x, y and z, and a rest.
 struct PieceTable {
   int32_t origin[3] = {};
   float rest_m[3] = {};
   float form[kPieceFormWords] = {};
+  TransientTable transient;
 };
-static_assert(sizeof(PieceTable) == 64);
+static_assert(sizeof(PieceTable) == 76);
 
 /// A block that was read; it points into its memory.
 struct SceneView {

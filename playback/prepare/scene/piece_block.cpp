@@ -8,6 +8,7 @@
 #include <cstring>
 #include <utility>
 
+#include "playback/prepare/scene/contact_transient.hpp"
 #include "playback/stability/sampled_loop.hpp"
 
 namespace tacto::playback {
@@ -101,6 +102,17 @@ Result<void> check_wall(const Piece& piece, const schema::Device& device, double
               where + "/integral_n_per_m_s", "choose a smaller integral, more damping or less stiffness");
 }
 
+std::optional<std::string> cut_of_transient(const Piece& piece, const schema::Device& device) {
+  if (!piece.transient) return std::nullopt;
+  const double whole_to_mps = transient_whole_to_mps(*piece.transient, device);
+  if (whole_to_mps >= kFastTap_mps) return std::nullopt;
+  return fmt::format(
+      "the transient of piece '{}' is whole up to contacts of {:.3g} m/s; faster ones are cut by the limits "
+      "of the device: at {:g} m/s its peak is {:.3g} N (peak force {:g} N, slew {:g} N/s)",
+      piece.name, whole_to_mps, kFastTap_mps, kFastTap_mps * transient_peak_n_s_per_m(*piece.transient),
+      device.peak_force_n, device.slew_n_per_s);
+}
+
 }  // namespace
 
 double wall_growth(const Piece& piece, const schema::Device& device, double rate_hz,
@@ -144,8 +156,11 @@ Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::stri
         {static_cast<std::uint16_t>(kind_of_piece(piece.shape)), static_cast<std::uint16_t>(numbers.size()),
          static_cast<std::uint32_t>(tables.size() * sizeof(core::PieceTable) / sizeof(std::uint32_t))});
     append_numbers(piece, numbers);
-    const auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
+    auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
     TACTO_TRY(table);
+    const auto transient = transient_table(piece.transient, rate_hz, at);
+    TACTO_TRY(transient);
+    table->transient = *transient;
     tables.push_back(*table);
   }
   core::SceneHeader header;
@@ -171,6 +186,8 @@ std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const sche
     if (std::ranges::find(device.axes, name, &schema::DeviceAxis::name) == device.axes.end())
       notes.push_back(fmt::format(
           "the device has no axis {0}: the hand stays at {0} = 0, and forces along {0} are left out", name));
+  for (const Piece& piece : scene.pieces)
+    if (auto note = cut_of_transient(piece, device)) notes.push_back(std::move(*note));
   if (!(device.axes.front().mass_kg > 0)) return notes;
   for (const Piece& piece : scene.pieces) {
     const double limit = stiffness_limit_of(device, rate_hz, hand, piece.damping_n_s_per_m, true);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "firmware-host/core/scene/piece.hpp"
 
@@ -187,13 +188,24 @@ ExactGhost::Held ExactGhost::nearest_face(const Piece& piece, const SpaceMetres&
   return {surface.normal, size_of(sum_of(at, -1, hand_m))};
 }
 
+// In closed form, where the kernel goes from tick to tick.
+double ExactGhost::transient_n(const Piece& piece, const Wall& wall) const {
+  if (!piece.transient) return 0;
+  const auto& [amplitude_n_s_per_m, frequency_hz, decay_per_s] = *piece.transient;
+  const double t = wall.ticks * tick_s_;
+  return amplitude_n_s_per_m * wall.contact_mps * std::sin(2 * std::numbers::pi * frequency_hz * t) *
+         std::exp(-decay_per_s * t);
+}
+
 double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, double outside_m,
                               double speed_mps) const {
+  if (wall.touched) ++wall.ticks;
   if (!(held.depth_m > 0)) {
     if (outside_m > double{core::kLetGo_m}) wall = {};
     return 0;
   }
-  if (!wall.touched) wall.impulse_ns = piece.arrest_mass_kg * std::max(0.0, -speed_mps);
+  if (!wall.touched) wall.contact_mps = std::max(0.0, -speed_mps);
+  if (!wall.touched) wall.impulse_ns = piece.arrest_mass_kg * wall.contact_mps;
   wall.touched = true;
   if (speed_mps >= 0) wall.impulse_ns = 0;
   double most_n = device_.peak_force_n, grain_m = 0;
@@ -206,8 +218,9 @@ double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, 
   wall.integral_n +=
       tick_s_ * (piece.integral_n_per_m_s * deep_m - piece.integral_leak_per_s * wall.integral_n);
   wall.integral_n = std::clamp(wall.integral_n, 0.0, piece.integral_bound_n);
-  const double own_n = std::max(
-      0.0, piece.stiffness_n_per_m * held.depth_m - piece.damping_n_s_per_m * speed_mps + wall.integral_n);
+  const double own_n =
+      std::max(0.0, piece.stiffness_n_per_m * held.depth_m - piece.damping_n_s_per_m * speed_mps +
+                        wall.integral_n + transient_n(piece, wall));
   const double given_n = std::clamp(most_n - own_n, 0.0, wall.impulse_ns / tick_s_);
   wall.impulse_ns -= given_n * tick_s_;
   return own_n + given_n;

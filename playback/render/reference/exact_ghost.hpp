@@ -28,6 +28,8 @@ class ExactGhost {
   struct Wall {
     double integral_n = 0, impulse_ns = 0;
     bool touched = false;
+    double contact_mps = 0;  // inwards
+    int ticks = 0;           // since the first one of the contact
   };
   struct Surface {
     double distance_m = 0;
@@ -42,6 +44,7 @@ class ExactGhost {
   std::vector<Held> follow(const SpaceMetres& hand_m);
   Held shortest_way_out(const schema::Piece& piece, const SpaceMetres& hand_m) const;
   Held nearest_face(const schema::Piece& piece, const SpaceMetres& hand_m) const;
+  double transient_n(const schema::Piece& piece, const Wall& wall) const;
   double wall_force(const schema::Piece& piece, Wall& wall, const Held& held, double outside_m,
                     double speed_mps) const;
 
