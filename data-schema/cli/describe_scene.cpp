@@ -91,6 +91,10 @@ cli::Report row_of(const Piece& piece) {
     row.add("transient_frequency_hz", transient->frequency_hz);
     row.add("transient_decay_per_s", transient->decay_per_s);
   }
+  if (piece.hand_surface)
+    for (const auto& [name, value] : schema::kHandSurfaceNumbers)
+      row.add(value == &schema::HandSurface::amplitude ? "hand_surface_amplitude" : name,
+              (*piece.hand_surface).*value);
   return row;
 }
 

@@ -26,6 +26,26 @@ struct ContactTransient {
   double decay_per_s = 0;          ///< a
 };
 
+/// A mass of the hand on a spring and a damper, which meets the spring and the damper of a surface: the
+/// decaying part of its force at a contact is the transient (the same paper, model (12)).
+struct HandSurface {
+  double hand_mass_kg = 0, hand_damping_n_s_per_m = 0, hand_stiffness_n_per_m = 0;
+  double surface_damping_n_s_per_m = 0, surface_stiffness_n_per_m = 0;
+  double amplitude = 0.86;  ///< share of the model's force; people prefer this one (section 5)
+};
+
+struct HandSurfaceNumber {
+  const char* name;
+  double HandSurface::*value;
+};
+inline constexpr HandSurfaceNumber kHandSurfaceNumbers[] = {
+    {"hand_mass_kg", &HandSurface::hand_mass_kg},
+    {"hand_damping_n_s_per_m", &HandSurface::hand_damping_n_s_per_m},
+    {"hand_stiffness_n_per_m", &HandSurface::hand_stiffness_n_per_m},
+    {"surface_damping_n_s_per_m", &HandSurface::surface_damping_n_s_per_m},
+    {"surface_stiffness_n_per_m", &HandSurface::surface_stiffness_n_per_m},
+    {"amplitude", &HandSurface::amplitude}};
+
 struct Piece {
   std::string name;  ///< different for each piece of a scene
   PieceShape shape = PieceShape::plane;
@@ -38,10 +58,11 @@ struct Piece {
   double stiffness_n_per_m = 0;
   double damping_n_s_per_m = 0;
   double arrest_mass_kg = 0;  ///< the impulse at the beginning of a contact is this mass x the normal speed
-  double integral_n_per_m_s = 0;   ///< growth of the force with depth and time
-  double integral_bound_n = 0;     ///< most of that force
-  double integral_leak_per_s = 0;  ///< share of that force which is lost per second
-  std::optional<ContactTransient> transient = std::nullopt;
+  double integral_n_per_m_s = 0;                             ///< growth of the force with depth and time
+  double integral_bound_n = 0;                               ///< most of that force
+  double integral_leak_per_s = 0;                            ///< share of that force which is lost per second
+  std::optional<ContactTransient> transient = std::nullopt;  ///< or hand_surface, or none
+  std::optional<HandSurface> hand_surface = std::nullopt;
 };
 
 /// "plane", "sphere", "cylinder", "quadric".

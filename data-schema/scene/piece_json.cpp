@@ -52,6 +52,11 @@ Piece piece_from(const Json& body) {
     const Json& transient = body["transient"];
     piece.transient = {transient["amplitude_n_s_per_m"], transient["frequency_hz"], transient["decay_per_s"]};
   }
+  if (body.contains("hand_surface")) {
+    piece.hand_surface.emplace();
+    for (const auto& [name, value] : kHandSurfaceNumbers)
+      (*piece.hand_surface).*value = number_or(body["hand_surface"], name, HandSurface().*value);
+  }
   return piece;
 }
 
@@ -68,6 +73,9 @@ Json piece_body(const Piece& piece) {
     body["transient"] = {{"amplitude_n_s_per_m", piece.transient->amplitude_n_s_per_m},
                          {"frequency_hz", piece.transient->frequency_hz},
                          {"decay_per_s", piece.transient->decay_per_s}};
+  if (piece.hand_surface)
+    for (const auto& [name, value] : kHandSurfaceNumbers)
+      body["hand_surface"][name] = (*piece.hand_surface).*value;
   return body;
 }
 

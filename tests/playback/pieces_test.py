@@ -232,7 +232,7 @@ def design_adds_up_what_acts_together():
 def explain_and_design_judge_walls():
     write_scene("walls", piece("soft", "plane", damping_n_s_per_m=4))
     said = run_json("explain", "walls.scene.json", "--device", "arm")
-    assert said["fits"] is True and said["pieces"][0]["piece"] == "soft" and said["block_bytes"] == 20 + 32 + 8 + 11 * 4 + 76, said
+    assert said["fits"] is True and said["pieces"][0]["piece"] == "soft" and said["block_bytes"] == 20 + 32 + 8 + 11 * 4 + 88, said
     soft = run_json("design", "walls.scene.json", "--device", "arm")["pieces"][0]
     assert soft["verdict"] == "stable" and abs(soft["decay_time_s"] / decay_time_s(STIFFNESS, 4) - 1) < 1e-6, soft
     write_scene("walls", piece("steady", "plane", damping_n_s_per_m=4, integral_n_per_m_s=5000, integral_bound_n=5))

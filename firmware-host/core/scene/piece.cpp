@@ -258,15 +258,16 @@ bool nearest_face(const PieceTable& quadric, SpaceVector hand, SpaceVector& near
 float wall_force(const float* number, const TransientTable& transient, WallState& state,
                  const WallTouch& touch) noexcept {
   if (!(touch.depth_m > 0) && touch.outside_m > kLetGo_m) state = {};
-  const float s = state.transient_n, c = state.quadrature_n;
+  const float s = state.transient_n, c = state.turning_n, *const step = transient.step;
   const bool ended = s * s + c * c < kTransientEnd_n * kTransientEnd_n;
-  state.transient_n = ended ? 0 : s + (transient.loss * s + transient.turn * c);
-  state.quadrature_n = ended ? 0 : c + (transient.loss * c - transient.turn * s);
+  state.transient_n = ended ? 0 : s + (step[0] * s + step[1] * c);
+  state.turning_n = ended ? 0 : c + (step[2] * s + step[3] * c);
   if (!(touch.depth_m > 0)) return 0;
   const float inwards_mps = touch.speed_mps < 0 ? -touch.speed_mps : 0;
   if (state.touched == 0) {
     state.impulse_ns = number[kPieceArrestMass] * inwards_mps;
-    state.quadrature_n = transient.amplitude_n_s_per_m * inwards_mps;
+    state.transient_n = transient.start_n_s_per_m[0] * inwards_mps;
+    state.turning_n = transient.start_n_s_per_m[1] * inwards_mps;
   }
   state.touched = 1;
   if (inwards_mps == 0) state.impulse_ns = 0;

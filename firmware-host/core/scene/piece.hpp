@@ -82,9 +82,9 @@ bool nearest_face(const PieceTable& quadric, SpaceVector hand, SpaceVector& near
 /// Behind the numbers of a piece, 0 in a block.
 struct WallState {
   float integral_n = 0;
-  float impulse_ns = 0;                     ///< of the arrest, that is left
-  float touched = 0;                        ///< 1 from the first tick of a contact on
-  float transient_n = 0, quadrature_n = 0;  ///< s and c of the transient (TransientTable)
+  float impulse_ns = 0;                  ///< of the arrest, that is left
+  float touched = 0;                     ///< 1 from the first tick of a contact on
+  float transient_n = 0, turning_n = 0;  ///< s and c of the transient (TransientTable)
 };
 static_assert(sizeof(WallState) == kWallStateWords * sizeof(float));
 
@@ -111,10 +111,10 @@ inline constexpr float kTransientEnd_n = 1e-9F;
 /// One tick of a wall, outwards and never below 0: K depth - B speed + integral + transient, and the impulse
 /// m v at the beginning of a contact, of which each tick gives what the device's peak force leaves, until it
 /// is spent or the hand stops. The integral grows by its number x depth x tick beyond kIntegralRest, up to
-/// its bound, and leaks. The transient starts once a contact, at 0, in its first tick, scaled by the speed
-/// inwards of that tick, goes on while the hand is up to kLetGo_m outside, and fades by its own decay:
-/// neither its start nor its end is a step. Against the closed form: within 1e-5 of its peak for decays of 20
-/// /s and more at 1 kHz. Safe in the tick.
+/// its bound, and leaks. The transient starts once a contact, scaled by the speed inwards of its first
+/// tick, goes on while the hand is up to kLetGo_m outside, and fades by its own decay, so that its end is no
+/// step. Against the closed form: within 1e-5 of its peak for decays of 20 /s and more at 1 kHz. Safe in the
+/// tick.
 float wall_force(const float* number, const TransientTable& transient, WallState& state,
                  const WallTouch& touch) noexcept;
 

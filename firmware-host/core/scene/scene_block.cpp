@@ -27,8 +27,8 @@ constexpr float kMostSquaredSigma = 0x1p66F, kLeastCore = 0.24F, kMostCore = 1.4
 constexpr float kMostAtomForce = 1;  // N per unit
 
 constexpr float kMostPiece_kg = 100, kMostIntegral = 1e7F, kMostLeak_per_s = 1000;
-constexpr float kMostTransient_n_s_per_m = 1e4F;
-constexpr float kMostKept = 1 - 1e-6F;  // of a transient's square from tick to tick: it decays
+constexpr float kMostTransient_n_s_per_m = 1e6F;
+constexpr float kLeastLoss = 1e-6F;  // of a transient from tick to tick
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
 
 bool is_direction(float cosine, float sine) noexcept {
@@ -192,10 +192,15 @@ SceneFault check_field(const SceneView& view, const SceneLayer& layer, uint32_t 
              : SceneFault::value;
 }
 
+// For the eigenvalues 1 - x and 1 - y of a step: x + y, x y and so their size, from numbers near 0.
 bool sound(const TransientTable& table) noexcept {
-  const float kept = 1 + table.loss;
-  return within(table.amplitude_n_s_per_m, 0, kMostTransient_n_s_per_m) && within(table.loss, -2, 0) &&
-         within(table.turn, -1, 1) && within(kept * kept + table.turn * table.turn, 0, kMostKept);
+  for (const float start : table.start_n_s_per_m)
+    if (!within(start, -kMostTransient_n_s_per_m, kMostTransient_n_s_per_m)) return false;
+  for (const float step : table.step)
+    if (!within(step, -2, 2)) return false;
+  const float sum = -(table.step[0] + table.step[3]),
+              product = table.step[0] * table.step[3] - table.step[1] * table.step[2];
+  return product >= kLeastLoss * sum && sum - product >= kLeastLoss && 4 - 2 * sum + product >= 0;
 }
 
 bool sound(const PieceTable& table, SceneLayerKind kind) noexcept {

@@ -254,14 +254,13 @@ static_assert(sizeof(MoverTable) == 8);
 /// radius; of a sphere the radius). With the radius of the point that touches.
 enum PieceForm : uint32_t { kPieceDirection = 0, kPieceSize = 3, kPieceFormWords = 10 };
 
-/// A contact's transient beta v sin(w t) e^(-a t): from tick to tick (s, c) += (loss s + turn c, loss c -
-/// turn s), from (0, beta v) on; s is the force. loss = e^(-a T) cos(w T) - 1, turn = e^(-a T) sin(w T),
-/// computed in double precision.
+/// A contact's transient, a solution of s'' + 2 a s' + W^2 s = 0: from tick to tick (s, c) += (step[0] s +
+/// step[1] c, step[2] s + step[3] c), from the speed inwards x `start` on; s is the force, c = s' / W.
 struct TransientTable {
-  float amplitude_n_s_per_m = 0;  ///< beta; 0: none
-  float loss = -1, turn = 0;
+  float start_n_s_per_m[2] = {};  ///< 0: none
+  float step[4] = {-1, 0, 0, -1};
 };
-static_assert(sizeof(TransientTable) == 12);
+static_assert(sizeof(TransientTable) == 24);
 
 /// A solid in space. Its origin is at whole counts of the axes x, y and z, and a rest.
 struct PieceTable {
@@ -270,7 +269,7 @@ struct PieceTable {
   float form[kPieceFormWords] = {};
   TransientTable transient;
 };
-static_assert(sizeof(PieceTable) == 76);
+static_assert(sizeof(PieceTable) == 88);
 
 /// A block that was read; it points into its memory.
 struct SceneView {

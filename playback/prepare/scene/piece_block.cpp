@@ -102,14 +102,16 @@ Result<void> check_wall(const Piece& piece, const schema::Device& device, double
               where + "/integral_n_per_m_s", "choose a smaller integral, more damping or less stiffness");
 }
 
-std::optional<std::string> cut_of_transient(const Piece& piece, const schema::Device& device) {
-  if (!piece.transient) return std::nullopt;
-  const double whole_to_mps = transient_whole_to_mps(*piece.transient, device);
+std::optional<std::string> cut_of_transient(const Piece& piece, const schema::Device& device,
+                                            double rate_hz) {
+  const auto transient = transient_of(piece);
+  if (!transient) return std::nullopt;
+  const double whole_to_mps = transient_whole_to_mps(*transient, device, rate_hz);
   if (whole_to_mps >= kFastTap_mps) return std::nullopt;
   return fmt::format(
       "the transient of piece '{}' is whole up to contacts of {:.3g} m/s; faster ones are cut by the limits "
       "of the device: at {:g} m/s its peak is {:.3g} N (peak force {:g} N, slew {:g} N/s)",
-      piece.name, whole_to_mps, kFastTap_mps, kFastTap_mps * transient_peak_n_s_per_m(*piece.transient),
+      piece.name, whole_to_mps, kFastTap_mps, kFastTap_mps * transient_peak_n_s_per_m(*transient),
       device.peak_force_n, device.slew_n_per_s);
 }
 
@@ -158,7 +160,7 @@ Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::stri
     append_numbers(piece, numbers);
     auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
     TACTO_TRY(table);
-    const auto transient = transient_table(piece.transient, rate_hz, at);
+    const auto transient = transient_table(piece, rate_hz, at);
     TACTO_TRY(transient);
     table->transient = *transient;
     tables.push_back(*table);
@@ -187,7 +189,7 @@ std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const sche
       notes.push_back(fmt::format(
           "the device has no axis {0}: the hand stays at {0} = 0, and forces along {0} are left out", name));
   for (const Piece& piece : scene.pieces)
-    if (auto note = cut_of_transient(piece, device)) notes.push_back(std::move(*note));
+    if (auto note = cut_of_transient(piece, device, rate_hz)) notes.push_back(std::move(*note));
   if (!(device.axes.front().mass_kg > 0)) return notes;
   for (const Piece& piece : scene.pieces) {
     const double limit = stiffness_limit_of(device, rate_hz, hand, piece.damping_n_s_per_m, true);

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "firmware-host/core/scene/piece.hpp"
+#include "playback/prepare/scene/contact_transient.hpp"
 
 namespace tacto::playback {
 
@@ -190,11 +190,8 @@ ExactGhost::Held ExactGhost::nearest_face(const Piece& piece, const SpaceMetres&
 
 // In closed form, where the kernel goes from tick to tick.
 double ExactGhost::transient_n(const Piece& piece, const Wall& wall) const {
-  if (!piece.transient) return 0;
-  const auto& [amplitude_n_s_per_m, frequency_hz, decay_per_s] = *piece.transient;
-  const double t = wall.ticks * tick_s_;
-  return amplitude_n_s_per_m * wall.contact_mps * std::sin(2 * std::numbers::pi * frequency_hz * t) *
-         std::exp(-decay_per_s * t);
+  const auto transient = transient_of(piece);
+  return transient ? wall.contact_mps * force_at(*transient, wall.ticks * tick_s_) : 0;
 }
 
 double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, double outside_m,
