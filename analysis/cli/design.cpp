@@ -170,6 +170,11 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
     if (judged.growth != 1)
       row.add(judged.growth < 1 ? "decay_time_s" : "growth_time_s",
               1 / (request.rate_hz * std::abs(std::log(judged.growth))));
+    if (judged.growth_along > 0)
+      row.add("along_surface", to_string(judged.growth_along > 1 ? Stability::unstable : Stability::stable))
+          .add("limit_along_n_per_m",
+               playback::stiffness_limit_of(request.device, request.rate_hz, request.hand,
+                                            piece.viscous_n_s_per_m, true));
     rows.push_back(std::move(row));
   }
   Report report;

@@ -84,6 +84,9 @@ cli::Report row_of(const Piece& piece) {
   add_above_0("thickness_m", piece.thickness_m);
   row.add("stiffness_n_per_m", piece.stiffness_n_per_m);
   add_above_0("damping_n_s_per_m", piece.damping_n_s_per_m);
+  add_above_0("static_friction", piece.static_friction);
+  add_above_0("kinetic_friction", piece.kinetic_friction);
+  add_above_0("viscous_n_s_per_m", piece.viscous_n_s_per_m);
   add_above_0("arrest_mass_kg", piece.arrest_mass_kg);
   add_above_0("integral_bound_n", piece.integral_bound_n);
   if (const auto& transient = piece.transient) {

@@ -77,6 +77,11 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
     if (value > 0 && !(piece.integral_n_per_m_s > 0))
       return fail(ErrorKind::unsuitable, fmt::format("{} of a piece without an integral", member),
                   fmt::format("{}/{}", where, member), "give integral_n_per_m_s too, or leave it out");
+  if (piece.kinetic_friction > piece.static_friction)
+    return fail(ErrorKind::unsuitable,
+                fmt::format("the kinetic friction {:g} is above the static friction {:g}",
+                            piece.kinetic_friction, piece.static_friction),
+                where + "/kinetic_friction", "choose a static friction that is not smaller");
   if (piece.transient && piece.hand_surface)
     return fail(ErrorKind::unsuitable, "a piece has one transient", where + "/hand_surface",
                 "leave out `transient` or `hand_surface`");

@@ -57,6 +57,10 @@ struct Piece {
   std::array<double, kQuadricTerms> coefficients = {};
   double stiffness_n_per_m = 0;
   double damping_n_s_per_m = 0;
+  /// Coefficients of the force along the normal: a spring of stiffness_n_per_m holds the hand along the
+  /// surface up to the static one, then it slips to the kinetic one.
+  double static_friction = 0, kinetic_friction = 0;
+  double viscous_n_s_per_m = 0;  ///< against the hand's speed along the surface while it touches
   double arrest_mass_kg = 0;  ///< the impulse at the beginning of a contact is this mass x the normal speed
   double integral_n_per_m_s = 0;                             ///< growth of the force with depth and time
   double integral_bound_n = 0;                               ///< most of that force

@@ -92,8 +92,8 @@ def a_ghost_holds_where_add_lets_go():
 
 
 def a_played_scene_replays_to_the_bit():
-    walls = [piece("floor", "plane", (0, 0, -0.01), damping_n_s_per_m=4, arrest_mass_kg=0.15, integral_n_per_m_s=5000, integral_bound_n=2),
-             piece("ball", "sphere", (0.02, 0, 0), radius_m=0.01, damping_n_s_per_m=2, transient=STUDY),
+    walls = [piece("floor", "plane", (0, 0, -0.01), damping_n_s_per_m=4, arrest_mass_kg=0.15, integral_n_per_m_s=5000, integral_bound_n=2, static_friction=0.6, kinetic_friction=0.4),
+             piece("ball", "sphere", (0.02, 0, 0), radius_m=0.01, damping_n_s_per_m=2, transient=STUDY, static_friction=0.5, kinetic_friction=0.5, viscous_n_s_per_m=1),
              piece("egg", "quadric", (-0.02, 0, 0), coefficients=[1e4, 4e4, 1e4, 0, 0, 0, 0, 0, 0, -1]), piece("pipe", "cylinder", (0, 0.03, 0), direction=[1, 0, 0], radius_m=0.01)]
     write_scene("room", *walls)
     turn = 2 * np.pi * TIME_S
@@ -232,7 +232,7 @@ def design_adds_up_what_acts_together():
 def explain_and_design_judge_walls():
     write_scene("walls", piece("soft", "plane", damping_n_s_per_m=4))
     said = run_json("explain", "walls.scene.json", "--device", "arm")
-    assert said["fits"] is True and said["pieces"][0]["piece"] == "soft" and said["block_bytes"] == 20 + 32 + 8 + 11 * 4 + 88, said
+    assert said["fits"] is True and said["pieces"][0]["piece"] == "soft" and said["block_bytes"] == 20 + 32 + 8 + 20 * 4 + 88, said
     soft = run_json("design", "walls.scene.json", "--device", "arm")["pieces"][0]
     assert soft["verdict"] == "stable" and abs(soft["decay_time_s"] / decay_time_s(STIFFNESS, 4) - 1) < 1e-6, soft
     write_scene("walls", piece("steady", "plane", damping_n_s_per_m=4, integral_n_per_m_s=5000, integral_bound_n=5))

@@ -85,6 +85,7 @@ struct WallState {
   float impulse_ns = 0;                  ///< of the arrest, that is left
   float touched = 0;                     ///< 1 from the first tick of a contact on
   float transient_n = 0, turning_n = 0;  ///< s and c of the transient (TransientTable)
+  SpaceVector anchor_m, last_m;          ///< of the friction, and the place of the last tick
 };
 static_assert(sizeof(WallState) == kWallStateWords * sizeof(float));
 
@@ -117,5 +118,18 @@ inline constexpr float kTransientEnd_n = 1e-9F;
 /// tick.
 float wall_force(const float* number, const TransientTable& transient, WallState& state,
                  const WallTouch& touch) noexcept;
+
+/// Slips of one tick that are found one by one; what is left of a longer way is taken along the last line.
+inline constexpr int kMostSlips = 4;
+
+/// One tick of friction along a surface, on a hand whose place on it is `place_m`: a spring of the piece's
+/// stiffness from an anchor on the surface. Where its force reaches the static friction x `normal_n`, the
+/// anchor slips until it is the kinetic one; the place of the slip is found on the straight way of the tick,
+/// also of several slips. An anchor that holds stays to the bit, so that nothing drifts (Hayward and
+/// Armstrong 2000). The force of the spring is never larger than the static friction, within 1e-6; the
+/// viscous part, against `speed_mps` along the surface, comes on top of it. Without a force along the normal
+/// the anchor is at the place. Safe in the tick.
+SpaceVector friction_force(const float* number, WallState& state, float normal_n, SpaceVector normal,
+                           SpaceVector place_m, SpaceVector speed_mps) noexcept;
 
 }  // namespace tacto::core

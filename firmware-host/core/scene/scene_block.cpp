@@ -26,7 +26,7 @@ constexpr float kMostFieldScale = 1e15F, kMostUnits_per_m = 1e17F, kMostUnits = 
 constexpr float kMostSquaredSigma = 0x1p66F, kLeastCore = 0.24F, kMostCore = 1.45F;
 constexpr float kMostAtomForce = 1;  // N per unit
 
-constexpr float kMostPiece_kg = 100, kMostIntegral = 1e7F, kMostLeak_per_s = 1000;
+constexpr float kMostPiece_kg = 100, kMostFriction = 10, kMostIntegral = 1e7F, kMostLeak_per_s = 1000;
 constexpr float kMostTransient_n_s_per_m = 1e6F;
 constexpr float kLeastLoss = 1e-6F;  // of a transient from tick to tick
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
@@ -77,7 +77,10 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
              within(number[kPieceArrestMass], 0, kMostPiece_kg) &&
              within(number[kPieceIntegral], 0, kMostIntegral) &&
              within(number[kPieceIntegralBound], 0, kMostKappa_n) &&
-             within(number[kPieceIntegralLeak], 0, kMostLeak_per_s);
+             within(number[kPieceIntegralLeak], 0, kMostLeak_per_s) &&
+             within(number[kPieceStaticFriction], 0, kMostFriction) &&
+             within(number[kPieceKineticFriction], 0, kMostFriction) &&
+             within(number[kPieceViscous], 0, kMostDamping_n_s_per_m);
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
       break;

@@ -68,10 +68,13 @@ enum PieceNumber : uint32_t {
   kPieceIntegral = 3,
   kPieceIntegralBound = 4,
   kPieceIntegralLeak = 5,
-  kPieceNumbers = 6
+  kPieceStaticFriction = 6,
+  kPieceKineticFriction = 7,
+  kPieceViscous = 8,
+  kPieceNumbers = 9
 };
 /// Behind these numbers of a piece: its state (WallState), 0 in a block.
-inline constexpr uint32_t kWallStateWords = 5;
+inline constexpr uint32_t kWallStateWords = 11;
 enum FieldNumber : uint32_t { kFieldScale = 0, kFieldZ = 1 };
 enum ForceMapNumber : uint32_t { kForceMapGain = 0 };
 

@@ -85,7 +85,8 @@ Result<core::PieceTable> table_of_piece(const Piece& piece, double point_radius_
 
 void append_numbers(const Piece& piece, std::vector<float>& numbers) {
   for (const double number : {piece.stiffness_n_per_m, piece.damping_n_s_per_m, piece.arrest_mass_kg,
-                              piece.integral_n_per_m_s, piece.integral_bound_n, piece.integral_leak_per_s})
+                              piece.integral_n_per_m_s, piece.integral_bound_n, piece.integral_leak_per_s,
+                              piece.static_friction, piece.kinetic_friction, piece.viscous_n_s_per_m})
     numbers.push_back(static_cast<float>(number));
   numbers.insert(numbers.end(), core::kWallStateWords, 0.0F);
 }
@@ -191,14 +192,19 @@ std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const sche
   for (const Piece& piece : scene.pieces)
     if (auto note = cut_of_transient(piece, device, rate_hz)) notes.push_back(std::move(*note));
   if (!(device.axes.front().mass_kg > 0)) return notes;
+  const auto add_unstable = [&](const Piece& piece, double damping_n_s_per_m, const char* along) {
+    const double limit = stiffness_limit_of(device, rate_hz, hand, damping_n_s_per_m, true);
+    if (piece.stiffness_n_per_m < limit) return;
+    notes.push_back(fmt::format(
+        "piece '{}' is unstable on this device with {}{}: its stiffness is {:.4g} N/m with {:.4g} "
+        "N s/m, the limit is {:.4g} N/m (computed, without the Coulomb friction of the device)",
+        piece.name, hand ? "hand " + hand->name : "nothing held", along, piece.stiffness_n_per_m,
+        damping_n_s_per_m, limit));
+  };
   for (const Piece& piece : scene.pieces) {
-    const double limit = stiffness_limit_of(device, rate_hz, hand, piece.damping_n_s_per_m, true);
-    if (piece.stiffness_n_per_m < limit) continue;
-    notes.push_back(
-        fmt::format("piece '{}' is unstable on this device with {}: its stiffness is {:.4g} N/m with {:.4g} "
-                    "N s/m, the limit is {:.4g} N/m (computed, without the Coulomb friction of the device)",
-                    piece.name, hand ? "hand " + hand->name : "nothing held", piece.stiffness_n_per_m,
-                    piece.damping_n_s_per_m, limit));
+    add_unstable(piece, piece.damping_n_s_per_m, "");
+    if (piece.static_friction > 0)
+      add_unstable(piece, piece.viscous_n_s_per_m, ", along its surface where its friction holds");
   }
   return notes;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware-host/core/scene/piece.hpp"
 #include "playback/prepare/scene/contact_transient.hpp"
@@ -223,6 +224,42 @@ double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, 
   return own_n + given_n;
 }
 
+SpaceMetres ExactGhost::friction_force(const Piece& piece, Wall& wall, double normal_n,
+                                       const SpaceMetres& normal, const SpaceMetres& place_m,
+                                       const SpaceMetres& speed_mps) const {
+  constexpr int kSlips = 100'000, kHalvings = 60;
+  const auto along = [&](const SpaceMetres& v) { return sum_of(v, -inner(v, normal), normal); };
+  const SpaceMetres last_m = std::exchange(wall.last_m, place_m);
+  const SpaceMetres viscous_n = sum_of({}, normal_n > 0 ? -piece.viscous_n_s_per_m : 0, along(speed_mps));
+  const double by_m = piece.stiffness_n_per_m > 0 ? normal_n / piece.stiffness_n_per_m : 0;
+  const double holds_m = piece.static_friction * by_m, slipped_m = piece.kinetic_friction * by_m;
+  if (!(holds_m > 0)) wall.anchor_m = place_m;
+  SpaceMetres stretch = along(sum_of(place_m, -1, wall.anchor_m));
+  if (size_of(stretch) > holds_m) {
+    stretch = along(sum_of(last_m, -1, wall.anchor_m));
+    SpaceMetres way = along(sum_of(place_m, -1, last_m));
+    const auto shorten_to = [&](double to_m) {
+      if (const double size = size_of(stretch); size > to_m) stretch = sum_of({}, to_m / size, stretch);
+    };
+    if (size_of(stretch) > holds_m) shorten_to(slipped_m);
+    for (int i = 0; i < kSlips && slipped_m < holds_m; ++i) {
+      if (!(size_of(sum_of(stretch, 1, way)) > holds_m)) break;
+      double before = 0, after = 1;
+      for (int half = 0; half < kHalvings; ++half) {
+        const double middle = (before + after) / 2;
+        (size_of(sum_of(stretch, middle, way)) > holds_m ? after : before) = middle;
+      }
+      stretch = sum_of(stretch, after, way);
+      way = sum_of({}, 1 - after, way);
+      shorten_to(slipped_m);
+    }
+    stretch = sum_of(stretch, 1, way);
+    shorten_to(holds_m);
+    wall.anchor_m = sum_of(place_m, -1, stretch);
+  }
+  return sum_of(viscous_n, -piece.stiffness_n_per_m, stretch);
+}
+
 SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {
   if (!placed_) ghost_m_ = hand_m;
   placed_ = true;
@@ -235,7 +272,9 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
     if (adds) held[i] = nearest_face(piece, hand_m);
     const double force_n = wall_force(piece, walls_[i], held[i], surface_at(piece, hand_m).distance_m,
                                       inner(held[i].normal, speed_mps));
+    const SpaceMetres on = adds ? sum_of(hand_m, held[i].depth_m, held[i].normal) : ghost_m_;
     sum = sum_of(sum, force_n, held[i].normal);
+    sum = sum_of(sum, 1, friction_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
   }
   return sum;
 }

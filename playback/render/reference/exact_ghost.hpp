@@ -12,9 +12,10 @@ namespace tacto::playback {
 
 using SpaceMetres = std::array<double, 3>;
 
-/// The contract of core::GhostPoint and core::wall_force, by other methods: the planes that hold the ghost by
-/// Hildreth's iteration over all that it touches, the entry into a piece by samples and bisection, curved
-/// surfaces by many small steps instead of a closed form. Slow; not for the tick.
+/// The contract of core::GhostPoint, core::wall_force and core::friction_force, by other methods: the planes
+/// that hold the ghost by Hildreth's iteration over all that it touches, the entry into a piece by samples
+/// and bisection, curved surfaces by many small steps instead of a closed form, each slip of the friction by
+/// bisection. Slow; not for the tick.
 class ExactGhost {
  public:
   /// Keeps references to both.
@@ -30,6 +31,7 @@ class ExactGhost {
     bool touched = false;
     double contact_mps = 0;  // inwards
     int ticks = 0;           // since the first one of the contact
+    SpaceMetres anchor_m = {}, last_m = {};
   };
   struct Surface {
     double distance_m = 0;
@@ -47,6 +49,9 @@ class ExactGhost {
   double transient_n(const schema::Piece& piece, const Wall& wall) const;
   double wall_force(const schema::Piece& piece, Wall& wall, const Held& held, double outside_m,
                     double speed_mps) const;
+  SpaceMetres friction_force(const schema::Piece& piece, Wall& wall, double normal_n,
+                             const SpaceMetres& normal, const SpaceMetres& place_m,
+                             const SpaceMetres& speed_mps) const;
 
   const PreparedScene& scene_;
   const schema::Device& device_;
