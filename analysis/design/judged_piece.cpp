@@ -118,6 +118,7 @@ JudgedPiece judged_piece(const Scene& scene, std::size_t index, const DesignRequ
     sum.growth = growth_of(sum.total, request);
     if (sum.growth >= worst.growth) worst = std::move(sum);
   }
+  worst.alone = piece;
   if (piece.static_friction > 0) {
     Piece along = piece;
     along.damping_n_s_per_m = piece.viscous_n_s_per_m;

@@ -16,7 +16,8 @@ struct JudgedPiece {
   std::vector<std::string> unjudged;  ///< pieces that may act with it along an angle that is not computed
   double growth = 0;                  ///< playback::wall_growth() of `total`
   Stability verdict = Stability::stable;
-  double growth_along = 0;  ///< along the surface, where its friction holds; 0 without friction
+  schema::Piece alone = {};  ///< as judged
+  double growth_along = 0;   ///< along the surface, where its friction holds; 0 without friction
 };
 
 /// `contact: add`: planes of the same direction add up, from the highest one down to the depth at which they

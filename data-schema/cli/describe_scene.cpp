@@ -62,6 +62,15 @@ std::vector<cli::Report> slider_rows(const Scene& scene) {
                              .add("value", number.value)
                              .add("from", number.slider->from)
                              .add("to", number.slider->to));
+  for (const Piece& piece : scene.pieces)
+    for (const PieceNumber& each : kWallNumbers)
+      if (const auto [name, number, changes, whole] = named_number(piece, each); number.slider)
+        rows.push_back(cli::Report()
+                           .add("piece", piece.name)
+                           .add("member", name)
+                           .add("value", number.value)
+                           .add("from", number.slider->from)
+                           .add("to", number.slider->to));
   return rows;
 }
 
@@ -70,7 +79,6 @@ void add_patches(cli::Report& report, const Scene& scene) {
   std::vector<cli::Report> rows;
   for (const Patch& patch : scene.patches) rows.push_back(row_of(patch));
   report.add("patches", std::move(rows));
-  if (auto sliders = slider_rows(scene); !sliders.empty()) report.add("sliders", std::move(sliders));
 }
 
 cli::Report row_of(const Piece& piece) {
@@ -95,8 +103,8 @@ cli::Report row_of(const Piece& piece) {
     row.add("transient_decay_per_s", transient->decay_per_s);
   }
   if (piece.hand_surface)
-    for (const auto& [name, value] : schema::kHandSurfaceNumbers)
-      row.add(value == &schema::HandSurface::amplitude ? "hand_surface_amplitude" : name,
+    for (const auto& [name, value] : kHandSurfaceNumbers)
+      row.add(value == &HandSurface::amplitude ? "hand_surface_amplitude" : name,
               (*piece.hand_surface).*value);
   return row;
 }
@@ -123,6 +131,7 @@ Result<cli::Report> describe_scene(const std::string& path) {
   if (!rows.empty()) report.add("layers", std::move(rows));
   add_patches(report, *scene);
   add_pieces(report, *scene);
+  if (auto sliders = slider_rows(*scene); !sliders.empty()) report.add("sliders", std::move(sliders));
   cli::add_choices(report, scene->playback);
   add_text(report, "notes", scene->notes);
   return report;

@@ -4,9 +4,13 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "data-schema/scene/force_layer.hpp"
 
 namespace tacto::schema {
 
@@ -67,7 +71,31 @@ struct Piece {
   double integral_leak_per_s = 0;                            ///< share of that force which is lost per second
   std::optional<ContactTransient> transient = std::nullopt;  ///< or hand_surface, or none
   std::optional<HandSurface> hand_surface = std::nullopt;
+  std::map<std::string, SliderRange> sliders = {};  ///< of kWallNumbers that change, by their names
 };
+
+struct PieceNumber {
+  const char* name;
+  double Piece::*value;
+  bool changes = false;  ///< may have a slider: it can change while the scene plays
+};
+/// The numbers of a wall, in the order of a block.
+inline constexpr PieceNumber kWallNumbers[] = {{"stiffness_n_per_m", &Piece::stiffness_n_per_m, true},
+                                               {"damping_n_s_per_m", &Piece::damping_n_s_per_m, true},
+                                               {"arrest_mass_kg", &Piece::arrest_mass_kg},
+                                               {"integral_n_per_m_s", &Piece::integral_n_per_m_s},
+                                               {"integral_bound_n", &Piece::integral_bound_n},
+                                               {"integral_leak_per_s", &Piece::integral_leak_per_s},
+                                               {"static_friction", &Piece::static_friction, true},
+                                               {"kinetic_friction", &Piece::kinetic_friction, true},
+                                               {"viscous_n_s_per_m", &Piece::viscous_n_s_per_m, true}};
+
+/// Under its name in the file, with its slider.
+NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number);
+
+/// What is judged of a piece: it alone, or with all sliders at their upper ends, and with dampings at the
+/// lower ones.
+std::vector<Piece> slider_ends(const Piece& piece);
 
 /// "plane", "sphere", "cylinder", "quadric".
 std::string_view to_string(PieceShape shape);

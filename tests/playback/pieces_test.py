@@ -92,8 +92,8 @@ def a_ghost_holds_where_add_lets_go():
 
 
 def a_played_scene_replays_to_the_bit():
-    walls = [piece("floor", "plane", (0, 0, -0.01), damping_n_s_per_m=4, arrest_mass_kg=0.15, integral_n_per_m_s=5000, integral_bound_n=2, static_friction=0.6, kinetic_friction=0.4),
-             piece("ball", "sphere", (0.02, 0, 0), radius_m=0.01, damping_n_s_per_m=2, transient=STUDY, static_friction=0.5, kinetic_friction=0.5, viscous_n_s_per_m=1),
+    walls = [piece("floor", "plane", (0, 0, -0.01), damping_n_s_per_m=4, arrest_mass_kg=0.15, integral_n_per_m_s=5000, integral_bound_n=2),
+             piece("ball", "sphere", (0.02, 0, 0), radius_m=0.01, damping_n_s_per_m=2, transient=STUDY),
              piece("egg", "quadric", (-0.02, 0, 0), coefficients=[1e4, 4e4, 1e4, 0, 0, 0, 0, 0, 0, -1]), piece("pipe", "cylinder", (0, 0.03, 0), direction=[1, 0, 0], radius_m=0.01)]
     write_scene("room", *walls)
     turn = 2 * np.pi * TIME_S
@@ -109,6 +109,49 @@ def a_played_scene_replays_to_the_bit():
         # Single precision: 1e-6 of the 10 N that the arrest reaches.
         assert np.abs(table[f"force_{axis}_n"][:2000] - force[:2000, i]).max() < 1e-5, axis
     assert np.abs(force).max(axis=0).min() > 0.1, "a force along each axis"
+
+
+def a_dragged_hand_slips_and_sliders_move():
+    floor = piece("floor", "plane", damping_n_s_per_m=4, static_friction=0.6, kinetic_friction={"value": 0.4, "slider": {"from": 0.1, "to": 0.6}}) | {"stiffness_n_per_m": {"value": 1000, "slider": {"from": 500, "to": 1500}}}
+    write_scene("rough", floor)
+    # 1 mm deep, then 47 mm/s along x and back along y: 4.7 counts a tick.
+    pathlib.Path("path.csv").write_text("time_s,x_m,y_m,z_m\n0,0,0,0.001\n0.02,0,0,-0.001\n1.02,0.047,0,-0.001\n2.02,0.047,0.047,-0.001\n")
+    report, place, force = forces("rough")
+    drag = slice(100, 1000)
+    stretch = -force[drag, 0] / 1000
+    slips = np.rint((np.diff(place[drag, 0]) - np.diff(stretch)) / 200e-6).astype(int)
+    assert abs(slips.sum() - 0.0423 / 200e-6) < 1.5 and slips.min() == 0, slips.sum()
+    assert stretch.max() < 0.6e-3 + 1e-8 and np.abs(force[drag, 2] - 1).max() < 1e-6 and np.abs(force[drag, 1]).max() < 1e-6
+    pathlib.Path("set.csv").write_text("time_s,command\n0.5,set floor.stiffness_n_per_m 500 over 100ms\n1,set floor.kinetic_friction 0.6\n")
+    played = run_json("play", "rough.scene.json", "-d", "sim:arm", "--finger-path", "path.csv", "--onset", "0s", "--script", "set.csv", "-o", "rough")
+    assert played["lost_ticks"] == 0, played
+    again = run_json("replay", "rough")
+    assert again["same_to_the_bit"] is True and again["ticks_compared"] == played["ticks"], again
+    run("session", "rough", "-o", "rough.csv")
+    table = np.genfromtxt("rough.csv", delimiter=",", names=True)
+    assert abs(table["force_z_n"][700] - 0.5) < 1e-5 and np.abs(table["force_z_n"][60:480] - 1).max() < 1e-5, table["force_z_n"][700]
+    along = np.hypot(table["force_x_n"], table["force_y_n"])[1200:2000]
+    assert along.max() < 0.3 + 1e-5 and along.min() > 0.29, "without slips: both coefficients are 0.6"
+    sliders = run_json("info", "rough.scene.json")["sliders"]
+    assert [(row["piece"], row["member"], row["from"], row["to"]) for row in sliders] == [("floor", "stiffness_n_per_m", 500, 1500), ("floor", "kinetic_friction", 0.1, 0.6)], sliders
+    for command in ("set floor.stiffness_n_per_m 400", "set floor.static_friction 0.5", "set flor.stiffness_n_per_m 600", "set floor.0.stiffness_n_per_m 600", "set floor.radius_m 1"):
+        pathlib.Path("set.csv").write_text(f"time_s,command\n0.5,{command}\n")
+        run("play", "rough.scene.json", "-d", "sim:arm", "--finger-path", "path.csv", "--script", "set.csv", "-o", "wrong", code=MALFORMED)
+    for wrong in ({"kinetic_friction": 0.7}, {"kinetic_friction": {"value": 0.4, "slider": {"from": 0.3, "to": 0.7}}}, {"stiffness_n_per_m": {"value": 400, "slider": {"from": 500, "to": 600}}}):
+        write_scene("wrong", floor | wrong)
+        error = error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)
+        assert f"#/pieces/0/{next(iter(wrong))}" in error["where"], error
+    # Both ends of the sliders are judged, and the spring along the surface.
+    write_scene("held", piece("floor", "plane", static_friction=0.6) | {"stiffness_n_per_m": {"value": 900, "slider": {"from": 500, "to": 1800}}})
+    row = run_json("design", "held.scene.json", "--device", "arm", code=UNSTABLE)["pieces"][0]
+    assert row["verdict"] == "unstable" and row["along_surface"] == "unstable" and row["stiffness_n_per_m"] == 1800, row
+    write_scene("held", piece("floor", "plane", damping_n_s_per_m=4, static_friction=0.6))
+    row = run_json("design", "held.scene.json", "--device", "arm", code=UNSTABLE)["pieces"][0]
+    assert row["along_surface"] == "unstable" and abs(row["limit_along_n_per_m"] - 1000) < 50, row
+    assert "'floor'" in run("explain", "held.scene.json", "--device", "arm")[1], "a warning"
+    write_scene("held", piece("floor", "plane", damping_n_s_per_m=4, static_friction=0.6, viscous_n_s_per_m=4))
+    row = run_json("design", "held.scene.json", "--device", "arm")["pieces"][0]
+    assert row["verdict"] == row["along_surface"] == "stable", row
 
 
 def a_transient_is_that_of_its_differential_equation():
@@ -263,7 +306,7 @@ def what_cannot_be_is_refused():
 
 
 if __name__ == "__main__":
-    for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit,
+    for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit, a_dragged_hand_slips_and_sliders_move,
                  a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, design_adds_up_what_acts_together,
                  what_cannot_be_is_refused):
         tacto.in_folder(test)

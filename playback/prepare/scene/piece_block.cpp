@@ -84,10 +84,8 @@ Result<core::PieceTable> table_of_piece(const Piece& piece, double point_radius_
 }
 
 void append_numbers(const Piece& piece, std::vector<float>& numbers) {
-  for (const double number : {piece.stiffness_n_per_m, piece.damping_n_s_per_m, piece.arrest_mass_kg,
-                              piece.integral_n_per_m_s, piece.integral_bound_n, piece.integral_leak_per_s,
-                              piece.static_friction, piece.kinetic_friction, piece.viscous_n_s_per_m})
-    numbers.push_back(static_cast<float>(number));
+  for (const auto& [name, value, changes] : schema::kWallNumbers)
+    numbers.push_back(static_cast<float>(piece.*value));
   numbers.insert(numbers.end(), core::kWallStateWords, 0.0F);
 }
 
@@ -154,7 +152,7 @@ Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::stri
   std::vector<core::PieceTable> tables;
   for (const Piece& piece : scene.pieces) {
     const std::string at = fmt::format("{}#/pieces/{}", where, tables.size());
-    TACTO_TRY(check_wall(piece, device, rate_hz, hand, at));
+    for (const Piece& end : slider_ends(piece)) TACTO_TRY(check_wall(end, device, rate_hz, hand, at));
     layers.push_back(
         {static_cast<std::uint16_t>(kind_of_piece(piece.shape)), static_cast<std::uint16_t>(numbers.size()),
          static_cast<std::uint32_t>(tables.size() * sizeof(core::PieceTable) / sizeof(std::uint32_t))});
@@ -192,19 +190,23 @@ std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const sche
   for (const Piece& piece : scene.pieces)
     if (auto note = cut_of_transient(piece, device, rate_hz)) notes.push_back(std::move(*note));
   if (!(device.axes.front().mass_kg > 0)) return notes;
-  const auto add_unstable = [&](const Piece& piece, double damping_n_s_per_m, const char* along) {
+  const auto unstable = [&](const Piece& piece, double damping_n_s_per_m, const char* along) {
     const double limit = stiffness_limit_of(device, rate_hz, hand, damping_n_s_per_m, true);
-    if (piece.stiffness_n_per_m < limit) return;
+    if (piece.stiffness_n_per_m < limit) return false;
     notes.push_back(fmt::format(
         "piece '{}' is unstable on this device with {}{}: its stiffness is {:.4g} N/m with {:.4g} "
         "N s/m, the limit is {:.4g} N/m (computed, without the Coulomb friction of the device)",
         piece.name, hand ? "hand " + hand->name : "nothing held", along, piece.stiffness_n_per_m,
         damping_n_s_per_m, limit));
+    return true;
   };
   for (const Piece& piece : scene.pieces) {
-    add_unstable(piece, piece.damping_n_s_per_m, "");
-    if (piece.static_friction > 0)
-      add_unstable(piece, piece.viscous_n_s_per_m, ", along its surface where its friction holds");
+    const std::vector<Piece> ends = slider_ends(piece);
+    std::ranges::any_of(ends, [&](const Piece& end) { return unstable(end, end.damping_n_s_per_m, ""); });
+    std::ranges::any_of(ends, [&](const Piece& end) {
+      return end.static_friction > 0 &&
+             unstable(end, end.viscous_n_s_per_m, ", along its surface where its friction holds");
+    });
   }
   return notes;
 }
