@@ -291,7 +291,13 @@ def what_cannot_be_is_refused():
     said = run_json("info", "room.scene.json")
     assert said["pieces"][0]["shape"] == "plane" and said["contact"] == "ghost", said
     assert error_of("trade", "room.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces")
-    assert error_of("scene", "room.scene.json", "-o", "room.png", code=UNSUITABLE)["where"].endswith("#/pieces")
+    assert error_of("scene", "room.scene.json", "-o", "room.png", "--session", "room", code=UNSUITABLE)["where"] == "--session"
+    assert error_of("scene", "room.scene.json", "-o", "room.png", "--through", "1mm,2mm", code=USAGE)["where"] == "--through"
+    assert not pathlib.Path("room.png").exists()
+    write_scene("room", piece("floor", "plane"), piece("left", "sphere", (-0.01, 0, 0.02), radius_m=0.01), piece("pipe", "cylinder", (0.03, 0.01, 0.04), radius_m=0.01))
+    drawn = run_json("scene", "room.scene.json", "-o", "room.png", "--device", "arm")
+    assert [drawn[f"through_{axis}_m"] for axis in "xyz"] == [0.01, 0.005, 0.03] and pathlib.Path("room.png").read_bytes()[:4] == b"\x89PNG", drawn
+    assert run_json("scene", "room.scene.json", "-o", "room.svg", "--through", "1mm,2mm,-3mm")["through_z_m"] == -0.003
     write_path("path.csv", np.zeros((2, 3)))
     run("render", "room.scene.json", "--finger-path", "path.csv", "--device", "arm", "--hold-stable", "-o", "g.csv", code=UNSUITABLE)
     write_scene("room", piece("floor", "plane", damping_n_s_per_m=4, integral_n_per_m_s=50000, integral_bound_n=10))
