@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <tuple>
 
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
@@ -136,6 +137,22 @@ Result<void> add_adaptive(schema::Scene& scene, const std::string& file, const D
   return {};
 }
 
+// The worse one of both ends of all sliders.
+JudgedPiece judged_at_slider_ends(const schema::Scene& scene, std::size_t index,
+                                  const DesignRequest& request) {
+  schema::Scene ends[2] = {scene, scene};
+  for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
+    const auto both = slider_ends(scene.pieces[i]);
+    ends[0].pieces[i] = both.front(), ends[1].pieces[i] = both.back();
+  }
+  JudgedPiece low = judged_piece(ends[0], index, request), high = judged_piece(ends[1], index, request);
+  const auto rank = [](const JudgedPiece& judged) {
+    return std::tuple(judged.verdict == Stability::unstable, judged.verdict == Stability::not_known,
+                      std::max(judged.growth, judged.growth_along));
+  };
+  return rank(low) > rank(high) ? low : high;
+}
+
 // Pieces in space: the motion on their walls from tick to tick.
 Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& scene, const std::string& file,
                              const DesignRequest& request) {
@@ -154,11 +171,12 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
   bool unstable = false;
   for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
     const schema::Piece& piece = scene.pieces[i];
-    const JudgedPiece judged = judged_piece(scene, i, request);
+    const JudgedPiece judged = judged_at_slider_ends(scene, i, request);
     unstable = unstable || judged.verdict == Stability::unstable;
     Report row;
     row.add("piece", piece.name).add("verdict", to_string(judged.verdict));
-    row.add("stiffness_n_per_m", piece.stiffness_n_per_m).add("damping_n_s_per_m", piece.damping_n_s_per_m);
+    row.add("stiffness_n_per_m", judged.alone.stiffness_n_per_m)
+        .add("damping_n_s_per_m", judged.alone.damping_n_s_per_m);
     if (!judged.with.empty())
       row.add("adds_to", judged.with)
           .add("total_stiffness_n_per_m", judged.total.stiffness_n_per_m)
@@ -170,6 +188,11 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
     if (judged.growth != 1)
       row.add(judged.growth < 1 ? "decay_time_s" : "growth_time_s",
               1 / (request.rate_hz * std::abs(std::log(judged.growth))));
+    if (judged.growth_along > 0)
+      row.add("along_surface", to_string(judged.growth_along > 1 ? Stability::unstable : Stability::stable))
+          .add("limit_along_n_per_m",
+               playback::stiffness_limit_of(request.device, request.rate_hz, request.hand,
+                                            judged.alone.viscous_n_s_per_m, true));
     rows.push_back(std::move(row));
   }
   Report report;

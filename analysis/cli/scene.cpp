@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactograph scene: a picture of the force patches of a scene.
+// tactograph scene: a picture of the force patches of a scene, or of its pieces in space.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "analysis/cli/verbs.hpp"
+#include "analysis/scene/piece_figure.hpp"
 #include "analysis/scene/scene_figure.hpp"
 #include "analysis/scene/scene_sample.hpp"
 #include "data-schema/base/unknown_note.hpp"
@@ -25,7 +26,7 @@ using cli::Report;
 using schema::Result;
 
 struct SceneVerbOptions {
-  std::string scene, device, hand, session, output;
+  std::string scene, device, hand, session, output, through;
   std::vector<std::string> sample;  // what, place
   schema::Existing existing = schema::Existing::keep;
 };
@@ -116,6 +117,50 @@ Result<Report> run_sample(const SceneVerbOptions& o) {
            std::hypot(sample->kernel_x_n - sample->force_x_n, sample->kernel_y_n - sample->force_y_n));
 }
 
+// "10mm,20mm,-5mm".
+Result<std::array<double, 3>> place_in_space(const std::string& text) {
+  std::array<double, 3> place_m{};
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < place_m.size(); ++i) {
+    const std::size_t end = i + 1 < place_m.size() ? text.find(',', at) : text.size();
+    if (end == std::string::npos)
+      return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is not a place in space", text),
+                          "--through", "write three lengths, as in 10mm,20mm,-5mm");
+    const auto length_m = schema::parse_quantity(text.substr(at, end - at), schema::Dimension::length);
+    TACTO_TRY(length_m);
+    place_m[i] = *length_m;
+    at = end + 1;
+  }
+  return place_m;
+}
+
+Result<Report> run_pieces(const SceneVerbOptions& o, schema::Scene scene) {
+  if (!o.hand.empty() || !o.session.empty())
+    return schema::fail(schema::ErrorKind::unsuitable, "sections of pieces show neither a hand nor a session",
+                        o.session.empty() ? "--hand" : "--session", "leave it out");
+  PiecePicture picture{scene.name.empty() ? o.scene : scene.name, std::move(scene), {}, {}};
+  if (!o.device.empty()) {
+    auto device = schema::read_device(o.device);
+    TACTO_TRY(device);
+    picture.device = std::move(*device);
+  }
+  if (!o.through.empty()) {
+    const auto through_m = place_in_space(o.through);
+    TACTO_TRY(through_m);
+    picture.through_m = *through_m;
+  }
+  Report report;
+  report.add("scene", schema::scene_path(o.scene)).add("pieces", picture.scene.pieces.size());
+  if (picture.device) report.add("device", picture.device->name);
+  const PieceFigure figure(std::move(picture));
+  for (std::size_t i = 0; i < 3; ++i)
+    report.add(fmt::format("through_{}_m", "xyz"[i]), figure.through_m().at(i));
+  schema::PendingFiles files;
+  TACTO_TRY(add_figure(files, o.output, figure));
+  TACTO_TRY(files.commit(o.existing));
+  return report.add("written", o.output);
+}
+
 Result<Report> run_scene(const SceneVerbOptions& o) {
   if (!o.sample.empty()) return run_sample(o);
   if (o.scene.empty() || o.output.empty())
@@ -126,6 +171,12 @@ Result<Report> run_scene(const SceneVerbOptions& o) {
   if (!o.hand.empty() && o.device.empty())
     return schema::fail(schema::ErrorKind::usage, "needs the device that the hand holds", "--hand",
                         "give --device NAME");
+  auto in_space = schema::read_scene(schema::scene_path(o.scene));
+  TACTO_TRY(in_space);
+  if (!in_space->pieces.empty()) return run_pieces(o, std::move(*in_space));
+  if (!o.through.empty())
+    return schema::fail(schema::ErrorKind::unsuitable, "only pieces in space have sections", "--through",
+                        "leave it out");
   const auto picture = read_scene_picture(o.scene, o.device, o.hand, o.session);
   TACTO_TRY(picture);
   warn_of(o, *picture);
@@ -141,8 +192,10 @@ Result<Report> run_scene(const SceneVerbOptions& o) {
 cli::Action declare_scene(CLI::App& app) {
   auto options = std::make_shared<SceneVerbOptions>();
   SceneVerbOptions& o = *options;
-  app.add_option("SCENE", o.scene,
-                 "Scene with force patches: stem or file name ('info' lists what it contains)");
+  app.add_option(
+      "SCENE", o.scene,
+      "Scene with force patches, or with pieces in space (three sections): stem or file name ('info' "
+      "lists what it contains)");
   app.add_option("-o,--output", o.output, "Output file, .png or .svg");
   app.add_option(
          "--sample", o.sample,
@@ -160,17 +213,23 @@ cli::Action declare_scene(CLI::App& app) {
                              "NAME.hand.json",
                              fmt::join(schema::hand_preset_names(), ", ")));
   app.add_option("--session", o.session, "Draw the path of the hand and the forces on it of NAME.session");
+  app.add_option("--through", o.through,
+                 "Of pieces: the place through which the sections lead, X,Y,Z as in 10mm,20mm,-5mm; default: "
+                 "the middle of the balls, pipes and quadrics");
   cli::declare_force(app, o.existing);
   return [options] { return run_scene(*options); };
 }
 
 }  // namespace
 
-const cli::Verb kSceneVerb{
-    "scene", "Draw the force patches of a scene in the plane, and the path and forces of a session over them",
-    "tactograph scene plane -o plane.png --device sandpaper-1990\n"
-    "  tactograph scene plane -o pushed.svg --session pushed\n"
-    "  tactograph scene plane --device sandpaper-1990 --sample sand 10mm,20mm",
-    declare_scene};
+const cli::Verb kSceneVerb{"scene",
+                           "Draw the force patches of a scene in the plane, and the path and forces of a "
+                           "session over them; of pieces "
+                           "in space three sections",
+                           "tactograph scene plane -o plane.png --device sandpaper-1990\n"
+                           "  tactograph scene plane -o pushed.svg --session pushed\n"
+                           "  tactograph scene room -o room.png --device arm --through -20mm,0mm,0mm\n"
+                           "  tactograph scene plane --device sandpaper-1990 --sample sand 10mm,20mm",
+                           declare_scene};
 
 }  // namespace tacto::analysis

@@ -118,7 +118,14 @@ JudgedPiece judged_piece(const Scene& scene, std::size_t index, const DesignRequ
     sum.growth = growth_of(sum.total, request);
     if (sum.growth >= worst.growth) worst = std::move(sum);
   }
-  if (worst.growth > 1)
+  worst.alone = piece;
+  if (piece.static_friction > 0) {
+    Piece along = piece;
+    along.damping_n_s_per_m = piece.viscous_n_s_per_m;
+    along.integral_n_per_m_s = 0;
+    worst.growth_along = growth_of(along, request);
+  }
+  if (worst.growth > 1 || worst.growth_along > 1)
     worst.verdict = Stability::unstable;
   else if (!unjudged.empty() && (adds || growth_of(damped, request) > 1))
     worst.verdict = Stability::not_known, worst.unjudged = std::move(unjudged);

@@ -16,12 +16,16 @@ struct JudgedPiece {
   std::vector<std::string> unjudged;  ///< pieces that may act with it along an angle that is not computed
   double growth = 0;                  ///< playback::wall_growth() of `total`
   Stability verdict = Stability::stable;
+  schema::Piece alone = {};  ///< as judged
+  double growth_along = 0;   ///< along the surface, where its friction holds; 0 without friction
 };
 
 /// `contact: add`: planes of the same direction add up, from the highest one down to the depth at which they
 /// grow the most; with pieces that may overlap in another way a stable sum is not known. `ghost`: stiffnesses
 /// do not add, because each wall holds its part of the way to the ghost; with the dampings of all pieces that
-/// may hold the ghost together, not perpendicular, a wall that would grow is not known.
+/// may hold the ghost together, not perpendicular, a wall that would grow is not known. Friction that holds
+/// is a spring of the same stiffness along the surface, with the viscous friction; one that grows is
+/// unstable, up to where it slips.
 JudgedPiece judged_piece(const schema::Scene& scene, std::size_t index, const DesignRequest& request);
 
 }  // namespace tacto::analysis

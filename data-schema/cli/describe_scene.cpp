@@ -67,6 +67,15 @@ std::vector<cli::Report> slider_rows(const Scene& scene) {
                              .add("value", number.value)
                              .add("from", number.slider->from)
                              .add("to", number.slider->to));
+  for (const Piece& piece : scene.pieces)
+    for (const PieceNumber& each : kWallNumbers)
+      if (const auto [name, number, changes, whole] = named_number(piece, each); number.slider)
+        rows.push_back(cli::Report()
+                           .add("piece", piece.name)
+                           .add("member", name)
+                           .add("value", number.value)
+                           .add("from", number.slider->from)
+                           .add("to", number.slider->to));
   return rows;
 }
 
@@ -75,7 +84,6 @@ void add_patches(cli::Report& report, const Scene& scene) {
   std::vector<cli::Report> rows;
   for (const Patch& patch : scene.patches) rows.push_back(row_of(patch));
   report.add("patches", std::move(rows));
-  if (auto sliders = slider_rows(scene); !sliders.empty()) report.add("sliders", std::move(sliders));
 }
 
 cli::Report row_of(const Piece& piece) {
@@ -89,8 +97,20 @@ cli::Report row_of(const Piece& piece) {
   add_above_0("thickness_m", piece.thickness_m);
   row.add("stiffness_n_per_m", piece.stiffness_n_per_m);
   add_above_0("damping_n_s_per_m", piece.damping_n_s_per_m);
+  add_above_0("static_friction", piece.static_friction);
+  add_above_0("kinetic_friction", piece.kinetic_friction);
+  add_above_0("viscous_n_s_per_m", piece.viscous_n_s_per_m);
   add_above_0("arrest_mass_kg", piece.arrest_mass_kg);
   add_above_0("integral_bound_n", piece.integral_bound_n);
+  if (const auto& transient = piece.transient) {
+    row.add("transient_amplitude_n_s_per_m", transient->amplitude_n_s_per_m);
+    row.add("transient_frequency_hz", transient->frequency_hz);
+    row.add("transient_decay_per_s", transient->decay_per_s);
+  }
+  if (piece.hand_surface)
+    for (const auto& [name, value] : kHandSurfaceNumbers)
+      row.add(value == &HandSurface::amplitude ? "hand_surface_amplitude" : name,
+              (*piece.hand_surface).*value);
   return row;
 }
 
@@ -116,6 +136,7 @@ Result<cli::Report> describe_scene(const std::string& path) {
   if (!rows.empty()) report.add("layers", std::move(rows));
   add_patches(report, *scene);
   add_pieces(report, *scene);
+  if (auto sliders = slider_rows(*scene); !sliders.empty()) report.add("sliders", std::move(sliders));
   cli::add_choices(report, scene->playback);
   add_text(report, "notes", scene->notes);
   return report;

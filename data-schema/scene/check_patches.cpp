@@ -18,25 +18,6 @@ template <class L>
 concept NoFurtherRule = AnyOf<L, HeightMapLayer, GroovesLayer, NoiseLayer, TextureForceLayer, SpringLayer,
                               DamperLayer, MoverLayer, ForceMapLayer, FieldLayer>;
 
-Result<void> check_slider(const NamedLayerNumber& named, const std::string& where) {
-  const LayerNumber& number = named.number;
-  if (!number.slider) return {};
-  if (!named.changes)
-    return fail(ErrorKind::unsuitable,
-                fmt::format("{} has a slider, but it cannot change while the scene plays", named.name),
-                fmt::format("{}/{}/slider", where, named.name), "give its value alone, as a number");
-  const auto& [from, to] = *number.slider;
-  if (!(from < to))
-    return fail(ErrorKind::unsuitable,
-                fmt::format("the slider of {} is from {:g} to {:g}", named.name, from, to),
-                fmt::format("{}/{}/slider", where, named.name), "give the lower end first");
-  if (number.value >= from && number.value <= to) return {};
-  return fail(
-      ErrorKind::unsuitable,
-      fmt::format("{} is {:g}, outside its slider from {:g} to {:g}", named.name, number.value, from, to),
-      fmt::format("{}/{}/value", where, named.name), "choose a value in the range of the slider");
-}
-
 // A mass that moves by itself has an acceleration: force / mass.
 Result<void> check_own_mass(const LayerNumber& mass_kg, const std::string& where) {
   const double least_kg = least_value(mass_kg);
@@ -92,6 +73,25 @@ Result<void> check_layer_count(const Scene& scene, const std::string& where) {
 }
 
 }  // namespace
+
+Result<void> check_slider(const NamedLayerNumber& named, const std::string& where) {
+  const LayerNumber& number = named.number;
+  if (!number.slider) return {};
+  if (!named.changes)
+    return fail(ErrorKind::unsuitable,
+                fmt::format("{} has a slider, but it cannot change while the scene plays", named.name),
+                fmt::format("{}/{}/slider", where, named.name), "give its value alone, as a number");
+  const auto& [from, to] = *number.slider;
+  if (!(from < to))
+    return fail(ErrorKind::unsuitable,
+                fmt::format("the slider of {} is from {:g} to {:g}", named.name, from, to),
+                fmt::format("{}/{}/slider", where, named.name), "give the lower end first");
+  if (number.value >= from && number.value <= to) return {};
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format("{} is {:g}, outside its slider from {:g} to {:g}", named.name, number.value, from, to),
+      fmt::format("{}/{}/value", where, named.name), "choose a value in the range of the slider");
+}
 
 Result<void> check_patches(const Scene& scene, const std::string& where) {
   TACTO_TRY(check_layer_count(scene, where));

@@ -77,6 +77,20 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
     if (value > 0 && !(piece.integral_n_per_m_s > 0))
       return fail(ErrorKind::unsuitable, fmt::format("{} of a piece without an integral", member),
                   fmt::format("{}/{}", where, member), "give integral_n_per_m_s too, or leave it out");
+  for (const PieceNumber& number : kWallNumbers) TACTO_TRY(check_slider(named_number(piece, number), where));
+  const auto slider_of = [&](const char* name, double value) {
+    const auto at = piece.sliders.find(name);
+    return at == piece.sliders.end() ? SliderRange{value, value} : at->second;
+  };
+  if (const double kinetic = slider_of("kinetic_friction", piece.kinetic_friction).to,
+      least = slider_of("static_friction", piece.static_friction).from;
+      kinetic > least)
+    return fail(ErrorKind::unsuitable,
+                fmt::format("the kinetic friction {:g} is above the static friction {:g}", kinetic, least),
+                where + "/kinetic_friction", "choose a static friction that is not smaller");
+  if (piece.transient && piece.hand_surface)
+    return fail(ErrorKind::unsuitable, "a piece has one transient", where + "/hand_surface",
+                "leave out `transient` or `hand_surface`");
   return piece.shape == PieceShape::quadric ? check_quadric(piece, where) : Result<void>();
 }
 

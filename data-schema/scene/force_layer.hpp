@@ -182,6 +182,10 @@ struct NamedLayerNumber {
 /// The numbers of a layer, in the order of the file. `filter_m` is absent where it is "auto".
 std::vector<NamedLayerNumber> numbers_of(const ForceLayer& layer);
 
+/// Errors: unsuitable, by JSON pointer: a number with a slider that cannot change, or is outside of it.
+/// `where` is the pointer of its layer or piece.
+Result<void> check_slider(const NamedLayerNumber& named, const std::string& where);
+
 /// Whether the layer has `adaptive`, and it is true.
 bool is_adaptive(const ForceLayer& layer);
 /// Makes `adaptive` of a layer that has it false.

@@ -4,8 +4,13 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "data-schema/scene/force_layer.hpp"
 
 namespace tacto::schema {
 
@@ -18,6 +23,33 @@ enum class PieceContact { ghost, add };
 /// Of x^2, y^2, z^2, xy, yz, xz, x, y, z and 1.
 inline constexpr std::size_t kQuadricTerms = 10;
 
+/// At a contact with the speed v inwards: beta v sin(2 pi f t) e^(-a t) (Fiene and Kuchenbecker 2007).
+struct ContactTransient {
+  double amplitude_n_s_per_m = 0;  ///< beta
+  double frequency_hz = 0;         ///< f
+  double decay_per_s = 0;          ///< a
+};
+
+/// A mass of the hand on a spring and a damper, which meets the spring and the damper of a surface: the
+/// decaying part of its force at a contact is the transient (the same paper, model (12)).
+struct HandSurface {
+  double hand_mass_kg = 0, hand_damping_n_s_per_m = 0, hand_stiffness_n_per_m = 0;
+  double surface_damping_n_s_per_m = 0, surface_stiffness_n_per_m = 0;
+  double amplitude = 0.86;  ///< share of the model's force; people prefer this one (section 5)
+};
+
+struct HandSurfaceNumber {
+  const char* name;
+  double HandSurface::*value;
+};
+inline constexpr HandSurfaceNumber kHandSurfaceNumbers[] = {
+    {"hand_mass_kg", &HandSurface::hand_mass_kg},
+    {"hand_damping_n_s_per_m", &HandSurface::hand_damping_n_s_per_m},
+    {"hand_stiffness_n_per_m", &HandSurface::hand_stiffness_n_per_m},
+    {"surface_damping_n_s_per_m", &HandSurface::surface_damping_n_s_per_m},
+    {"surface_stiffness_n_per_m", &HandSurface::surface_stiffness_n_per_m},
+    {"amplitude", &HandSurface::amplitude}};
+
 struct Piece {
   std::string name;  ///< different for each piece of a scene
   PieceShape shape = PieceShape::plane;
@@ -29,11 +61,41 @@ struct Piece {
   std::array<double, kQuadricTerms> coefficients = {};
   double stiffness_n_per_m = 0;
   double damping_n_s_per_m = 0;
+  /// Coefficients of the force along the normal: a spring of stiffness_n_per_m holds the hand along the
+  /// surface up to the static one, then it slips to the kinetic one.
+  double static_friction = 0, kinetic_friction = 0;
+  double viscous_n_s_per_m = 0;  ///< against the hand's speed along the surface while it touches
   double arrest_mass_kg = 0;  ///< the impulse at the beginning of a contact is this mass x the normal speed
-  double integral_n_per_m_s = 0;   ///< growth of the force with depth and time
-  double integral_bound_n = 0;     ///< most of that force
-  double integral_leak_per_s = 0;  ///< share of that force which is lost per second
+  double integral_n_per_m_s = 0;                             ///< growth of the force with depth and time
+  double integral_bound_n = 0;                               ///< most of that force
+  double integral_leak_per_s = 0;                            ///< share of that force which is lost per second
+  std::optional<ContactTransient> transient = std::nullopt;  ///< or hand_surface, or none
+  std::optional<HandSurface> hand_surface = std::nullopt;
+  std::map<std::string, SliderRange> sliders = {};  ///< of kWallNumbers that change, by their names
 };
+
+struct PieceNumber {
+  const char* name;
+  double Piece::*value;
+  bool changes = false;  ///< may have a slider: it can change while the scene plays
+};
+/// The numbers of a wall, in the order of a block.
+inline constexpr PieceNumber kWallNumbers[] = {{"stiffness_n_per_m", &Piece::stiffness_n_per_m, true},
+                                               {"damping_n_s_per_m", &Piece::damping_n_s_per_m, true},
+                                               {"arrest_mass_kg", &Piece::arrest_mass_kg},
+                                               {"integral_n_per_m_s", &Piece::integral_n_per_m_s},
+                                               {"integral_bound_n", &Piece::integral_bound_n},
+                                               {"integral_leak_per_s", &Piece::integral_leak_per_s},
+                                               {"static_friction", &Piece::static_friction, true},
+                                               {"kinetic_friction", &Piece::kinetic_friction, true},
+                                               {"viscous_n_s_per_m", &Piece::viscous_n_s_per_m, true}};
+
+/// Under its name in the file, with its slider.
+NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number);
+
+/// What is judged of a piece: it alone, or with all sliders at their upper ends, and with dampings at the
+/// lower ones.
+std::vector<Piece> slider_ends(const Piece& piece);
 
 /// "plane", "sphere", "cylinder", "quadric".
 std::string_view to_string(PieceShape shape);

@@ -11,18 +11,29 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kShapeWords = {"plane", "sphere", "cylinder", "quadric"};
 
-// The numbers with a default of 0: they are written if they are something else.
-struct PieceNumber {
-  const char* name;
-  double Piece::*value;
-};
-constexpr PieceNumber kPieceNumbers[] = {{"thickness_m", &Piece::thickness_m},
-                                         {"radius_m", &Piece::radius_m},
-                                         {"damping_n_s_per_m", &Piece::damping_n_s_per_m},
-                                         {"arrest_mass_kg", &Piece::arrest_mass_kg},
-                                         {"integral_n_per_m_s", &Piece::integral_n_per_m_s},
-                                         {"integral_bound_n", &Piece::integral_bound_n},
-                                         {"integral_leak_per_s", &Piece::integral_leak_per_s}};
+// Before the numbers of the wall; each is written if it is not 0.
+constexpr PieceNumber kShapeNumbers[] = {{"thickness_m", &Piece::thickness_m},
+                                         {"radius_m", &Piece::radius_m}};
+
+void read_wall(Piece& piece, const Json& body) {
+  for (const auto& [name, value, changes] : kWallNumbers) {
+    const auto at = body.find(name);
+    if (at == body.end()) continue;
+    piece.*value = at->is_object() ? (*at)["value"] : *at;
+    if (at->is_object()) piece.sliders[name] = {(*at)["slider"]["from"], (*at)["slider"]["to"]};
+  }
+}
+
+void write_wall(const Piece& piece, Json& body) {
+  for (const PieceNumber& each : kWallNumbers) {
+    const auto [name, number, changes, whole] = named_number(piece, each);
+    if (number.slider)
+      body[each.name] = {{"value", number.value},
+                         {"slider", {{"from", number.slider->from}, {"to", number.slider->to}}}};
+    else if (number.value != 0 || each.value == &Piece::stiffness_n_per_m)
+      body[each.name] = number.value;
+  }
+}
 
 }  // namespace
 
@@ -32,6 +43,26 @@ std::string_view to_string(PieceShape shape) {
 
 std::string_view to_string(PieceContact contact) {
   return contact == PieceContact::add ? "add" : "ghost";
+}
+
+NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number) {
+  NamedLayerNumber named{number.name, {piece.*number.value}, number.changes};
+  if (const auto at = piece.sliders.find(number.name); at != piece.sliders.end())
+    named.number.slider = at->second;
+  return named;
+}
+
+std::vector<Piece> slider_ends(const Piece& piece) {
+  if (piece.sliders.empty()) return {piece};
+  std::vector<Piece> ends(2, piece);
+  for (const PieceNumber& number : kWallNumbers) {
+    const LayerNumber with = named_number(piece, number).number;
+    const bool damps = number.value == &Piece::damping_n_s_per_m || number.value == &Piece::viscous_n_s_per_m;
+    ends[0].*number.value = damps ? least_value(with) : largest_value(with);
+    ends[1].*number.value = largest_value(with);
+  }
+  for (Piece& end : ends) end.sliders.clear();
+  return ends;
 }
 
 Piece piece_from(const Json& body) {
@@ -46,8 +77,17 @@ Piece piece_from(const Json& body) {
     for (std::size_t i = 0; i < piece.direction.size(); ++i) piece.direction[i] = body["direction"][i];
   if (body.contains("coefficients"))
     for (std::size_t i = 0; i < kQuadricTerms; ++i) piece.coefficients[i] = body["coefficients"][i];
-  piece.stiffness_n_per_m = body["stiffness_n_per_m"];
-  for (const auto& [name, value] : kPieceNumbers) piece.*value = number_or(body, name, 0);
+  for (const auto& [name, value, changes] : kShapeNumbers) piece.*value = number_or(body, name, 0);
+  read_wall(piece, body);
+  if (body.contains("transient")) {
+    const Json& transient = body["transient"];
+    piece.transient = {transient["amplitude_n_s_per_m"], transient["frequency_hz"], transient["decay_per_s"]};
+  }
+  if (body.contains("hand_surface")) {
+    piece.hand_surface.emplace();
+    for (const auto& [name, value] : kHandSurfaceNumbers)
+      (*piece.hand_surface).*value = number_or(body["hand_surface"], name, HandSurface().*value);
+  }
   return piece;
 }
 
@@ -57,9 +97,16 @@ Json piece_body(const Piece& piece) {
   if (piece.shape == PieceShape::plane || piece.shape == PieceShape::cylinder)
     body["direction"] = piece.direction;
   if (piece.shape == PieceShape::quadric) body["coefficients"] = piece.coefficients;
-  body["stiffness_n_per_m"] = piece.stiffness_n_per_m;
-  for (const auto& [name, value] : kPieceNumbers)
+  for (const auto& [name, value, changes] : kShapeNumbers)
     if (piece.*value != 0) body[name] = piece.*value;
+  write_wall(piece, body);
+  if (piece.transient)
+    body["transient"] = {{"amplitude_n_s_per_m", piece.transient->amplitude_n_s_per_m},
+                         {"frequency_hz", piece.transient->frequency_hz},
+                         {"decay_per_s", piece.transient->decay_per_s}};
+  if (piece.hand_surface)
+    for (const auto& [name, value] : kHandSurfaceNumbers)
+      body["hand_surface"][name] = (*piece.hand_surface).*value;
   return body;
 }
 

@@ -293,7 +293,9 @@ Result<void> check_taken(const CtlOptions& o) {
                         form);
   };
   if (set && o.value.empty())
-    return missing("value", "write 'ctl set PATCH.LAYER.MEMBER VALUE', with a plain number");
+    return missing("value",
+                   "write 'ctl set PATCH.LAYER.MEMBER VALUE', of a piece 'ctl set PIECE.MEMBER VALUE', with "
+                   "a plain number");
   if (move && o.value.empty()) return missing("place", "write 'ctl move PATCH X,Y', as in 10mm,20mm");
   if (raise && o.what.empty()) return missing("patch", "write 'ctl raise PATCH'");
   if (mark && o.what.empty())
@@ -443,9 +445,10 @@ cli::Action declare_ctl(CLI::App& app) {
          "top: live figures")
       ->type_name(cli::words_of({kCtlActions.begin(), kCtlActions.end()}))
       ->required();
-  app.add_option("what", o.what,
-                 "load: a texture or scene; gain: as --gain; set: PATCH.LAYER.MEMBER; move, raise: PATCH; "
-                 "mark: a text for the session");
+  app.add_option(
+      "what", o.what,
+      "load: a texture or scene; gain: as --gain; set: PATCH.LAYER.MEMBER or PIECE.MEMBER; move, raise: "
+      "PATCH; mark: a text for the session");
   app.add_option(
       "value", o.value,
       "set: within the member's slider, in the unit of its name; move: the place X,Y of the patch's "

@@ -225,9 +225,10 @@ cli::Action declare_play(CLI::App& app) {
       "--script", options->script,
       "Changes of a scene of forces: a CSV with the columns time_s,command, where a command is 'set "
       "PATCH.LAYER.MEMBER VALUE', 'move PATCH X,Y' or 'raise PATCH'; 'set' and 'move' may end in 'over 50ms' "
-      "(default: 10 ms). LAYER is the layer's index or type, VALUE a number within the member's slider, in "
-      "the "
-      "unit of its name ('info' lists the sliders); X,Y is the place of the patch's centre, as in 10mm,20mm; "
+      "(default: 10 ms). LAYER is the layer's index or type; of a piece in space write PIECE.MEMBER; VALUE a "
+      "number within the member's slider, in "
+      "the unit of its name ('info' lists the sliders); X,Y is the place of the patch's centre, as in "
+      "10mm,20mm; "
       "'raise' makes the patch the topmost one. A command is sent up to 20 ms after its time; the session "
       "has its tick");
   declare_hold_stable(app, options->hold_stable);

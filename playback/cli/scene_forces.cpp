@@ -20,6 +20,7 @@
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/scene/acting_load.hpp"
 #include "playback/prepare/scene/body_motion.hpp"
+#include "playback/prepare/scene/contact_transient.hpp"
 #include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/plane_render.hpp"
@@ -284,6 +285,17 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
   if (piece.arrest_mass_kg > 0)
     row.add("arrest_in_one_tick_to_mps",
             on.device.peak_force_n / (piece.arrest_mass_kg * double{on.setup.rate_hz}));
+  if (const auto transient = transient_of(piece)) {
+    row.add("transient_peak_n_s_per_m", transient_peak_n_s_per_m(*transient));
+    row.add("transient_stops_kg", transient_stops_kg(*transient));
+    row.add("transient_whole_to_mps",
+            transient_whole_to_mps(*transient, on.device, double{on.setup.rate_hz}));
+  }
+  if (piece.hand_surface) {
+    const SlowSurface slow = slow_surface(*piece.hand_surface);
+    row.add("model_stiffness_n_per_m", slow.stiffness_n_per_m);
+    row.add("model_damping_n_s_per_m", slow.damping_n_s_per_m);
+  }
   return row;
 }
 

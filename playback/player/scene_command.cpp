@@ -25,8 +25,8 @@ namespace {
 
 constexpr double kLongestRampS = 10;  // limit of the wire
 constexpr std::string_view kForm =
-    "write 'set PATCH.LAYER.MEMBER VALUE', 'move PATCH X,Y' or 'raise PATCH'; 'set' and 'move' may end in "
-    "'over 10ms'";
+    "write 'set PATCH.LAYER.MEMBER VALUE', of a piece in space 'set PIECE.MEMBER VALUE', 'move PATCH X,Y' or "
+    "'raise PATCH'; 'set' and 'move' may end in 'over 10ms'";
 constexpr std::string_view kPlaceForm = "write the place of its centre with units, as in 10mm,20mm";
 constexpr std::string_view kHeaderForm =
     "write a header line such as 'time_s,command', then one row per command";
@@ -137,6 +137,22 @@ Result<wire::Set> target_of(const Words& path, double value, const ForceProgram&
                    static_cast<float>(value), 0};
 }
 
+// Of a piece, which is a layer of the block.
+Result<wire::Set> target_in_piece(const Words& path, double value, const ForceProgram& forces) {
+  const std::vector<schema::Piece>& pieces = forces.scene.pieces;
+  Words names, members;
+  for (const schema::Piece& piece : pieces) names.push_back(piece.name);
+  for (const schema::PieceNumber& number : schema::kWallNumbers) members.emplace_back(number.name);
+  const auto at_piece = place_of("piece", path[0], names);
+  TACTO_TRY(at_piece);
+  const auto number = place_of("member of a piece named", path[1], members);
+  TACTO_TRY(number);
+  TACTO_TRY(check_value(named_number(pieces[*at_piece], schema::kWallNumbers[*number]), value, path,
+                        *at_piece, forces));
+  return wire::Set{static_cast<std::uint16_t>(*at_piece), static_cast<std::uint16_t>(*number),
+                   static_cast<float>(value), 0};
+}
+
 // Up to the first comma, and after it.
 struct ScriptLine {
   std::string where, time, command;
@@ -194,10 +210,12 @@ Result<double> time_in(const ScriptLine& line, double unit_s, double last_s) {
 Result<SceneCommand> set_command(const std::string& number, double value, double ramp_s,
                                  const ForceProgram& forces) {
   const Words path = words_in(number, ".");
-  if (path.size() != 3)
-    return fail(ErrorKind::usage, fmt::format("'{}' does not name a number of a layer", number), {},
-                "name it as PATCH.LAYER.MEMBER");
-  auto set = target_of(path, value, forces);
+  const bool in_space = !forces.scene.pieces.empty();
+  if (path.size() != (in_space ? 2 : 3))
+    return fail(ErrorKind::usage,
+                fmt::format("'{}' does not name a number of a {}", number, in_space ? "piece" : "layer"), {},
+                in_space ? "name it as PIECE.MEMBER" : "name it as PATCH.LAYER.MEMBER");
+  auto set = in_space ? target_in_piece(path, value, forces) : target_of(path, value, forces);
   TACTO_TRY(set);
   TACTO_TRY(check_ramp(ramp_s));
   set->ramp_s = static_cast<float>(ramp_s);

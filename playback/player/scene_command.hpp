@@ -32,10 +32,10 @@ struct PatchPlace {
 schema::Result<PatchPlace> parse_place(const std::string& text);
 
 /// Sets a number, PATCH.LAYER.MEMBER, to a value in the unit that ends the member's name; LAYER is its index
-/// in the patch, or its type if no other layer there has this type. Errors: usage, without a place: an
-/// unknown patch, layer or member (with the nearest name), a member without a slider or that cannot change
-/// during playback, a value outside the slider (of a scaled one with the range of the file), a ramp outside 0
-/// to 10 s.
+/// in the patch, or its type if no other layer there has this type; of a piece in space PIECE.MEMBER. Errors:
+/// usage, without a place: an unknown patch, layer or member (with the nearest name), a member without a
+/// slider or that cannot change during playback, a value outside the slider (of a scaled one with the range
+/// of the file), a ramp outside 0 to 10 s.
 schema::Result<SceneCommand> set_command(const std::string& number, double value, double ramp_s,
                                          const ForceProgram& forces);
 

@@ -149,9 +149,9 @@ PLANE, SPHERE, CYLINDER, QUADRIC = 16, 17, 18, 19
 AT_REST = (0,) * 9
 
 
-def piece(kind, origin, form, wall=(2000, 4, 0.15, 5000, 2, 0.5)):
+def piece(kind, origin, form, wall=(2000, 4, 0.15, 5000, 2, 0.5, 0.6, 0.4, 2), transient=(0, 33, -0.045, 0.284, -0.284, -0.22)):
     """A layer of a scene in space: the numbers of its wall with a state of zeros, and its table."""
-    return kind, (*wall, 0, 0, 0), struct.pack("<3i3f10f", *origin, 1e-6, 0, -2e-6, *form, *(0,) * (10 - len(form)))
+    return kind, (*wall, *(0,) * 11), struct.pack("<3i3f10f6f", *origin, 1e-6, 0, -2e-6, *form, *(0,) * (10 - len(form)), *transient)
 
 
 SCENES = {
@@ -176,8 +176,8 @@ SCENES = {
                                         (0, 0, 1, 0, 1000, 1000, 1, [(FORCE_MAP, (-1000,), force_table(0, ((2**40, 7, 1e8, 2, 1),)))])]),
     "pieces": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [piece(PLANE, (0, 0, 90), (0, 0.6, 0.8, 0.001)), piece(SPHERE, (40, 9, 0), (0, 0, 1, 0.002)),
                                                                   piece(CYLINDER, (-90, 1, 7), (0.6, 0, 0.8, 0.001)), piece(QUADRIC, (5, 1, 300), (1e6, 1e5, 1e6, 0, 10, 0, 0, 1, 0, -1))])]),
-    "hard_pieces": scene((2**31 - 1, -70, 2**20, 40), [(0, 0, 1, 0, 1000, 1000, 1, [piece(QUADRIC, (0, 0, 0), (1e9, -1e9, 1e9, 1e9, -1e9, 0, 1e9, 0, 0, -1e9), (1e6, 1e4, 100, 1e7, 1000, 1000)),
-                                                                                   piece(PLANE, (2**31 - 1, 0, -2**31), (1, 0, 0, 20), (1e6, 1e4, 100, 1e7, 1000, 1000))])]),
+    "hard_pieces": scene((2**31 - 1, -70, 2**20, 40), [(0, 0, 1, 0, 1000, 1000, 1, [piece(QUADRIC, (0, 0, 0), (1e9, -1e9, 1e9, 1e9, -1e9, 0, 1e9, 0, 0, -1e9), (1e6, 1e4, 100, 1e7, 1000, 1000, 10, 10, 1e4), (-1e6, 1e6, -1.9, 0.1, -0.1, -1.9)),
+                                                                                   piece(PLANE, (2**31 - 1, 0, -2**31), (1, 0, 0, 20), (1e6, 1e4, 100, 1e7, 1000, 1000, 1e-6, 10, 1e4), (0, 0, -1, 0, 0, -1))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,))])]),
 }
 

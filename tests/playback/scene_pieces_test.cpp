@@ -444,6 +444,7 @@ TEST(ScenePiecesTest, SinglePrecisionIsNearDoublePrecision) {
                                  ellipsoid_at(-0.02, 0, 0, {0.02, 0.01, 0.015})};
     for (Piece& piece : pieces) piece.damping_n_s_per_m = 3, piece.arrest_mass_kg = 0.1;
     pieces[0].integral_n_per_m_s = 3000, pieces[0].integral_bound_n = 2, pieces[0].integral_leak_per_s = 1;
+    pieces[1].transient = {32, 50, 92}, pieces[2].transient = {50, 200, 300};
     PiecesOnArm arm(scene_of(pieces, contact));
     ExactScene exact(arm.scene, arm.device, 1000);
     double worst_n = 0, most_n = 0;

@@ -339,7 +339,10 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
         size_of(normal.x) * step_m[0] + size_of(normal.y) * step_m[1] + size_of(normal.z) * step_m[2];
     float* const number = live + scene.layers[i].first_number;
     auto& state = *reinterpret_cast<WallState*>(number + changeable_numbers_of(kind_of(scene, i)));
-    sum = sum + wall_force(number, state, touch) * normal;
+    const float normal_n = wall_force(number, table.transient, state, touch);
+    const SpaceVector on =
+        adds ? from + touch.depth_m * normal : difference(ghost_, origin_of(table), step_m);
+    sum = sum + normal_n * normal + friction_force(number, state, normal_n, normal, on, hand.speed_mps);
   }
   return sum;
 }

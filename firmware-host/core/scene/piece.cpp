@@ -255,13 +255,20 @@ bool nearest_face(const PieceTable& quadric, SpaceVector hand, SpaceVector& near
   return true;
 }
 
-float wall_force(const float* number, WallState& state, const WallTouch& touch) noexcept {
-  if (!(touch.depth_m > 0)) {
-    if (touch.outside_m > kLetGo_m) state = {};
-    return 0;
-  }
+float wall_force(const float* number, const TransientTable& transient, WallState& state,
+                 const WallTouch& touch) noexcept {
+  if (!(touch.depth_m > 0) && touch.outside_m > kLetGo_m) state = {};
+  const float s = state.transient_n, c = state.turning_n, *const step = transient.step;
+  const bool ended = s * s + c * c < kTransientEnd_n * kTransientEnd_n;
+  state.transient_n = ended ? 0 : s + (step[0] * s + step[1] * c);
+  state.turning_n = ended ? 0 : c + (step[2] * s + step[3] * c);
+  if (!(touch.depth_m > 0)) return 0;
   const float inwards_mps = touch.speed_mps < 0 ? -touch.speed_mps : 0;
-  if (state.touched == 0) state.impulse_ns = number[kPieceArrestMass] * inwards_mps;
+  if (state.touched == 0) {
+    state.impulse_ns = number[kPieceArrestMass] * inwards_mps;
+    state.transient_n = transient.start_n_s_per_m[0] * inwards_mps;
+    state.turning_n = transient.start_n_s_per_m[1] * inwards_mps;
+  }
   state.touched = 1;
   if (inwards_mps == 0) state.impulse_ns = 0;
   const float deep_m = touch.depth_m > kIntegralRest * touch.grain_m ? touch.depth_m : 0,
@@ -269,14 +276,57 @@ float wall_force(const float* number, WallState& state, const WallTouch& touch) 
                                                            number[kPieceIntegralLeak] * state.integral_n),
               bound_n = number[kPieceIntegralBound];
   state.integral_n = grown_n < 0 ? 0 : grown_n > bound_n ? bound_n : grown_n;
-  float force_n =
-      number[kPieceStiffness] * touch.depth_m - number[kPieceDamping] * touch.speed_mps + state.integral_n;
+  float force_n = number[kPieceStiffness] * touch.depth_m - number[kPieceDamping] * touch.speed_mps +
+                  state.integral_n + state.transient_n;
   force_n = force_n > 0 ? force_n : 0;
   const float asked_n = state.impulse_ns / touch.tick_s, left_n = touch.most_force_n - force_n;
   const float given_n = asked_n < left_n ? asked_n : left_n;
   if (!(given_n > 0)) return force_n;
   state.impulse_ns -= given_n * touch.tick_s;
   return force_n + given_n;
+}
+
+SpaceVector friction_force(const float* number, WallState& state, float normal_n, SpaceVector normal,
+                           SpaceVector place_m, SpaceVector speed_mps) noexcept {
+  const auto along = [&](SpaceVector v) { return v - dot(normal, v) * normal; };
+  const float stiffness = number[kPieceStiffness],
+              per_coefficient_m = stiffness > 0 ? normal_n / stiffness : 0,
+              holds_m = number[kPieceStaticFriction] * per_coefficient_m,
+              slipped_m = number[kPieceKineticFriction] * per_coefficient_m;
+  const SpaceVector last_m = state.last_m;
+  state.last_m = place_m;
+  const SpaceVector viscous_n = normal_n > 0 ? -number[kPieceViscous] * along(speed_mps) : SpaceVector{};
+  if (!(holds_m > 0)) {
+    state.anchor_m = place_m;
+    return viscous_n;
+  }
+  const SpaceVector held = along(place_m - state.anchor_m);
+  const float most = holds_m * holds_m;
+  if (dot(held, held) <= most) return viscous_n - stiffness * held;
+  SpaceVector stretch = along(last_m - state.anchor_m), way = along(place_m - last_m);
+  const auto shorten_to = [&](float to_m) {
+    const float size = length(stretch);
+    if (size > to_m) stretch = (to_m / size) * stretch;
+  };
+  if (dot(stretch, stretch) > most) shorten_to(slipped_m);  // the force along the normal fell
+  for (int i = 0; i < kMostSlips; ++i) {
+    const SpaceVector end = stretch + way;
+    if (!(dot(end, end) > most)) break;
+    const float a = dot(way, way), b = dot(stretch, way), c = dot(stretch, stretch) - most,
+                root = __builtin_sqrtf(b * b - a * c), part = b > 0 ? -c / (root + b) : (root - b) / a;
+    if (!(part > 0 && part < 1)) break;
+    stretch = stretch + part * way;
+    way = (1 - part) * way;
+    shorten_to(slipped_m);
+  }
+  stretch = stretch + way;
+  if (dot(stretch, stretch) > most) {
+    const float slip_m = holds_m - slipped_m, slips = (length(stretch) - slipped_m) / slip_m;
+    const float rest = within(slips, 0, 1e6F) ? slips - static_cast<float>(static_cast<int32_t>(slips)) : 0;
+    shorten_to(slipped_m + rest * slip_m);
+  }
+  state.anchor_m = place_m - stretch;
+  return viscous_n - stiffness * stretch;
 }
 
 }  // namespace tacto::core

@@ -26,7 +26,9 @@ constexpr float kMostFieldScale = 1e15F, kMostUnits_per_m = 1e17F, kMostUnits = 
 constexpr float kMostSquaredSigma = 0x1p66F, kLeastCore = 0.24F, kMostCore = 1.45F;
 constexpr float kMostAtomForce = 1;  // N per unit
 
-constexpr float kMostPiece_kg = 100, kMostIntegral = 1e7F, kMostLeak_per_s = 1000;
+constexpr float kMostPiece_kg = 100, kMostFriction = 10, kMostIntegral = 1e7F, kMostLeak_per_s = 1000;
+constexpr float kMostTransient_n_s_per_m = 1e6F;
+constexpr float kLeastLoss = 1e-6F;  // of a transient from tick to tick
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
 
 bool is_direction(float cosine, float sine) noexcept {
@@ -76,7 +78,10 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
              within(number[kPieceArrestMass], 0, kMostPiece_kg) &&
              within(number[kPieceIntegral], 0, kMostIntegral) &&
              within(number[kPieceIntegralBound], 0, kMostKappa_n) &&
-             within(number[kPieceIntegralLeak], 0, kMostLeak_per_s);
+             within(number[kPieceIntegralLeak], 0, kMostLeak_per_s) &&
+             within(number[kPieceStaticFriction], 0, kMostFriction) &&
+             within(number[kPieceKineticFriction], 0, kMostFriction) &&
+             within(number[kPieceViscous], 0, kMostDamping_n_s_per_m);
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
       break;
@@ -191,7 +196,19 @@ SceneFault check_field(const SceneView& view, const SceneLayer& layer, uint32_t 
              : SceneFault::value;
 }
 
+// For the eigenvalues 1 - x and 1 - y of a step: x + y, x y and so their size, from numbers near 0.
+bool sound(const TransientTable& table) noexcept {
+  for (const float start : table.start_n_s_per_m)
+    if (!within(start, -kMostTransient_n_s_per_m, kMostTransient_n_s_per_m)) return false;
+  for (const float step : table.step)
+    if (!within(step, -2, 2)) return false;
+  const float sum = -(table.step[0] + table.step[3]),
+              product = table.step[0] * table.step[3] - table.step[1] * table.step[2];
+  return product >= kLeastLoss * sum && sum - product >= kLeastLoss && 4 - 2 * sum + product >= 0;
+}
+
 bool sound(const PieceTable& table, SceneLayerKind kind) noexcept {
+  if (!sound(table.transient)) return false;
   for (const float rest_m : table.rest_m)
     if (!within(rest_m, -kFarthestRest_m, kFarthestRest_m)) return false;
   const float most = kind == SceneLayerKind::quadric ? kMostCoefficient : kLargestPiece_m;

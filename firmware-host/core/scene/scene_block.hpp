@@ -69,10 +69,13 @@ enum PieceNumber : uint32_t {
   kPieceIntegral = 3,
   kPieceIntegralBound = 4,
   kPieceIntegralLeak = 5,
-  kPieceNumbers = 6
+  kPieceStaticFriction = 6,
+  kPieceKineticFriction = 7,
+  kPieceViscous = 8,
+  kPieceNumbers = 9
 };
 /// Behind these numbers of a piece: its state (WallState), 0 in a block.
-inline constexpr uint32_t kWallStateWords = 3;
+inline constexpr uint32_t kWallStateWords = 11;
 enum FieldNumber : uint32_t { kFieldScale = 0, kFieldZ = 1 };
 enum ForceMapNumber : uint32_t { kForceMapGain = 0 };
 
@@ -256,13 +259,22 @@ static_assert(sizeof(MoverTable) == 8);
 /// radius; of a sphere the radius). With the radius of the point that touches.
 enum PieceForm : uint32_t { kPieceDirection = 0, kPieceSize = 3, kPieceFormWords = 10 };
 
+/// A contact's transient, a solution of s'' + 2 a s' + W^2 s = 0: from tick to tick (s, c) += (step[0] s +
+/// step[1] c, step[2] s + step[3] c), from the speed inwards x `start` on; s is the force, c = s' / W.
+struct TransientTable {
+  float start_n_s_per_m[2] = {};  ///< 0: none
+  float step[4] = {-1, 0, 0, -1};
+};
+static_assert(sizeof(TransientTable) == 24);
+
 /// A solid in space. Its origin is at whole counts of the axes x, y and z, and a rest.
 struct PieceTable {
   int32_t origin[3] = {};
   float rest_m[3] = {};
   float form[kPieceFormWords] = {};
+  TransientTable transient;
 };
-static_assert(sizeof(PieceTable) == 64);
+static_assert(sizeof(PieceTable) == 88);
 
 /// A block that was read; it points into its memory.
 struct SceneView {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <utility>
 
+#include "playback/prepare/scene/contact_transient.hpp"
 #include "playback/stability/sampled_loop.hpp"
 
 namespace tacto::playback {
@@ -83,9 +84,8 @@ Result<core::PieceTable> table_of_piece(const Piece& piece, double point_radius_
 }
 
 void append_numbers(const Piece& piece, std::vector<float>& numbers) {
-  for (const double number : {piece.stiffness_n_per_m, piece.damping_n_s_per_m, piece.arrest_mass_kg,
-                              piece.integral_n_per_m_s, piece.integral_bound_n, piece.integral_leak_per_s})
-    numbers.push_back(static_cast<float>(number));
+  for (const auto& [name, value, changes] : schema::kWallNumbers)
+    numbers.push_back(static_cast<float>(piece.*value));
   numbers.insert(numbers.end(), core::kWallStateWords, 0.0F);
 }
 
@@ -99,6 +99,19 @@ Result<void> check_wall(const Piece& piece, const schema::Device& device, double
                           piece.name, device.name, piece.stiffness_n_per_m, piece.damping_n_s_per_m,
                           piece.integral_n_per_m_s),
               where + "/integral_n_per_m_s", "choose a smaller integral, more damping or less stiffness");
+}
+
+std::optional<std::string> cut_of_transient(const Piece& piece, const schema::Device& device,
+                                            double rate_hz) {
+  const auto transient = transient_of(piece);
+  if (!transient) return std::nullopt;
+  const double whole_to_mps = transient_whole_to_mps(*transient, device, rate_hz);
+  if (whole_to_mps >= kFastTap_mps) return std::nullopt;
+  return fmt::format(
+      "the transient of piece '{}' is whole up to contacts of {:.3g} m/s; faster ones are cut by the limits "
+      "of the device: at {:g} m/s its peak is {:.3g} N (peak force {:g} N, slew {:g} N/s)",
+      piece.name, whole_to_mps, kFastTap_mps, kFastTap_mps * transient_peak_n_s_per_m(*transient),
+      device.peak_force_n, device.slew_n_per_s);
 }
 
 }  // namespace
@@ -139,13 +152,16 @@ Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::stri
   std::vector<core::PieceTable> tables;
   for (const Piece& piece : scene.pieces) {
     const std::string at = fmt::format("{}#/pieces/{}", where, tables.size());
-    TACTO_TRY(check_wall(piece, device, rate_hz, hand, at));
+    for (const Piece& end : slider_ends(piece)) TACTO_TRY(check_wall(end, device, rate_hz, hand, at));
     layers.push_back(
         {static_cast<std::uint16_t>(kind_of_piece(piece.shape)), static_cast<std::uint16_t>(numbers.size()),
          static_cast<std::uint32_t>(tables.size() * sizeof(core::PieceTable) / sizeof(std::uint32_t))});
     append_numbers(piece, numbers);
-    const auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
+    auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
     TACTO_TRY(table);
+    const auto transient = transient_table(piece, rate_hz, at);
+    TACTO_TRY(transient);
+    table->transient = *transient;
     tables.push_back(*table);
   }
   core::SceneHeader header;
@@ -171,15 +187,26 @@ std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const sche
     if (std::ranges::find(device.axes, name, &schema::DeviceAxis::name) == device.axes.end())
       notes.push_back(fmt::format(
           "the device has no axis {0}: the hand stays at {0} = 0, and forces along {0} are left out", name));
+  for (const Piece& piece : scene.pieces)
+    if (auto note = cut_of_transient(piece, device, rate_hz)) notes.push_back(std::move(*note));
   if (!(device.axes.front().mass_kg > 0)) return notes;
+  const auto unstable = [&](const Piece& piece, double damping_n_s_per_m, const char* along) {
+    const double limit = stiffness_limit_of(device, rate_hz, hand, damping_n_s_per_m, true);
+    if (piece.stiffness_n_per_m < limit) return false;
+    notes.push_back(fmt::format(
+        "piece '{}' is unstable on this device with {}{}: its stiffness is {:.4g} N/m with {:.4g} "
+        "N s/m, the limit is {:.4g} N/m (computed, without the Coulomb friction of the device)",
+        piece.name, hand ? "hand " + hand->name : "nothing held", along, piece.stiffness_n_per_m,
+        damping_n_s_per_m, limit));
+    return true;
+  };
   for (const Piece& piece : scene.pieces) {
-    const double limit = stiffness_limit_of(device, rate_hz, hand, piece.damping_n_s_per_m, true);
-    if (piece.stiffness_n_per_m < limit) continue;
-    notes.push_back(
-        fmt::format("piece '{}' is unstable on this device with {}: its stiffness is {:.4g} N/m with {:.4g} "
-                    "N s/m, the limit is {:.4g} N/m (computed, without the Coulomb friction of the device)",
-                    piece.name, hand ? "hand " + hand->name : "nothing held", piece.stiffness_n_per_m,
-                    piece.damping_n_s_per_m, limit));
+    const std::vector<Piece> ends = slider_ends(piece);
+    std::ranges::any_of(ends, [&](const Piece& end) { return unstable(end, end.damping_n_s_per_m, ""); });
+    std::ranges::any_of(ends, [&](const Piece& end) {
+      return end.static_friction > 0 &&
+             unstable(end, end.viscous_n_s_per_m, ", along its surface where its friction holds");
+    });
   }
   return notes;
 }

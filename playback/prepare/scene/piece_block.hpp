@@ -11,7 +11,7 @@
 namespace tacto::playback {
 
 /// The block of the pieces for one device. `where` is the scene's file. Errors: unsuitable, by JSON pointer:
-/// a place beyond 2^30 counts; a wall whose integral is unstable (wall_growth()).
+/// a place beyond 2^30 counts; a wall whose integral is unstable (wall_growth()); transient_table().
 schema::Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::string& where,
                                              const schema::Device& device, double rate_hz,
                                              const std::optional<schema::Hand>& hand);
@@ -22,7 +22,8 @@ schema::Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const s
 double wall_growth(const schema::Piece& piece, const schema::Device& device, double rate_hz,
                    const std::optional<schema::Hand>& hand);
 
-/// Warnings, one line each: axes that the device does not have; walls beyond stiffness_limit_of().
+/// Warnings, one line each: axes that the device does not have; walls beyond stiffness_limit_of(); transients
+/// that the limits of the device cut at kFastTap_mps.
 std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const schema::Device& device,
                                           double rate_hz, const std::optional<schema::Hand>& hand);
 

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "firmware-host/core/scene/piece.hpp"
+#include "playback/prepare/scene/contact_transient.hpp"
 
 namespace tacto::playback {
 
@@ -187,13 +189,21 @@ ExactGhost::Held ExactGhost::nearest_face(const Piece& piece, const SpaceMetres&
   return {surface.normal, size_of(sum_of(at, -1, hand_m))};
 }
 
+// In closed form, where the kernel goes from tick to tick.
+double ExactGhost::transient_n(const Piece& piece, const Wall& wall) const {
+  const auto transient = transient_of(piece);
+  return transient ? wall.contact_mps * force_at(*transient, wall.ticks * tick_s_) : 0;
+}
+
 double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, double outside_m,
                               double speed_mps) const {
+  if (wall.touched) ++wall.ticks;
   if (!(held.depth_m > 0)) {
     if (outside_m > double{core::kLetGo_m}) wall = {};
     return 0;
   }
-  if (!wall.touched) wall.impulse_ns = piece.arrest_mass_kg * std::max(0.0, -speed_mps);
+  if (!wall.touched) wall.contact_mps = std::max(0.0, -speed_mps);
+  if (!wall.touched) wall.impulse_ns = piece.arrest_mass_kg * wall.contact_mps;
   wall.touched = true;
   if (speed_mps >= 0) wall.impulse_ns = 0;
   double most_n = device_.peak_force_n, grain_m = 0;
@@ -206,11 +216,48 @@ double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, 
   wall.integral_n +=
       tick_s_ * (piece.integral_n_per_m_s * deep_m - piece.integral_leak_per_s * wall.integral_n);
   wall.integral_n = std::clamp(wall.integral_n, 0.0, piece.integral_bound_n);
-  const double own_n = std::max(
-      0.0, piece.stiffness_n_per_m * held.depth_m - piece.damping_n_s_per_m * speed_mps + wall.integral_n);
+  const double own_n =
+      std::max(0.0, piece.stiffness_n_per_m * held.depth_m - piece.damping_n_s_per_m * speed_mps +
+                        wall.integral_n + transient_n(piece, wall));
   const double given_n = std::clamp(most_n - own_n, 0.0, wall.impulse_ns / tick_s_);
   wall.impulse_ns -= given_n * tick_s_;
   return own_n + given_n;
+}
+
+SpaceMetres ExactGhost::friction_force(const Piece& piece, Wall& wall, double normal_n,
+                                       const SpaceMetres& normal, const SpaceMetres& place_m,
+                                       const SpaceMetres& speed_mps) const {
+  constexpr int kSlips = 100'000, kHalvings = 60;
+  const auto along = [&](const SpaceMetres& v) { return sum_of(v, -inner(v, normal), normal); };
+  const SpaceMetres last_m = std::exchange(wall.last_m, place_m);
+  const SpaceMetres viscous_n = sum_of({}, normal_n > 0 ? -piece.viscous_n_s_per_m : 0, along(speed_mps));
+  const double by_m = piece.stiffness_n_per_m > 0 ? normal_n / piece.stiffness_n_per_m : 0;
+  const double holds_m = piece.static_friction * by_m, slipped_m = piece.kinetic_friction * by_m;
+  if (!(holds_m > 0)) wall.anchor_m = place_m;
+  SpaceMetres stretch = along(sum_of(place_m, -1, wall.anchor_m));
+  if (size_of(stretch) > holds_m) {
+    stretch = along(sum_of(last_m, -1, wall.anchor_m));
+    SpaceMetres way = along(sum_of(place_m, -1, last_m));
+    const auto shorten_to = [&](double to_m) {
+      if (const double size = size_of(stretch); size > to_m) stretch = sum_of({}, to_m / size, stretch);
+    };
+    if (size_of(stretch) > holds_m) shorten_to(slipped_m);
+    for (int i = 0; i < kSlips && slipped_m < holds_m; ++i) {
+      if (!(size_of(sum_of(stretch, 1, way)) > holds_m)) break;
+      double before = 0, after = 1;
+      for (int half = 0; half < kHalvings; ++half) {
+        const double middle = (before + after) / 2;
+        (size_of(sum_of(stretch, middle, way)) > holds_m ? after : before) = middle;
+      }
+      stretch = sum_of(stretch, after, way);
+      way = sum_of({}, 1 - after, way);
+      shorten_to(slipped_m);
+    }
+    stretch = sum_of(stretch, 1, way);
+    shorten_to(holds_m);
+    wall.anchor_m = sum_of(place_m, -1, stretch);
+  }
+  return sum_of(viscous_n, -piece.stiffness_n_per_m, stretch);
 }
 
 SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {
@@ -225,7 +272,9 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
     if (adds) held[i] = nearest_face(piece, hand_m);
     const double force_n = wall_force(piece, walls_[i], held[i], surface_at(piece, hand_m).distance_m,
                                       inner(held[i].normal, speed_mps));
+    const SpaceMetres on = adds ? sum_of(hand_m, held[i].depth_m, held[i].normal) : ghost_m_;
     sum = sum_of(sum, force_n, held[i].normal);
+    sum = sum_of(sum, 1, friction_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
   }
   return sum;
 }

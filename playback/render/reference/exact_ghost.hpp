@@ -12,9 +12,10 @@ namespace tacto::playback {
 
 using SpaceMetres = std::array<double, 3>;
 
-/// The contract of core::GhostPoint and core::wall_force, by other methods: the planes that hold the ghost by
-/// Hildreth's iteration over all that it touches, the entry into a piece by samples and bisection, curved
-/// surfaces by many small steps instead of a closed form. Slow; not for the tick.
+/// The contract of core::GhostPoint, core::wall_force and core::friction_force, by other methods: the planes
+/// that hold the ghost by Hildreth's iteration over all that it touches, the entry into a piece by samples
+/// and bisection, curved surfaces by many small steps instead of a closed form, each slip of the friction by
+/// bisection. Slow; not for the tick.
 class ExactGhost {
  public:
   /// Keeps references to both.
@@ -28,6 +29,9 @@ class ExactGhost {
   struct Wall {
     double integral_n = 0, impulse_ns = 0;
     bool touched = false;
+    double contact_mps = 0;  // inwards
+    int ticks = 0;           // since the first one of the contact
+    SpaceMetres anchor_m = {}, last_m = {};
   };
   struct Surface {
     double distance_m = 0;
@@ -42,8 +46,12 @@ class ExactGhost {
   std::vector<Held> follow(const SpaceMetres& hand_m);
   Held shortest_way_out(const schema::Piece& piece, const SpaceMetres& hand_m) const;
   Held nearest_face(const schema::Piece& piece, const SpaceMetres& hand_m) const;
+  double transient_n(const schema::Piece& piece, const Wall& wall) const;
   double wall_force(const schema::Piece& piece, Wall& wall, const Held& held, double outside_m,
                     double speed_mps) const;
+  SpaceMetres friction_force(const schema::Piece& piece, Wall& wall, double normal_n,
+                             const SpaceMetres& normal, const SpaceMetres& place_m,
+                             const SpaceMetres& speed_mps) const;
 
   const PreparedScene& scene_;
   const schema::Device& device_;

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/scene/piece_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/report/value_text.hpp"
+#include "spatial/picture/draw/axes.hpp"
+#include "spatial/picture/draw/canvas.hpp"
+#include "spatial/picture/draw/colours.hpp"
+#include "spatial/picture/draw/display_unit.hpp"
+#include "spatial/picture/draw/fitted_text.hpp"
+
+namespace tacto::analysis {
+
+using schema::Piece;
+using schema::PieceShape;
+using spatial::Canvas;
+using spatial::Colour;
+using spatial::Point;
+using Place = std::array<double, 3>;
+
+namespace {
+
+constexpr double kPageWidth = 520, kPageMargin = 14, kMapLeft = 62, kMapHeight = 230, kBelowMap = 60;
+constexpr double kLine = 13, kSwatch = 10, kIndent = 18;
+const spatial::TextStyle kMapTitle{.size = 9.5, .bold = true}, kWords{.size = 9};
+const char* const kAxes[] = {"x", "y", "z"};
+
+// Right and up on the page, and across it.
+struct Section {
+  std::size_t right, up, across;
+  const char* from;
+};
+constexpr Section kSections[] = {
+    {0, 1, 2, "from above"}, {0, 2, 1, "from the front"}, {1, 2, 0, "from the side"}};
+
+double inner(const Place& a, const Place& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+bool is_solid(const Piece& piece, const Place& place_m) {
+  const Place p = {place_m[0] - piece.x_m, place_m[1] - piece.y_m, place_m[2] - piece.z_m};
+  const double along = inner(piece.direction, p) / std::sqrt(inner(piece.direction, piece.direction));
+  switch (piece.shape) {
+    case PieceShape::plane:
+      return along < 0 && (piece.thickness_m == 0 || along > -piece.thickness_m);
+    case PieceShape::sphere:
+      return inner(p, p) < piece.radius_m * piece.radius_m;
+    case PieceShape::cylinder:
+      return inner(p, p) - along * along < piece.radius_m * piece.radius_m;
+    case PieceShape::quadric:
+      break;
+  }
+  const auto& c = piece.coefficients;
+  const auto [x, y, z] = p;
+  return c[0] * x * x + c[1] * y * y + c[2] * z * z + c[3] * x * y + c[4] * y * z + c[5] * x * z + c[6] * x +
+             c[7] * y + c[8] * z + c[9] <
+         0;
+}
+
+Place place_of(const Piece& piece) {
+  return {piece.x_m, piece.y_m, piece.z_m};
+}
+
+Place middle_of(const schema::Scene& scene) {
+  const bool round =
+      std::ranges::any_of(scene.pieces, [](const Piece& p) { return p.shape != PieceShape::plane; });
+  Place sum = {};
+  double count = 0;
+  for (const Piece& piece : scene.pieces) {
+    if (round && piece.shape == PieceShape::plane) continue;
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += place_of(piece)[i];
+    ++count;
+  }
+  for (double& each : sum) each /= count;
+  return sum;
+}
+
+PlaneRange range_of(const PiecePicture& picture, const Section& section) {
+  constexpr double kAround_m = 0.02;
+  PlaneRange range;
+  Place low = {}, high = {};
+  for (const char* const name : kAxes) {
+    if (!picture.device) break;
+    const auto axis = std::ranges::find(picture.device->axes, name, &schema::DeviceAxis::name);
+    const auto i = static_cast<std::size_t>(name[0] - 'x');
+    if (axis != picture.device->axes.end()) low[i] = axis->travel_from_m, high[i] = axis->travel_to_m;
+  }
+  if (picture.device) {
+    range.add({low[section.right], low[section.up]});
+    range.add({high[section.right], high[section.up]});
+    return range;
+  }
+  for (const Piece& piece : picture.scene.pieces) {
+    const Place at = place_of(piece);
+    const double around_m = piece.radius_m + kAround_m;
+    range.add({at[section.right] - around_m, at[section.up] - around_m});
+    range.add({at[section.right] + around_m, at[section.up] + around_m});
+  }
+  return range;
+}
+
+std::uint32_t pixel_of(const Colour& colour, double ink) {
+  const auto byte = [&](double value) {
+    return static_cast<std::uint32_t>(std::lround(255 * (1 - ink * (1 - value))));
+  };
+  return byte(colour.red) << 16 | byte(colour.green) << 8 | byte(colour.blue);
+}
+
+// Solid pieces in a light colour; pixels at their borders in the full one.
+spatial::Pixels pixels_of(const std::vector<int>& solid, const PixelGrid& grid) {
+  constexpr double kInside = 0.25;
+  spatial::Pixels pixels{grid.columns, grid.rows, {}};
+  pixels.rgb.reserve(solid.size());
+  const auto at = [&](int column, int row) {
+    return solid[static_cast<std::size_t>(std::clamp(row, 0, grid.rows - 1)) *
+                     static_cast<std::size_t>(grid.columns) +
+                 static_cast<std::size_t>(std::clamp(column, 0, grid.columns - 1))];
+  };
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const int here = at(column, row);
+      const bool border = at(column - 1, row) != here || at(column + 1, row) != here ||
+                          at(column, row - 1) != here || at(column, row + 1) != here;
+      pixels.rgb.push_back(
+          here < 0 ? 0xFFFFFF
+                   : pixel_of(spatial::series_colour(static_cast<std::size_t>(here)), border ? 1 : kInside));
+    }
+  return pixels;
+}
+
+std::string words_of(const Piece& piece) {
+  std::string words = fmt::format("{}: {}", piece.name, to_string(piece.shape));
+  const auto add = [&](const std::string& key, double value) {
+    words += fmt::format(", {} {}", cli::labels_of({key}).front(),
+                         spatial::typeset(cli::cell_text(key, cli::ReportPrinter::Value(value))));
+  };
+  if (piece.radius_m > 0) add("radius_m", piece.radius_m);
+  if (piece.thickness_m > 0) add("thickness_m", piece.thickness_m);
+  for (const schema::PieceNumber& each : schema::kWallNumbers) {
+    const auto [name, number, changes, whole] = named_number(piece, each);
+    if (number.value == 0 && !number.slider) continue;
+    add(each.name, number.value);
+    if (number.slider) words += fmt::format(" (slider {:g} to {:g})", number.slider->from, number.slider->to);
+  }
+  if (piece.transient || piece.hand_surface) words += ", contact transient";
+  return words;
+}
+
+}  // namespace
+
+std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
+                                  const Place& through_m) {
+  const Section& section = *std::ranges::find(kSections, across, &Section::across);
+  std::vector<int> solid;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const Point at = grid.centre_m(column, row);
+      Place place_m = through_m;
+      place_m[section.right] = at.x, place_m[section.up] = at.y;
+      int last = -1;
+      for (std::size_t i = 0; i < scene.pieces.size(); ++i)
+        if (is_solid(scene.pieces[i], place_m)) last = static_cast<int>(i);
+      solid.push_back(last);
+    }
+  return solid;
+}
+
+PieceFigure::PieceFigure(PiecePicture picture)
+    : picture_(std::move(picture)), through_m_(picture_.through_m.value_or(middle_of(picture_.scene))) {
+  heading_ = spatial::heading_of(picture_.name, "Pieces of a scene in space: three sections", "",
+                                 kPageWidth - 2 * kPageMargin);
+  double top = kPageMargin + heading_.height() + kLine;
+  for (std::size_t i = 0; i < maps_.size(); ++i) {
+    maps_[i] = scene_map(range_of(picture_, kSections[i]), {kMapLeft, top},
+                         {kPageWidth - kMapLeft - kPageMargin, kMapHeight});
+    top = maps_[i].box.bottom() + kBelowMap;
+  }
+}
+
+double PieceFigure::draw_list(Canvas& canvas) const {
+  double y = maps_.back().box.bottom() + kBelowMap - kLine;
+  for (std::size_t i = 0; i < picture_.scene.pieces.size(); ++i) {
+    canvas.fill({kPageMargin, y + (kLine - kSwatch) / 2, kSwatch, kSwatch}, spatial::series_colour(i));
+    for (const std::string& line : spatial::wrapped(canvas, words_of(picture_.scene.pieces[i]), kWords,
+                                                    kPageWidth - 2 * kPageMargin - kIndent)) {
+      canvas.text({kPageMargin + kIndent, y + kLine / 2}, line, kWords);
+      y += kLine;
+    }
+  }
+  return y;
+}
+
+spatial::Size PieceFigure::page() const {
+  Canvas ruler(spatial::PictureFormat::png, {1, 1});
+  return {kPageWidth, std::ceil(draw_list(ruler) + kPageMargin)};
+}
+
+schema::Result<void> PieceFigure::draw(Canvas& canvas) const {
+  draw_heading(canvas, {kPageMargin, kPageMargin}, heading_);
+  for (std::size_t i = 0; i < maps_.size(); ++i) {
+    const Section& section = kSections[i];
+    const SceneMap& map = maps_[i];
+    canvas.text({map.box.x, map.box.y - kLine / 2},
+                fmt::format("{}, through {} = {}", section.from, kAxes[section.across],
+                            spatial::typeset(schema::length_for_people(through_m_[section.across]))),
+                kMapTitle);
+    canvas.image(map.box,
+                 pixels_of(solid_in_section(picture_.scene, map.grid, section.across, through_m_), map.grid));
+    const auto count = [](double length) { return std::max(2, static_cast<int>(length / 45)); };
+    canvas.frame(map.box, {});
+    draw_axis(canvas, map.box, spatial::Side::bottom, map.x, ticks_of(map.x, count(map.box.width)));
+    draw_axis(canvas, map.box, spatial::Side::left, map.y, ticks_of(map.y, count(map.box.height)));
+    draw_caption(canvas, map.box, spatial::Side::bottom, fmt::format("{} (mm)", kAxes[section.right]), 26);
+    draw_caption(canvas, map.box, spatial::Side::left, fmt::format("{} (mm)", kAxes[section.up]), 42);
+  }
+  draw_list(canvas);
+  return {};
+}
+
+}  // namespace tacto::analysis

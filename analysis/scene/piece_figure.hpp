@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The picture of a scene of pieces in space: three sections through one place, along the axes.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/scene/scene_map.hpp"
+#include "data-schema/device/device.hpp"
+#include "data-schema/scene/scene.hpp"
+#include "spatial/picture/draw/heading.hpp"
+#include "spatial/picture/figure.hpp"
+
+namespace tacto::analysis {
+
+/// A scene of pieces; without a device the sections show 20 mm around all pieces.
+struct PiecePicture {
+  std::string name;  ///< of the scene, for the title
+  schema::Scene scene;
+  std::optional<schema::Device> device;            ///< whose travel is shown
+  std::optional<std::array<double, 3>> through_m;  ///< default: the middle of the balls, pipes and quadrics
+};
+
+/// In a section across axis `across`, 0 to 2: which piece is solid in each pixel, from 0 on, or -1. Where
+/// several are, it is the last one. Pieces are drawn as they are, without the radius of the point.
+std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
+                                  const std::array<double, 3>& through_m);
+
+class PieceFigure : public spatial::Figure {
+ public:
+  explicit PieceFigure(PiecePicture picture);
+
+  spatial::Size page() const override;
+  schema::Result<void> draw(spatial::Canvas& canvas) const override;
+
+  const std::array<double, 3>& through_m() const { return through_m_; }
+  const SceneMap& map(std::size_t section) const { return maps_.at(section); }
+
+ private:
+  double draw_list(spatial::Canvas& canvas) const;  ///< returns its lower end
+
+  PiecePicture picture_;
+  std::array<double, 3> through_m_ = {};
+  spatial::Heading heading_;
+  std::array<SceneMap, 3> maps_;  ///< from above, from the front, from the side
+};
+
+}  // namespace tacto::analysis

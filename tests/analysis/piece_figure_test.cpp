@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The picture of pieces in space: what is solid in a section, against closed forms, and that it is drawn.
+#include "analysis/scene/piece_figure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tacto::analysis {
+namespace {
+
+using schema::Piece;
+using schema::PieceShape;
+
+Piece shape_of(PieceShape shape, double size_m) {
+  Piece piece;
+  piece.name = "a", piece.shape = shape;
+  if (shape == PieceShape::plane) piece.thickness_m = size_m;
+  if (shape == PieceShape::sphere || shape == PieceShape::cylinder) piece.radius_m = size_m;
+  if (shape == PieceShape::quadric) piece.coefficients = {1, 1, 1, 0, 0, 0, 0, 0, 0, -size_m * size_m};
+  return piece;
+}
+
+// 0.1 mm pixels around the origin.
+constexpr PixelGrid kAround{-0.03, 0.03, 1e-4, 600, 600};
+
+double area_mm2(const Piece& piece, std::size_t across, std::array<double, 3> through_m) {
+  schema::Scene scene;
+  scene.pieces = {piece};
+  return 0.01 *
+         static_cast<double>(std::ranges::count(solid_in_section(scene, kAround, across, through_m), 0));
+}
+
+TEST(PieceFigureTest, SectionsHaveTheAreasOfTheirShapes) {
+  const double cut = std::numbers::pi * (20.0 * 20 - 12.0 * 12);  // 12 mm from the centre
+  for (const PieceShape round : {PieceShape::sphere, PieceShape::quadric})
+    for (std::size_t across = 0; across < 3; ++across) {
+      std::array<double, 3> through_m = {};
+      through_m[across] = 0.012;
+      EXPECT_NEAR(area_mm2(shape_of(round, 0.02), across, through_m) / cut, 1, 2e-3) << across;
+      through_m[across] = 0.021;
+      EXPECT_EQ(area_mm2(shape_of(round, 0.02), across, through_m), 0) << across;
+    }
+  // Along z: a disc from above, a strip from the front and from the side.
+  const Piece pipe = shape_of(PieceShape::cylinder, 0.01);
+  EXPECT_NEAR(area_mm2(pipe, 2, {0, 0, 9}) / (std::numbers::pi * 100), 1, 2e-3);
+  EXPECT_NEAR(area_mm2(pipe, 1, {0, 0.006, 0}), 60 * 16, 7);
+  EXPECT_NEAR(area_mm2(pipe, 0, {0.006, 0, 0}), 60 * 16, 7);
+  const Piece plate = shape_of(PieceShape::plane, 0.005);
+  EXPECT_NEAR(area_mm2(plate, 1, {}), 60 * 5, 7);
+  EXPECT_NEAR(area_mm2(plate, 2, {0, 0, -0.001}), 60 * 60, 1e-6);
+  EXPECT_EQ(area_mm2(plate, 2, {0, 0, 0.001}), 0);
+}
+
+TEST(PieceFigureTest, ASceneIsDrawnThroughTheMiddleOfItsBalls) {
+  PiecePicture picture;
+  picture.name = "room";
+  picture.scene.pieces = {shape_of(PieceShape::plane, 0), shape_of(PieceShape::sphere, 0.01),
+                          shape_of(PieceShape::cylinder, 0.01)};
+  picture.scene.pieces[1].x_m = 0.02, picture.scene.pieces[2].z_m = 0.04;
+  const PieceFigure figure(picture);
+  EXPECT_EQ(figure.through_m(), (std::array<double, 3>{0.01, 0, 0.02}));
+  EXPECT_TRUE(spatial::to_png(figure));
+  picture.device = *schema::read_device("arm");
+  picture.through_m = {0.02, 0, 0};
+  EXPECT_TRUE(spatial::to_svg(PieceFigure(picture)));
+  EXPECT_EQ(PieceFigure(picture).through_m(), *picture.through_m);
+}
+
+}  // namespace
+}  // namespace tacto::analysis
