@@ -35,13 +35,13 @@ function connect() {
   socket.onmessage = (event) => hear(JSON.parse(event.data));
   socket.onclose = () => {
     server = false;
-    forget();
+    forget('tactograph live does not answer');
     setTimeout(connect, RECONNECT_MS);
   };
 }
 
-function forget() {
-  for (const {fail} of waiting.values()) fail(new Error('the daemon is gone: no answer'));
+function forget(why) {
+  for (const {fail} of waiting.values()) fail(new Error(why));
   waiting = new Map();
   steering = {here: false, taken: false};
   status = {};
@@ -86,7 +86,7 @@ function hearDaemon(message) {
   daemon = message;
   if (daemon.here) return say('');
   const steers = steering;
-  forget();
+  forget(errorText(daemon));
   steering = steers;
   say(errorText(daemon));
 }

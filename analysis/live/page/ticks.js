@@ -105,7 +105,7 @@ function transform(re, im) {
 /** The state for shape and colour, and in words. `daemon`: the event of that name, null before it; `silent_ms`: since the
  * last word of the daemon; `server`: whether the page is connected. */
 export function stateOf({server, daemon, state, silent_ms}) {
-  if (!server) return {state: 'lost', words: 'lost: tactograph live has ended; trying again'};
+  if (!server) return {state: 'lost', words: 'lost: tactograph live does not answer; if you start it again, open its new address'};
   if (daemon === null) return {state: 'lost', words: 'connecting'};
   if (!daemon.here) return {state: 'lost', words: 'lost: no daemon; trying again'};
   const runs = state === 'armed' || state === 'playing';
