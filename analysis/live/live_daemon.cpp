@@ -2,6 +2,7 @@
 #include "analysis/live/live_daemon.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -22,6 +23,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kTryEvery{500};
 constexpr double kDeadManS = 2;
+constexpr int kMostReads = 100;          // of 4 KB: more than a socket's buffer
 constexpr std::size_t kMostToSay = 500;  // texts for a page that does not read, 1 MB; then events are lost
 constexpr const char* kHelloId = "\"hello\"";
 
@@ -136,11 +138,11 @@ Result<LiveDaemon::Link> LiveDaemon::connect(void (LiveDaemon::*take)(std::strin
     const Link link = weak.lock();
     if (!link) return false;
     const auto is_used = [&] { return link == watching_ || link == steering_; };
-    link->receive();
-    while (is_used()) {
-      const auto line = link->take_line();
-      if (!line) break;
-      (this->*take)(*line);
+    // To the end: of a connection that has ended, the server watches no longer.
+    pollfd more{link->descriptor(), POLLIN, 0};
+    for (int i = 0; i < kMostReads && is_used() && !link->silent() && poll(&more, 1, 0) > 0; ++i) {
+      link->receive();
+      for (auto line = link->take_line(); line && is_used(); line = link->take_line()) (this->*take)(*line);
     }
     if (is_used() && (link->silent() || link->is_endless())) (this->*lost)();
     return is_used();
