@@ -33,6 +33,8 @@ cli::Action declare_live(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--port", options->port, "Port on 127.0.0.1; default: a free one from 7230 on")
       ->check(CLI::Range(1, 65535));
+  app.add_option("--socket", options->socket, "Socket of the daemon tactographd, for the page of the device")
+      ->capture_default_str();
   return [options] { return serve_live(*options); };
 }
 

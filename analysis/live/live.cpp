@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analysis/live/live_access.hpp"
+#include "analysis/live/live_daemon.hpp"
 #include "analysis/live/live_folder.hpp"
 #include "analysis/live/live_session.hpp"
 #include "data-schema/base/module.hpp"
@@ -30,6 +31,7 @@ using schema::fail;
 using schema::Result;
 
 constexpr int kFirstPort = 7230, kPortsTried = 20;
+constexpr std::string_view kDaemonPath = "/daemon";
 
 std::string_view type_of_asset(std::string_view name) {
   constexpr std::pair<std::string_view, std::string_view> kTypes[] = {
@@ -87,7 +89,9 @@ class Page final : public WebConversation {
   Result<schema::ControlFields> obey(std::string_view text) {
     const auto request = schema::parse_live_request(text);
     TACTO_TRY(request);
-    return request->verb == schema::LiveVerb::begin ? begin(request->made) : keep();
+    if (request->verb == schema::LiveVerb::begin) return begin(request->made);
+    if (request->verb == schema::LiveVerb::keep) return keep();
+    return fail(ErrorKind::usage, "this page is its own device", "request", "steer the daemon on its page");
   }
   Result<schema::ControlFields> begin(std::size_t made) {
     session_.reset();
@@ -117,13 +121,18 @@ class Page final : public WebConversation {
 
 class Site {
  public:
-  Site(const LiveOptions& options, int port) : access_(port), folder_(options.folder, options.transducer) {
+  Site(const LiveOptions& options, int port)
+      : access_(port), folder_(options.folder, options.transducer), daemon_(options.socket, folder_) {
     folder_.refresh();
   }
   WebSite handlers() {
     return {[this](const WebRequest& request) { return answer(request); },
-            [this] { return std::make_unique<Page>(folder_, kept_); }};
+            [this](const WebRequest& request) -> std::unique_ptr<WebConversation> {
+              if (request.path == kDaemonPath) return daemon_.converse();
+              return std::make_unique<Page>(folder_, kept_);
+            }};
   }
+  LiveDaemon& daemon() { return daemon_; }
   const LiveAccess& access() const { return access_; }
   std::size_t kept() const { return kept_; }
 
@@ -136,7 +145,9 @@ class Site {
     return answer;
   }
   WebAnswer content(const WebRequest& request) {
-    if (request.upgrade) return request.path == "/session" ? WebAnswer() : not_found();
+    if (request.upgrade)
+      return request.path == "/session" || request.path == kDaemonPath ? WebAnswer() : not_found();
+    if (request.path == "/loaded") return loaded();
     if (request.path == "/textures") {
       folder_.refresh();
       return json_answer(folder_.list_json());
@@ -176,6 +187,11 @@ class Site {
     return number ? json_answer(figures_json(*number, **folder_.made(*number)))
                   : error_answer(number.error());
   }
+  WebAnswer loaded() {
+    folder_.refresh();
+    const auto map = folder_.map_of(daemon_.loaded());
+    return map ? bytes_answer(*map) : error_answer(map.error());
+  }
   WebAnswer bytes_of(std::string_view part, std::size_t number) {
     const auto made = folder_.made(number);
     if (!made) return error_answer(made.error());
@@ -189,6 +205,7 @@ class Site {
 
   LiveAccess access_;
   LiveFolder folder_;
+  LiveDaemon daemon_;
   std::size_t kept_ = 0;
 };
 
@@ -238,7 +255,14 @@ Result<LiveSummary> run_live(const LiveOptions& options,
   TACTO_TRY(served);
   const std::string address = served->site->access().address();
   announce(address);
-  served->server->serve(stop);
+  LiveDaemon& daemon = served->site->daemon();
+  daemon.watch_with([&server = *served->server](int descriptor, std::function<bool()> readable) {
+    server.watch(descriptor, std::move(readable));
+  });
+  served->server->serve([&] {
+    daemon.step();
+    return stop();
+  });
   return LiveSummary{address, served->site->kept()};
 }
 

@@ -7,13 +7,15 @@
 #include <string>
 
 #include "data-schema/base/error.hpp"
+#include "playback/control/control_socket.hpp"
 
 namespace tacto::analysis {
 
 struct LiveOptions {
   std::string folder = ".";
   std::string transducer = "wiertlewski2011";
-  std::optional<int> port;  ///< default: the first free one of twenty
+  std::optional<int> port;                             ///< default: the first free one of twenty
+  std::string socket = playback::kUsualControlSocket;  ///< of the daemon
 };
 
 struct LiveSummary {

@@ -59,11 +59,31 @@ std::string LiveFolder::list_json() const {
   return list.json();
 }
 
+Result<std::string> LiveFolder::file(std::size_t index) const {
+  if (index < files_.size()) return fs::absolute(files_[index]).lexically_normal().string();
+  return schema::fail(schema::ErrorKind::not_found, "there is no texture of this index",
+                      std::to_string(index), "load the page again");
+}
+
+Result<std::vector<float>> LiveFolder::map_of(const std::string& full_name) const {
+  for (const std::string& own : files_) {
+    std::error_code ignored;
+    if (!fs::path(full_name).is_absolute() ||
+        (!fs::equivalent(own, full_name, ignored) &&
+         !fs::equivalent(own, full_name + std::string(kEnding), ignored)))
+      continue;
+    const auto texture = schema::read_texture(own);
+    TACTO_TRY(texture);
+    return texture_map(texture->signal.values);
+  }
+  return schema::fail(schema::ErrorKind::not_found, "is no texture of this folder", full_name,
+                      "start tactograph live with the folder of the daemon's textures");
+}
+
 Result<std::size_t> LiveFolder::make(std::size_t index) {
-  if (index >= files_.size())
-    return schema::fail(schema::ErrorKind::not_found, "there is no texture of this index",
-                        std::to_string(index), "load the page again");
-  auto texture = make_live_texture(files_[index], transducer_);
+  const auto own = file(index);
+  TACTO_TRY(own);
+  auto texture = make_live_texture(*own, transducer_);
   TACTO_TRY(texture);
   made_.emplace(next_, std::make_shared<const LiveTexture>(std::move(*texture)));
   if (made_.size() > kMostMade) made_.erase(made_.begin());

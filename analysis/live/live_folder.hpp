@@ -20,6 +20,11 @@ class LiveFolder {
   void refresh();
   /// A JSON array of the textures, by name: index, name, length; one that can't be read has the reason.
   std::string list_json() const;
+  /// The full name of a texture's sidecar. Errors: not_found.
+  schema::Result<std::string> file(std::size_t index) const;
+  /// The texture with this full name, with or without its ending, if it is of this folder: its map, as
+  /// LiveTexture::map. Errors: not_found; as read_texture.
+  schema::Result<std::vector<float>> map_of(const std::string& full_name) const;
   /// Prepares a texture from its files as they are now, under a new number. Errors: not_found; as
   /// make_live_texture.
   schema::Result<std::size_t> make(std::size_t index);

@@ -75,7 +75,17 @@ Result<std::vector<std::vector<std::uint8_t>>> upload_frames(const playback::Pre
   return frames;
 }
 
-std::vector<float> map_of(const std::vector<double>& values) {
+playback::PrepareOptions page_options() {
+  playback::PrepareOptions options;
+  options.rate_hz = browser::kRateHz;
+  options.metres_per_count = browser::kMetresPerCount;
+  options.most_samples = browser::kProfileSamples;
+  return options;
+}
+
+}  // namespace
+
+std::vector<float> texture_map(const std::vector<double>& values) {
   std::vector<float> map;
   for (std::size_t column = 0; column < kMapColumns; ++column) {
     const std::size_t first = std::min(column * values.size() / kMapColumns, values.size() - 1);
@@ -87,16 +97,6 @@ std::vector<float> map_of(const std::vector<double>& values) {
   }
   return map;
 }
-
-playback::PrepareOptions page_options() {
-  playback::PrepareOptions options;
-  options.rate_hz = browser::kRateHz;
-  options.metres_per_count = browser::kMetresPerCount;
-  options.most_samples = browser::kProfileSamples;
-  return options;
-}
-
-}  // namespace
 
 std::vector<float> tray_response(const schema::Transducer& transducer) {
   constexpr std::size_t kLength = 4 * kTrayTaps;
@@ -127,7 +127,7 @@ Result<LiveTexture> make_live_texture(const std::string& file, const std::string
   auto upload = upload_frames(live.program.prepared, file);
   TACTO_TRY(upload);
   live.upload = std::move(*upload);
-  live.map = map_of(texture->signal.values);
+  live.map = texture_map(texture->signal.values);
   live.tray = tray_response(live.program.session.transducer);
   return live;
 }

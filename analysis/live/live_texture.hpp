@@ -29,6 +29,9 @@ inline constexpr std::size_t kTrayTaps = 512;
 /// Errors: as make_program and upload.
 schema::Result<LiveTexture> make_live_texture(const std::string& file, const std::string& transducer);
 
+/// LiveTexture::map.
+std::vector<float> texture_map(const std::vector<double>& values);
+
 /// The impulse response of the tray at the page's rate.
 std::vector<float> tray_response(const schema::Transducer& transducer);
 

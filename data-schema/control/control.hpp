@@ -41,6 +41,7 @@ struct ControlRequest {
   std::optional<double> x_m, y_m;  ///< move: of its centre
   std::optional<double> over_s;    ///< set, move
   std::string text;                ///< mark
+  bool ticks = false;              ///< watch: also the ticks
   /// Filled in by the socket; not in the line.
   std::string asked_by;  ///< the user, for a saved gain
   std::uint64_t client = 0;

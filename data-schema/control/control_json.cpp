@@ -147,7 +147,7 @@ Result<void> check_members(const ControlRequest& request) {
 
 // A member of another request was meant for that request: it must not be ignored, because it may be a limit.
 Result<void> check_taken(const Json& body, ControlVerb verb) {
-  constexpr std::array<std::pair<const char*, ControlVerb>, 16> kTakenBy = {
+  constexpr std::array<std::pair<const char*, ControlVerb>, 17> kTakenBy = {
       {{"version", ControlVerb::hello},
        {"token", ControlVerb::hello},
        {"file", ControlVerb::load},
@@ -163,7 +163,8 @@ Result<void> check_taken(const Json& body, ControlVerb verb) {
        {"value", ControlVerb::set},
        {"x_m", ControlVerb::move},
        {"y_m", ControlVerb::move},
-       {"text", ControlVerb::mark}}};
+       {"text", ControlVerb::mark},
+       {"ticks", ControlVerb::watch}}};
   const auto word = [](ControlVerb of) { return kControlVerbs[static_cast<std::size_t>(of)]; };
   for (const auto& [name, taker] : kTakenBy)
     if (body.contains(name) && verb != taker)
@@ -211,6 +212,7 @@ ControlRequest request_of(const Json& body) {
   request.y_m = asked_number(body, "y_m");
   request.over_s = asked_number(body, "over_s");
   request.text = text_or(body, "text");
+  request.ticks = body.value("ticks", false);
   for (const TextureEnds ends : {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop})
     if (text_or(body, "ends") == to_string(ends)) request.ends = ends;
   return request;
@@ -311,6 +313,7 @@ std::string control_request_line(const ControlRequest& request) {
   if (request.y_m) body["y_m"] = *request.y_m;
   if (request.over_s) body["over_s"] = *request.over_s;
   put_text(body, "text", request.text);
+  if (request.ticks) body["ticks"] = true;
   return line_of(body);
 }
 

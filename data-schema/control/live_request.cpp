@@ -3,11 +3,32 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "data-schema/json/json_schema.hpp"
 #include "data-schema/json/json_text.hpp"
 #include "data-schema/json/known_members.hpp"
 
 namespace tacto::schema {
+namespace {
+
+constexpr std::array<std::string_view, 10> kLiveVerbs = {"begin", "keep", "steer", "status", "load",
+                                                         "arm",   "play", "stop",  "disarm", "gain"};
+
+// The member that a request cannot do without.
+std::string_view needed_by(LiveVerb verb) {
+  if (verb == LiveVerb::begin) return "made";
+  if (verb == LiveVerb::load) return "texture";
+  return verb == LiveVerb::gain ? "times_default" : "";
+}
+
+template <class Value>
+std::optional<Value> value_in(const Json& body, const char* name) {
+  return body.contains(name) ? std::optional(body[name].get<Value>()) : std::nullopt;
+}
+
+}  // namespace
 
 Result<LiveRequest> parse_live_request(std::string_view text) {
   const std::string where = "request";
@@ -17,13 +38,18 @@ Result<LiveRequest> parse_live_request(std::string_view text) {
   if (const auto faults = breaches(*body, *kRules); !faults.empty())
     return fail(ErrorKind::malformed, faults.front().what,
                 fmt::format("{}#{}", where, faults.front().pointer),
-                R"(send {"request":"begin","made":0} or {"request":"keep"})");
+                fmt::format("the requests are {}", fmt::join(kLiveVerbs, ", ")));
   TACTO_TRY(check_members_known(*kRules, *body, where));
   LiveRequest request;
-  request.verb = text_or(*body, "request") == "begin" ? LiveVerb::begin : LiveVerb::keep;
-  if (request.verb == LiveVerb::begin && !body->contains("made"))
-    return fail(ErrorKind::malformed, "begin contains no texture", where + "#/made", "add its number");
+  request.verb =
+      static_cast<LiveVerb>(std::ranges::find(kLiveVerbs, text_or(*body, "request")) - kLiveVerbs.begin());
+  if (const std::string_view needed = needed_by(request.verb); !needed.empty() && !body->contains(needed))
+    return fail(ErrorKind::malformed, fmt::format("the request contains no '{}'", needed),
+                fmt::format("{}#/{}", where, needed), "add it");
   request.made = body->value("made", std::size_t{0});
+  request.id = value_in<std::int64_t>(*body, "id");
+  request.texture = value_in<std::size_t>(*body, "texture");
+  request.times_default = value_in<double>(*body, "times_default");
   return request;
 }
 

@@ -3,7 +3,9 @@
 // errors are those of the control protocol (control.hpp).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "data-schema/base/error.hpp"
@@ -11,11 +13,15 @@
 namespace tacto::schema {
 
 /// begin: from now on the page sends the log of a playback of this texture. keep: the log becomes a session.
-enum class LiveVerb { begin, keep };
+/// steer: this page steers the daemon from now on. The others are the daemon's.
+enum class LiveVerb { begin, keep, steer, status, load, arm, play, stop, disarm, gain };
 
 struct LiveRequest {
   LiveVerb verb = LiveVerb::keep;
-  std::size_t made = 0;  ///< begin: the number of the prepared texture
+  std::size_t made = 0;                 ///< begin: the number of the prepared texture
+  std::optional<std::int64_t> id;       ///< comes back in the daemon's answer
+  std::optional<std::size_t> texture;   ///< load: index in the folder
+  std::optional<double> times_default;  ///< gain
 };
 
 /// Errors: malformed, naming the member, also an unknown one.

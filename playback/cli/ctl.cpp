@@ -25,6 +25,7 @@
 #include "playback/cli/play_reports.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/control/control_connection.hpp"
+#include "playback/control/control_socket.hpp"
 #include "playback/host-loop/time_histogram.hpp"
 #include "playback/player/scene_command.hpp"
 
@@ -234,14 +235,13 @@ std::string clipped_to(const std::string& text, std::size_t rows, std::size_t co
   return clipped;
 }
 
-constexpr const char* kUsualSocket = "/run/tactographd/control";
 constexpr int kEventMs = 500;
 constexpr std::array<std::string_view, 14> kCtlActions = {"hello",  "load",   "arm",   "play", "stop",
                                                           "disarm", "gain",   "set",   "move", "raise",
                                                           "mark",   "status", "watch", "top"};
 
 struct CtlOptions {
-  std::string socket = kUsualSocket, action, what, value;  // value: of set, move
+  std::string socket = kUsualControlSocket, action, what, value;  // value: of set, move
   std::optional<schema::TextureEnds> ends;
   std::optional<double> over_s;  // of set, move
   std::optional<double> at_m, fade_s;

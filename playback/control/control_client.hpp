@@ -46,6 +46,7 @@ class ControlClient {
   bool by_tcp = false;                ///< it has to give the token
   std::optional<std::uint32_t> user;  ///< of a client by the Unix socket
   bool greeted = false, watching = false;
+  bool watches_ticks = false;            ///< if it is watching
   bool disconnect_after_answer = false;  ///< it is disconnected after its answer
   bool gone = false;                     ///< it is disconnected and waits for its removal from the list
   bool for_stop = false;                 ///< it has a place that is reserved for `stop` and `disarm`

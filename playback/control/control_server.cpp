@@ -25,7 +25,7 @@ constexpr std::chrono::seconds kGreetsWithin{5}, kStopPlaceFor{5}, kWrongTokenWa
 constexpr std::ptrdiff_t kStopPlaces = 8;  // per socket
 constexpr std::ptrdiff_t kStrangers = 4;   // by TCP, without the token
 constexpr std::size_t kListening = 2;      // descriptors before the clients'
-constexpr std::size_t kMostEvents = 1000;  // between two serve(); usual are ten a second
+constexpr std::size_t kMostEvents = 1000;  // between two serve(); usual are sixty a second
 
 const schema::Error kTooLong{ErrorKind::malformed,
                              fmt::format("a line has more than {} bytes", schema::kMostControlLine),
@@ -222,6 +222,7 @@ std::optional<std::string> ControlServer::answer_to(ControlClient& client, const
     client.greeted = true;
   }
   client.watching = client.watching || request->verb == ControlVerb::watch;
+  client.watches_ticks = client.watches_ticks || request->ticks;
   return schema::control_reply_line(id, **fields);
 }
 
@@ -316,14 +317,20 @@ void ControlServer::serve(int timeout_ms, const Handler& handler) {
 }
 
 void ControlServer::publish(std::string_view event, const schema::ControlFields& fields) {
-  if (events_.size() < kMostEvents) events_.push_back(schema::control_event_line(event, fields));
+  if (events_.size() < kMostEvents)
+    events_.push_back({schema::control_event_line(event, fields), event == "ticks"});
 }
 
 void ControlServer::deliver() {
-  for (const std::string& line : events_)
-    std::erase_if(clients_,
-                  [&](ControlClient& client) { return client.watching && !client.send_event(line); });
+  for (const auto& [line, ticks] : events_)
+    std::erase_if(clients_, [&, &text = line, only = ticks](ControlClient& client) {
+      return (only ? client.watches_ticks : client.watching) && !client.send_event(text);
+    });
   events_.clear();
+}
+
+bool ControlServer::ticks_watched() const {
+  return std::ranges::any_of(clients_, &ControlClient::watches_ticks);
 }
 
 }  // namespace tacto::playback

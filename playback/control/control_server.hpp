@@ -60,7 +60,10 @@ class ControlServer {
   /// Whether the lines of the waiting client contain a `stop` or `disarm`, which must not wait.
   bool stop_waits() const;
   /// Sent to all watchers at the end of the next serve(), because requests publish while clients are served.
+  /// The event `ticks` is for those that asked for ticks.
   void publish(std::string_view event, const schema::ControlFields& fields);
+  /// Whether a client asked for ticks.
+  bool ticks_watched() const;
   /// Lines received so far from one client, by the `client` of its requests; without one, from all clients
   /// that sent hello.
   LinesReceived lines_received(std::optional<std::uint64_t> client) const;
@@ -97,7 +100,11 @@ class ControlServer {
   std::vector<ControlClient> clients_;  // in the order of connecting
   std::uint64_t last_id_ = 0;
   std::uint64_t lines_ = 0;  // of clients that sent hello
-  std::vector<std::string> events_;
+  struct Event {
+    std::string line;
+    bool ticks = false;
+  };
+  std::vector<Event> events_;
 };
 
 }  // namespace tacto::playback

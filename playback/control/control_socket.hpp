@@ -10,6 +10,9 @@
 
 namespace tacto::playback {
 
+/// Where the daemon of this computer listens, and where its clients look for it.
+inline constexpr const char* kUsualControlSocket = "/run/tactographd/control";
+
 /// A listening Unix socket to which only its user, or also the members of a group, may connect. Replaces one
 /// on which no process listens. Errors: usage: a path too long, an unknown group; unsuitable: another process
 /// listens there; cannot_write.

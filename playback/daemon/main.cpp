@@ -143,6 +143,7 @@ void tell(ControlServer& server, const ServiceManager& manager, std::string_view
 void serve_until_asked(ControlServer& server, Service& service, ServiceManager& manager) {
   const auto handle = [&](const schema::ControlRequest& request) { return service.handle(request); };
   for (double served_s = steady_s(); stop_asked == 0;) {
+    service.stream_ticks(server.ticks_watched());
     const bool busy = service.step(kStepS);
     if (const auto answer = service.finished_load()) server.answer_late(*answer);
     server.serve(busy ? 0 : service.loading() ? kLoadingMs : kIdleMs, handle);

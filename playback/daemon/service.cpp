@@ -108,7 +108,7 @@ void add_loop(ControlFields& fields, const HostLoopStatus& loop) {
   if (!loop.device_fault.empty()) fields.emplace_back("device_fault", loop.device_fault);
 }
 
-constexpr double kStatusEveryS = 0.1;
+constexpr double kStatusEveryS = 0.1, kTicksEveryS = 0.02;
 constexpr double kLeastSaved = 1e-6;  // of a gain; one below it, or above its inverse, is a mistake
 constexpr double kObeyedS = 0.2, kLookS = 0.01;  // a device's ticks come every 10 ms, and a ramp takes 20 ms
 
@@ -232,6 +232,7 @@ Result<void> Service::connect() {
     why_ = why;
     publish_("state", {{"state", std::string(to_string(state))}, {"why", why}, {"device_s", device_s}});
   });
+  player_->listen_to_ticks([this](const schema::SessionTick& tick) { ticks_.take(tick); });
   return {};
 }
 
@@ -324,6 +325,7 @@ Result<ControlFields> Service::load(Program program) {
   const double passes_to_hz = program.prepared.passes_to_hz;
   const double gain_m_per_n = program.gain_m_per_n, default_m_per_n = program.default_gain_m_per_n;
   const double period_m = program.prepared.loop_period_m, seam_m = program.prepared.loop_seam_m;
+  const double start_m = program.start_m, length_m = program.length_m;
   const schema::SessionTexture alone = program.session.textures.front();
   const auto filter = program.decision ? std::optional(program.decision->chosen.inverse) : std::nullopt;
   const bool changes = player_->state() != PlayerState::idle;
@@ -333,14 +335,15 @@ Result<ControlFields> Service::load(Program program) {
   passes_to_hz_ = passes_to_hz;
   loaded_gain_m_per_n_ = gain_m_per_n, default_gain_m_per_n_ = default_m_per_n;
   loop_period_m_ = period_m, loop_seam_m_ = seam_m;
+  start_m_ = start_m, length_m_ = length_m;
   scene_path_ = scene_path;
   alone_ = alone;
   filter_ = filter;
   saved_gain_ = default_m_per_n / gain_m_per_n;
   fields.emplace_back("changed", changes);
   if (changes) fields.emplace_back("fade_s", fade_s);
-  if (changes) return fields;
-  TACTO_TRY(player_->gain(1));
+  if (!changes) TACTO_TRY(player_->gain(1));
+  publish_idle_status();
   return fields;
 }
 
@@ -355,6 +358,7 @@ Result<ControlFields> Service::load(ForceProgram forces) {
   loaded_ = load_request_.file;
   loop_period_m_ = loop_seam_m_ = 0;
   filter_.reset();
+  publish_idle_status();
   return fields;
 }
 
@@ -400,7 +404,22 @@ Result<ControlFields> Service::disarm(const std::string& why) {
   const auto disarmed = player_->disarm(why);
   if (disarmed) stay_.end();
   if (recorded && !player_->recorded()) report_losses(player_->last_session(), true);
+  publish_ticks(true);
   return done(disarmed, PlayerState::idle);
+}
+
+// In idle no status is published by time.
+void Service::publish_idle_status() {
+  if (player_->state() == PlayerState::idle) publish_("status", status());
+}
+
+double Service::rate_hz() const {
+  const auto& forces = player_->forces();
+  return forces ? forces->session.rate_hz : config_.rate_hz;
+}
+
+void Service::publish_ticks(bool last) {
+  for (const ControlFields& fields : ticks_.take_events(rate_hz(), last)) publish_("ticks", fields);
 }
 
 // Stores G_psi with the user and the date: the gains that were loaded, times the factor. Saving again does
@@ -453,6 +472,7 @@ Result<ControlFields> Service::gain(const ControlRequest& request) {
   TACTO_TRY(player_->gain(*factor));
   const double device_s = 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns);
   publish_("gain", {{"gain", *factor}, {"device_s", device_s}});
+  publish_idle_status();
   ControlFields fields{{"gain", *factor}, {"saved", request.save}};
   add_present_gain(fields, *factor);
   return fields;
@@ -552,7 +572,11 @@ ControlFields Service::status() const {
   if (!why_.empty()) fields.emplace_back("why", why_);
   if (status.state != PlayerState::idle) add_stay(fields, stay_.rules());
   if (!loaded_.empty()) fields.emplace_back("loaded", loaded_);
-  if (!loaded_.empty() && !forces) fields.emplace_back("passes_to_hz", passes_to_hz_);
+  if (!loaded_.empty() && !forces) {
+    fields.emplace_back("passes_to_hz", passes_to_hz_);
+    fields.emplace_back("start_m", start_m_);
+    fields.emplace_back("length_m", length_m_);
+  }
   add_loop(fields, loop_period_m_, loop_seam_m_);
   if (!status.session.empty()) fields.emplace_back("session", status.session);
   fields.emplace_back("round_trip_s", status.round_trip_s);
@@ -562,7 +586,7 @@ ControlFields Service::status() const {
   else
     add_limits(fields, status);
   if (status.recorder) add_recorder(fields, *status.recorder);
-  fields.emplace_back("period_s", 1 / (forces ? forces->session.rate_hz : config_.rate_hz));
+  fields.emplace_back("period_s", 1 / rate_hz());
   if (here_) {
     HostLoopStatus loop = here_.loop->status();
     loop.missed_ticks -= missed_before_;
@@ -611,6 +635,10 @@ bool Service::step(double timeout_s) {
     next_status_s_ = now_s + kStatusEveryS;
     if (const auto counts = player_->recorded()) report_losses(*counts, false);
     publish_("status", status());
+  }
+  if (const double now_s = client().transport().now_s(); now_s >= next_ticks_s_) {
+    next_ticks_s_ = now_s + kTicksEveryS;
+    publish_ticks(player_->state() == PlayerState::lost);
   }
   return true;
 }

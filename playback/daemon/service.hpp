@@ -9,6 +9,7 @@
 #include "data-schema/control/control.hpp"
 #include "data-schema/control/daemon_config.hpp"
 #include "playback/control/stay_watch.hpp"
+#include "playback/daemon/tick_stream.hpp"
 #include "playback/player/host_loop_client.hpp"
 #include "playback/player/player.hpp"
 #include "playback/player/player_device.hpp"
@@ -33,6 +34,8 @@ class Service {
   void give_up_load() { loader_.give_up(); }
   /// Whether another thread prepares a texture; do not wait for it.
   bool loading() const { return loader_.busy(); }
+  /// Whether the event `ticks` is published.
+  void stream_ticks(bool on) { ticks_.turn(on); }
   /// Supervises for about `timeout_s`. Returns false at once if there is nothing to supervise.
   bool step(double timeout_s);
   /// Which lines stay() needs: those of one client, or of all.
@@ -67,6 +70,9 @@ class Service {
   schema::Result<void> save_gain(double factor, const std::string& who);
   schema::Result<void> save_scene_gain(double factor, const std::string& who);
   void report_losses(const RecorderCounts& counts, bool last);
+  void publish_ticks(bool last);
+  void publish_idle_status();
+  double rate_hz() const;
   schema::Result<schema::ControlFields> disarm(const std::string& why = {});
   schema::Result<schema::ControlFields> done(const schema::Result<void>& result, PlayerState target);
   schema::ControlFields hello() const;
@@ -96,9 +102,11 @@ class Service {
   // With their signs; 1 before a load, so that the factor alone has the sign.
   double loaded_gain_m_per_n_ = 1, default_gain_m_per_n_ = 1;
   double loop_period_m_ = 0, loop_seam_m_ = 0;
-  schema::SessionTexture alone_;  // the loaded texture, if it is not a scene
-  double saved_gain_ = 1;         // the gain in the scene's file, as a factor of the loaded gain
-  double next_status_s_ = 0;
+  double start_m_ = 0, length_m_ = 0;  // of the loaded texture
+  schema::SessionTexture alone_;       // the loaded texture, if it is not a scene
+  double saved_gain_ = 1;              // the gain in the scene's file, as a factor of the loaded gain
+  double next_status_s_ = 0, next_ticks_s_ = 0;
+  TickStream ticks_;
   std::optional<std::uint64_t> reported_lost_;  // of the session; none if nothing was lost
 };
 

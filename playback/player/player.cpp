@@ -425,6 +425,7 @@ void Player::take(const Message& message) {
     if (loop != nullptr) row.lateness_ns = loop->lateness_ns(number);
     view_.take(row);
     recorder_->tick(row);
+    if (tick_listener_) tick_listener_(row);
     if (tray_.run() != nullptr && loop != nullptr) loop->take_samples(number, *tray_.run());
   }
   const PlayerState seen = state_of(view_.last().flags);

@@ -64,6 +64,10 @@ class Player {
   /// The step of the encoder, or of the first axis of a device that has only forces, m per count.
   double metres_per_count() const { return metres_per_count_; }
   void listen(Listener listener) { listener_ = std::move(listener); }
+  /// Called with each tick of a session, on the player's thread.
+  void listen_to_ticks(std::function<void(const schema::SessionTick&)> listener) {
+    tick_listener_ = std::move(listener);
+  }
 
   /// In idle: stores the program for arm(), which uploads it. Armed or playing: cross-fades to its texture
   /// over `fade_s` (0 to 10 s); gain() is not changed. Errors: as check_upload(), in idle; usage, in another
@@ -147,6 +151,7 @@ class Player {
   PlayerOptions options_;
   double metres_per_count_ = 0;
   Listener listener_;
+  std::function<void(const schema::SessionTick&)> tick_listener_;
   std::optional<Program> program_;
   std::optional<ForceProgram> forces_;  // or this one
   std::unique_ptr<LiveLimits> limits_;  // if requested; declared before the recorder, which uses it

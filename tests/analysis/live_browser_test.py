@@ -17,6 +17,7 @@ import tempfile
 import time
 
 from live_client import WebSocket, live
+from run_daemon import Client, daemon, prepare_files
 from tacto import in_folder, run, run_json
 
 ODD_NAME = "<img src=x onerror=alert(1)>"
@@ -244,6 +245,86 @@ def check_looks(chrome):
     chrome.ask("Emulation.clearDeviceMetricsOverride")
 
 
+STROKES = "0,0.004\n0.6,0.034\n1.2,0.004\n"   # repeated without end
+JUMP = "0,0.004\n3,0.034\n3.00001,0.004\n"
+
+
+@contextlib.contextmanager
+def device_page(chrome, server, path, **changed):
+    """A daemon with a simulated finger, and the page of the device."""
+    prepare_files(**{"device": "sim:paced=1", **changed})
+    pathlib.Path("path.csv").write_text("time_s,position_m\n" + path)
+    with daemon():
+        chrome.ask("Page.navigate", url=server.address.split("?")[0] + "daemon.html")
+        chrome.wait("document.getElementById('state-word')?.textContent === 'idle' && document.querySelectorAll('#texture option').length > 0")
+        yield
+
+
+def press(chrome, name):
+    """By keyboard."""
+    chrome.wait(f"!document.getElementById('{name}').disabled")
+    chrome.value(f"document.getElementById('{name}').focus()")
+    chrome.key("Enter")
+
+
+def state(chrome, word):
+    chrome.wait(f"document.getElementById('state-word').textContent === '{word}' && document.getElementById('state').dataset.state === '{word}'")
+
+
+def play_on_device(chrome):
+    chrome.value("(() => { const t = document.getElementById('texture'); t.value = [...t.options].find((o) => o.text === 'oak').value; })()")
+    for name, word in (("load", "idle"), ("arm", "armed"), ("play", "playing")):
+        press(chrome, name)
+        state(chrome, word)
+
+
+def check_device(chrome, server):
+    with device_page(chrome, server, STROKES):
+        play_on_device(chrome)
+        assert chrome.text("loaded") == "oak" and "(simulated)" in chrome.text("device"), chrome.text("device")
+        chrome.wait("/at [0-9.]+ Hz/.test(document.getElementById('spectrum-words').textContent)")
+        places = set()
+        while len(places) < 5:  # the finger moves
+            places.add(chrome.text("place").split(",")[0])
+        client = Client()
+        before = client.must(request="status")["gain_times_default"]
+        chrome.value("document.getElementById('gain').focus()")
+        for _ in range(4):
+            chrome.key("ArrowLeft")
+        chrome.wait("document.getElementById('gain-words').textContent.startsWith('asked 0.80, effective 0.80')")
+        assert before == 1 and abs(client.must(request="status")["gain_times_default"] - 0.8) < 1e-9
+        check_names(chrome)
+        check_looks(chrome)
+        press(chrome, "pause")
+        shown = chrome.text("place")
+        time.sleep(0.5)
+        assert chrome.text("place") == shown and chrome.text("state-word") == "playing"
+        press(chrome, "pause")
+        chrome.key("Escape")
+        state(chrome, "armed")
+        press(chrome, "play")
+        state(chrome, "playing")
+        chrome.ask("Page.navigate", url="about:blank")  # the page is closed
+        assert client.wait_for("idle")["why"] == "the client that armed has closed its connection"
+        chrome.ask("Page.navigate", url=server.address.split("?")[0] + "daemon.html")
+        chrome.wait("document.getElementById('state-word')?.textContent === 'idle'")
+    chrome.wait("document.getElementById('state-word').textContent.startsWith('lost')")
+    assert "tactographd" in chrome.text("message")
+    with daemon():
+        state(chrome, "idle")  # without a reload
+
+
+def check_fault(chrome, server):
+    with device_page(chrome, server, JUMP):
+        play_on_device(chrome)
+        state(chrome, "fault")
+        fault = chrome.text("fault")
+        assert fault.startswith("fault: the encoder jumped") and "disarm and arm again" in fault, fault
+        press(chrome, "disarm")
+        state(chrome, "idle")
+        assert chrome.text("fault") == ""
+
+
 def make_textures():
     run("record", "-d", "sim:surface=C,speed=50mm/s,seed=1", "--time", "2s", "-o", "rec")
     run("spatial", "rec", "-o", "folder/C", "--stroke", "1")
@@ -260,6 +341,11 @@ def live_in_chromium():
         check_looks(chrome)
         check_without_sound(chrome)
         assert chrome.console == [], chrome.console
+    prepare_files()
+    with live(".", "--socket", "control") as server, browser(server.address) as chrome:
+        check_device(chrome, server)
+        check_fault(chrome, server)
+        assert chrome.console == [], chrome.console
 
 
 def pictures(folder):
@@ -272,6 +358,14 @@ def pictures(folder):
         for width in (1300, 400):
             for dark in (False, True):
                 chrome.picture(folder / f"live-{width}-{'dark' if dark else 'light'}.png", width, dark)
+    prepare_files()
+    on_host = {"loop": "host", "device": "sim:rate=2kHz", "most_late_percent": 100}
+    with live(".", "--socket", "control") as server, browser(server.address) as chrome, device_page(chrome, server, STROKES, **on_host):
+        play_on_device(chrome)
+        time.sleep(2)
+        for width in (1300, 400):
+            for dark in (False, True):
+                chrome.picture(folder / f"live-device-{width}-{'dark' if dark else 'light'}.png", width, dark)
 
 
 if __name__ == "__main__":

@@ -96,15 +96,21 @@ def events_come_over_a_second_connection():
     import tactograph
     run_daemon.prepare_files()
     with run_daemon.daemon(), tactograph.Daemon("control") as daemon, tactograph.Daemon("control") as watcher:
-        events = watcher.events()
+        events = watcher.events(ticks=True)
         daemon.load("oak")
         daemon.arm()
-        daemon.disarm()
-        states = []
-        while len(states) < 2:
+        states, ticks = [], []
+        while "idle" not in states:
             event = next(events)
             states += [event["state"]] if event["event"] == "state" else []
+            if event["event"] != "ticks":
+                continue
+            ticks += event["tick"].tolist()
+            assert len(event["tick"]) == len(event["time_ns"]) == len(event["ticks"]["drive"]) and not event["ticks"]["drive"].any()
+            if len(ticks) > 100 and daemon.status()["state"] == "armed":
+                daemon.disarm()
     assert states == ["armed", "idle"], states
+    assert ticks == list(range(len(ticks))), ticks
 
 
 def a_daemon_that_ends_is_a_connection_error():

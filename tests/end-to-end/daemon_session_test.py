@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """tactographd on an emulated device that does not keep real time: from load to a session that replays, a fault, and refusals.
 What depends on real time is in daemon_test.py, daemon_load_test.py and daemon_clients_test.py."""
+import base64
 import hashlib
 import json
 import os
@@ -62,6 +63,42 @@ def load_arm_play_stop():
     drive = ticks_of(session)["drive_v"]
     assert drive[0] == 0 and drive[-1] == 0 and np.max(np.abs(drive)) > 0.01, drive
     assert np.max(np.abs(np.diff(drive))) <= 15708 / 2000 * (1 + 1e-6), "the transducer's slew limit, V/s over ticks a second"
+
+
+def watched_ticks_are_those_of_the_session():
+    """Each tick that arrives is the session's, also at 8 kHz, where two of each 0.5 ms arrive; a daemon that nobody asks
+    sends none. Emulated time is faster than a reader, so events may be lost."""
+    tick = np.dtype([("after_ns", "<u4"), ("encoder", "<i4"), ("drive_v", "<f4"), ("flags", "<u4"), ("lateness_ns", "<i4")])
+    for rate_hz, per_cell in ((2000, None), (8000, 4)):
+        prepare_files(device=UNPACED + ",rate=8kHz", rate_hz=rate_hz)
+        with daemon():
+            client, watcher, other = Client(), Client(), Client()
+            assert other.ask(request="status", ticks=True)["error"]["fault"] == 3
+            other.must(request="watch")
+            watcher.must(request="watch", ticks=True)
+            client.must(request="load", file="oak", gain_m_per_n=0.0005)
+            session = client.must(request="arm")["session"]
+            client.must(request="play")
+            events = [watcher.next_event("ticks") for _ in range(20)]
+            client.must(request="disarm")
+            names = {event["event"] for event in other.rest_of_events()}
+            assert {"state", "status"} <= names and "ticks" not in names, names
+        table = ticks_of(session)
+        device_ns = np.round(1e9 * table["device_time_s"])
+        count = 0
+        for event in events:
+            assert event["block"] == 1 and event.get("cell_ticks") == per_cell, event
+            payload = base64.b64decode(event["ticks"])
+            first, time_ns, rows = struct.unpack_from("<QqI", payload)
+            ticks = np.frombuffer(payload, tick, rows, offset=20)
+            times = time_ns + ticks["after_ns"].astype(np.int64)
+            place = np.searchsorted(device_ns, times - 1000)  # of the table's rows; its times have nine digits
+            assert per_cell or np.array_equal(table["tick"][place], first + np.arange(rows)), (first, rows)
+            assert np.max(np.abs(device_ns[place] - times)) < 1000
+            assert np.array_equal(table["encoder_count"][place], ticks["encoder"])
+            assert np.allclose(table["drive_v"][place], ticks["drive_v"], rtol=1e-6, atol=1e-9)
+            count += rows
+        assert count > 500, count
 
 
 def a_jump_of_the_encoder_is_a_fault():
@@ -290,5 +327,5 @@ def what_is_between_the_marks_of_any_client_is_proven():
 
 
 if __name__ == "__main__":
-    for test in (load_arm_play_stop, what_is_between_the_marks_of_any_client_is_proven, a_scene_of_forces_is_played_and_set, a_jump_of_the_encoder_is_a_fault, wrong_files_are_refused):
+    for test in (load_arm_play_stop, watched_ticks_are_those_of_the_session, what_is_between_the_marks_of_any_client_is_proven, a_scene_of_forces_is_played_and_set, a_jump_of_the_encoder_is_a_fault, wrong_files_are_refused):
         tacto.in_folder(test)

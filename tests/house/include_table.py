@@ -100,7 +100,7 @@ MAY_INCLUDE = {
         "render session strokes}",
     "playback/control": "data-schema/{base control files}",
     "playback/daemon":
-        "data-schema/{base control files report scene} firmware-host/sim/planar playback/{control host-loop model "
+        "data-schema/{base control files report scene session} firmware-host/sim/planar playback/{control host-loop model "
         "player}",
     "playback/host-loop": "data-schema/{base session} firmware-host/{core/firmware core/kernel link} playback/prepare",
     "playback/model":

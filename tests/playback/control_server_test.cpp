@@ -118,5 +118,25 @@ TEST_F(ControlServing, WhoWatchesIsToldAndCanNotAsk) {
   EXPECT_EQ(handled_, std::vector{ControlVerb::watch}) << "the stop was not carried out";
 }
 
+TEST_F(ControlServing, TicksAreForThoseWhoAskedForThem) {
+  const auto plain = greeted(), curious = greeted();
+  plain->say(kWatch);
+  serve();
+  EXPECT_FALSE(server_->ticks_watched());
+  curious->say("{\"request\":\"watch\",\"ticks\":true}\n");
+  serve();
+  EXPECT_TRUE(server_->ticks_watched());
+  EXPECT_EQ(plain->heard().size() + curious->heard().size(), 2U);
+  server_->publish("ticks", {{"ticks", std::string("AAAA")}});
+  server_->publish("status", {});
+  serve();
+  EXPECT_EQ(plain->heard().size(), 1U);
+  EXPECT_EQ(curious->heard().size(), 2U);
+  curious->hang_up();
+  serve();
+  serve();
+  EXPECT_FALSE(server_->ticks_watched());
+}
+
 }  // namespace
 }  // namespace tacto::playback

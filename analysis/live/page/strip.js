@@ -14,7 +14,7 @@ function colourAt(points, part) {
 }
 
 // A canvas with as many pixels as the screen has there; `fresh` if its size has changed.
-function sized(canvas) {
+export function sized(canvas) {
   const ratio = window.devicePixelRatio || 1;
   const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio));
   const fresh = canvas.width !== width || canvas.height !== height;
@@ -22,7 +22,7 @@ function sized(canvas) {
   return {ink: canvas.getContext('2d'), width, height, ratio, fresh};
 }
 
-const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 const LOCAL_M = 0.5e-3;  // on each side: the colour is the range of the force within it
 
@@ -85,24 +85,33 @@ export function drawFinger(canvas, view, place_m, touches) {
 const TRACE_CELLS = 1000;  // of 2 ms
 
 export class Trace {
-  constructor(canvas) {
+  constructor(canvas, cells = TRACE_CELLS) {
     this.canvas = canvas;
+    this.count = cells;
     this.clear(1);
   }
   /** `full_m` is at the upper edge. */
   clear(full_m) {
     this.full_m = full_m;
-    this.cells = new Float32Array(2 * TRACE_CELLS);
+    this.cells = new Float32Array(2 * this.count);
     this.at = 0;
   }
   add(cells) {
     for (let i = 0; i < cells.length; i += 2) {
       this.cells[2 * this.at] = cells[i];
       this.cells[2 * this.at + 1] = cells[i + 1];
-      this.at = (this.at + 1) % TRACE_CELLS;
+      this.at = (this.at + 1) % this.count;
     }
   }
-  draw() {
+  /** The largest magnitude of the last `shown` cells. */
+  peak(shown = this.count) {
+    let most = 0;
+    for (let i = this.count - shown; i < this.count; ++i)
+      for (const k of [0, 1]) most = Math.max(most, Math.abs(this.cells[2 * ((this.at + i) % this.count) + k]) || 0);
+    return most;
+  }
+  /** The last `shown` cells. Those that are NaN are left out. */
+  draw(shown = this.count) {
     const {ink, width, height, ratio} = sized(this.canvas);
     ink.clearRect(0, 0, width, height);
     const middle = height / 2, scale = middle * 0.95 / this.full_m;
@@ -110,10 +119,11 @@ export class Trace {
     ink.fillRect(0, middle, width, 1);
     ink.fillStyle = css('--trace');
     for (let x = 0; x < width; ++x) {
-      const first = Math.floor(x / width * TRACE_CELLS), end = Math.max(first + 1, Math.floor((x + 1) / width * TRACE_CELLS));
+      // From the last cell before this pixel on, so that neighbours meet.
+      const first = Math.max(0, Math.floor(x / width * shown) - 1), end = Math.max(first + 1, Math.floor((x + 1) / width * shown));
       let least = Infinity, most = -Infinity;
       for (let i = first; i < end; ++i) {
-        const cell = 2 * ((this.at + i) % TRACE_CELLS);
+        const cell = 2 * ((this.at + this.count - shown + i) % this.count);
         least = Math.min(least, this.cells[cell]);
         most = Math.max(most, this.cells[cell + 1]);
       }

@@ -2,14 +2,15 @@
 #include "analysis/live/server/web_server.hpp"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <libwebsockets.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <deque>
 #include <new>
+#include <set>
 
 namespace tacto::analysis {
 namespace {
@@ -23,12 +24,26 @@ struct Exchange {
   WebAnswer answer;
   std::size_t sent = 0;
   std::unique_ptr<WebConversation> conversation;
-  std::string message;             // received so far
-  std::deque<std::string> to_say;  // WebSocket texts
+  std::string message;  // received so far
 };
 struct Place {
   Exchange* exchange;
 };
+struct Server {
+  const WebSite& site;
+  std::set<lws*> sockets;  // WebSockets that are open
+};
+
+Server& server_of(lws* wsi) {
+  return *static_cast<Server*>(lws_vhost_user(lws_get_vhost(wsi)));
+}
+
+// Conversations may have texts for each other's WebSockets.
+void send_what_is_to_say(const Server& server) {
+  for (lws* const wsi : server.sockets)
+    if (!static_cast<Place*>(lws_wsi_user(wsi))->exchange->conversation->to_say.empty())
+      lws_callback_on_writable(wsi);
+}
 
 std::string header_of(lws* wsi, lws_token_indexes token) {
   std::string text(static_cast<std::size_t>(std::max(0, lws_hdr_total_length(wsi, token))), '\0');
@@ -116,20 +131,19 @@ int receive(lws* wsi, Exchange& exchange, std::string_view part) {
   std::string reply = lws_frame_is_binary(wsi) != 0
                           ? exchange.conversation->receive_bytes({bytes, message.size()})
                           : exchange.conversation->receive_text(message);
-  if (reply.empty()) return 0;
-  exchange.to_say.push_back(std::move(reply));
-  lws_callback_on_writable(wsi);
+  if (!reply.empty()) exchange.conversation->to_say.push_back(std::move(reply));
+  send_what_is_to_say(server_of(wsi));
   return 0;
 }
 
-int speak(lws* wsi, Exchange& exchange) {
-  if (exchange.to_say.empty()) return 0;
-  const std::string text = std::move(exchange.to_say.front());
-  exchange.to_say.pop_front();
+int speak(lws* wsi, std::deque<std::string>& to_say) {
+  if (to_say.empty()) return 0;
+  const std::string text = std::move(to_say.front());
+  to_say.pop_front();
   std::vector<unsigned char> message(LWS_PRE + text.size());
   std::copy(text.begin(), text.end(), message.begin() + LWS_PRE);
   if (lws_write(wsi, message.data() + LWS_PRE, text.size(), LWS_WRITE_TEXT) < 0) return -1;
-  if (!exchange.to_say.empty()) lws_callback_on_writable(wsi);
+  if (!to_say.empty()) lws_callback_on_writable(wsi);
   return 0;
 }
 
@@ -143,27 +157,29 @@ int refuse_upgrade(lws* wsi, WebAnswer answer) {
 }
 
 int handle(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) {
-  lws_vhost* const vhost = wsi == nullptr ? nullptr : lws_get_vhost(wsi);
-  const auto* const site = vhost == nullptr ? nullptr : static_cast<const WebSite*>(lws_vhost_user(vhost));
   auto* const place = static_cast<Place*>(user);
   switch (reason) {
     case LWS_CALLBACK_HTTP:
-      return begin_answer(wsi, *place, site->answer(request_of(wsi, false)));
+      return begin_answer(wsi, *place, server_of(wsi).site.answer(request_of(wsi, false)));
     case LWS_CALLBACK_HTTP_WRITEABLE:
       return continue_answer(wsi, *place);
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE: {
-      WebAnswer answer = site->answer(request_of(wsi, true));
+      WebAnswer answer = server_of(wsi).site.answer(request_of(wsi, true));
       return answer.status == 200 ? 0 : refuse_upgrade(wsi, std::move(answer));
     }
     case LWS_CALLBACK_ESTABLISHED:
       if (place->exchange == nullptr) place->exchange = new Exchange;
-      place->exchange->conversation = site->converse();
+      place->exchange->conversation = server_of(wsi).site.converse(request_of(wsi, true));
+      server_of(wsi).sockets.insert(wsi);
+      send_what_is_to_say(server_of(wsi));
       return 0;
     case LWS_CALLBACK_RECEIVE:
       return receive(wsi, *place->exchange, {static_cast<const char*>(in), size});
     case LWS_CALLBACK_SERVER_WRITEABLE:
-      return speak(wsi, *place->exchange);
+      return speak(wsi, place->exchange->conversation->to_say);
     case LWS_CALLBACK_CLOSED:
+      server_of(wsi).sockets.erase(wsi);
+      [[fallthrough]];
     case LWS_CALLBACK_CLOSED_HTTP:
     case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
       if (place != nullptr) {
@@ -174,6 +190,20 @@ int handle(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::siz
     default:
       return 0;
   }
+}
+
+// Of a descriptor that is watched; its user data are what to call.
+int handle_descriptor(lws* wsi, lws_callback_reasons reason, void*, void*, std::size_t) {
+  if (reason != LWS_CALLBACK_RAW_RX_FILE && reason != LWS_CALLBACK_RAW_CLOSE_FILE) return 0;
+  auto* const readable = static_cast<std::function<bool()>*>(lws_get_opaque_user_data(wsi));
+  if (reason == LWS_CALLBACK_RAW_CLOSE_FILE) {
+    lws_set_opaque_user_data(wsi, nullptr);
+    delete readable;
+    return 0;
+  }
+  const bool goes_on = readable != nullptr && (*readable)();
+  send_what_is_to_say(server_of(wsi));
+  return goes_on ? 0 : -1;
 }
 
 // libwebsockets does not report that a port is taken, so it is tried before.
@@ -192,13 +222,13 @@ bool is_free(int port) {
 
 class LibwebsocketsServer final : public WebServer {
  public:
-  LibwebsocketsServer(int port, const WebSite& site) {
+  LibwebsocketsServer(int port, const WebSite& site) : server_{site, {}} {
     lws_set_log_level(0, nullptr);
     lws_context_creation_info about{};
     about.port = port;
     about.iface = "127.0.0.1";
     about.protocols = kProtocols;
-    about.user = const_cast<WebSite*>(&site);
+    about.user = &server_;
     about.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_IPV6;
     about.gid = static_cast<gid_t>(-1);
     about.uid = static_cast<uid_t>(-1);
@@ -216,14 +246,25 @@ class LibwebsocketsServer final : public WebServer {
     while (!stop()) {
       lws_sul_schedule(
           context_, 0, &timer, [](lws_sorted_usec_list_t*) {}, kWaitMs * LWS_US_PER_MS);
+      send_what_is_to_say(server_);
       if (lws_service(context_, 0) < 0) return;
     }
     lws_sul_cancel(&timer);
   }
 
+  void watch(int descriptor, std::function<bool()> readable) override {
+    lws_sock_file_fd_type watched{};
+    watched.filefd = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+    lws* const wsi = lws_adopt_descriptor_vhost(lws_get_vhost_by_name(context_, "default"),
+                                                LWS_ADOPT_RAW_FILE_DESC, watched, "descriptor", nullptr);
+    if (wsi != nullptr) lws_set_opaque_user_data(wsi, new std::function<bool()>(std::move(readable)));
+  }
+
  private:
   static constexpr lws_protocols kProtocols[] = {{"http", handle, sizeof(Place), 4096, 0, nullptr, 0},
+                                                 {"descriptor", handle_descriptor, 0, 0, 0, nullptr, 0},
                                                  {nullptr, nullptr, 0, 0, 0, nullptr, 0}};
+  Server server_;
   lws_context* context_ = nullptr;
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <span>
@@ -36,13 +37,15 @@ class WebConversation {
   /// Return the text to send, or none.
   virtual std::string receive_text(std::string_view text) = 0;
   virtual std::string receive_bytes(std::span<const std::uint8_t> bytes) = 0;
+  /// Texts that are sent next, in this order. Add to them on the thread of serve() only.
+  std::deque<std::string> to_say;
 };
 
 /// Called on the thread of serve(). They do not throw.
 struct WebSite {
   /// A WebSocket is accepted if the answer's status is 200; its body is not used then.
   std::function<WebAnswer(const WebRequest& request)> answer;
-  std::function<std::unique_ptr<WebConversation>()> converse;
+  std::function<std::unique_ptr<WebConversation>(const WebRequest& request)> converse;
 };
 
 inline constexpr std::size_t kMostWebMessage = 16384;  ///< bytes; a longer message closes the WebSocket
@@ -53,6 +56,9 @@ class WebServer {
   virtual ~WebServer() = default;
   /// Serves until `stop` returns true; it is called at least every 50 ms.
   virtual void serve(const std::function<bool()>& stop) = 0;
+  /// On the thread of serve(): calls `readable` whenever the descriptor can be read, until it returns false.
+  /// It uses a duplicate of the descriptor.
+  virtual void watch(int descriptor, std::function<bool()> readable) = 0;
 };
 
 inline constexpr const char* kWebModule = "tactograph-web.so";

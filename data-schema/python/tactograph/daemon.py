@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A client of tactographd (the protocol: playback/daemon/CONTROL.md)."""
+import base64
 import json
 import socket
+
+from tactograph.session import ticks_in
 
 _KINDS = ("internal", "usage", "not_found", "malformed", "unsuitable", "newer_version", "cannot_write", "device")
 
@@ -13,6 +16,14 @@ class DaemonProblem(RuntimeError):
         self.what, self.where, self.remedy = error["what"], error.get("where", ""), error.get("remedy", "")
         self.kind = _KINDS[error["fault"]]
         super().__init__(": ".join(filter(None, (self.where, self.what))) + (f"; {self.remedy}" if self.remedy else ""))
+
+
+def _decoded(event):
+    if event["event"] == "ticks":
+        event["tick"], event["time_ns"], event["ticks"] = ticks_in(event["block"], base64.b64decode(event["ticks"]))
+        if "cell_ticks" in event:
+            del event["tick"]
+    return event
 
 
 class Daemon:
@@ -57,10 +68,16 @@ class Daemon:
     def status(self):
         return self.ask("status")
 
-    def events(self):
-        """The events from now on, as dicts; the connection is then for events only."""
-        self.ask("watch")
-        return map(json.loads, self._lines)
+    def events(self, ticks=False):
+        """The events from now on, as dicts; the connection is then for events only.
+
+        ticks: also the event "ticks", 50 times a second, with arrays: `tick` (since arming), `time_ns` (of the device) and the
+        structured array `ticks` with `encoder_count`, `drive` (V), `flags`, `lateness_ns`; of a scene of forces
+        `encoder_count` and `force` (N) of each axis. From 6 kHz on it has `cell_ticks` and no `tick`: the least and the greatest
+        drive of each 0.5 ms.
+        """
+        self.ask("watch", **({"ticks": True} if ticks else {}))
+        return map(_decoded, map(json.loads, self._lines))
 
     def close(self):
         self._lines.close()

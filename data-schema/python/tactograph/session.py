@@ -62,6 +62,14 @@ def _blocks(data):
         at += _BLOCK.size + size
 
 
+def ticks_in(block, payload):
+    """(tick since arming, time of the device in ns, rows) of the payload of a block of ticks (1, or 8 of a force device)."""
+    first, time_ns, count = struct.unpack_from("<QqI", payload)
+    row = _axis_tick(struct.unpack_from("<I", payload, 20)[0]) if block == _AXIS_TICKS else _TICK
+    rows = np.frombuffer(payload, row, count, offset=24 if block == _AXIS_TICKS else 20)
+    return first + np.arange(count, dtype=np.int64), time_ns + rows["after_ns"].astype(np.int64), rows
+
+
 class _Reader:
     def __init__(self, header):
         self.header = header
@@ -77,14 +85,10 @@ class _Reader:
         return self._dataset()
 
     def _take_ticks(self, payload):
-        first, time_ns, count = struct.unpack_from("<QqI", payload)
-        rows = np.frombuffer(payload, _TICK, count, offset=20)
-        self.ticks.append((first + np.arange(count, dtype=np.int64), time_ns + rows["after_ns"].astype(np.int64), rows))
+        self.ticks.append(ticks_in(_TICKS, payload))
 
     def _take_axis_ticks(self, payload):
-        first, time_ns, count, axes = struct.unpack_from("<QqII", payload)
-        rows = np.frombuffer(payload, _axis_tick(axes), count, offset=24)
-        self.ticks.append((first + np.arange(count, dtype=np.int64), time_ns + rows["after_ns"].astype(np.int64), rows))
+        self.ticks.append(ticks_in(_AXIS_TICKS, payload))
 
     def _take_command(self, payload):
         kind = payload[16 + 3]  # the frame's type; its payload begins at byte 12
