@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -33,8 +34,10 @@ using schema::ErrorKind;
 using schema::Result;
 
 struct NewStudyOptions {
-  std::string what, stem, seed = "1";
+  std::string what, stem, seed = "1", reference;
   std::vector<std::string> textures, comparisons;
+  std::vector<double> intended;
+  schema::Goal goal = schema::Goal::least;
   schema::Existing existing = schema::Existing::keep;
 };
 
@@ -51,7 +54,8 @@ constexpr const char* kDeviceHelp =
     "Device: usb:, sim: ... (as of 'play'; an emulated finger moves at the protocol's pace)";
 constexpr const char* kAnswersHelp =
     "File with an answer on each line, its word or its key, and between them the labels (K3) of the real "
-    "samples that the operator places; default: the keys of this terminal";
+    "samples that the operator places; of ordering the numbers from least to most (2 1 3); of adjustment the "
+    "ratio that is set (0.25); default: the keys of this terminal";
 
 Report study_report(const Study& study) {
   const schema::Protocol& protocol = study.protocol;
@@ -61,6 +65,13 @@ Report study_report(const Study& study) {
     report.add("levels", protocol.levels.size());
   else if (protocol.task == schema::Task::amplitude)
     report.add("largest_ratio", protocol.largest_ratio);
+  else if (protocol.task == schema::Task::adjustment)
+    report.add("goal", schema::word_of(protocol.goal))
+        .add("smallest_ratio", protocol.smallest_ratio)
+        .add("largest_ratio", protocol.largest_ratio)
+        .add("step_db", protocol.step_db);
+  else if (protocol.task == schema::Task::ordering)
+    report.add("standards", protocol.standards.size());
   else
     report.add("standards", protocol.standards.size())
         .add("comparisons", protocol.comparisons.size())
@@ -77,26 +88,76 @@ Result<Report> warn_and_report(const Study& study) {
   return study_report(study);
 }
 
-// Takes the textures that the protocol is of.
-Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& textures) {
-  if (o.what == "stretch" && o.textures.empty() && o.comparisons.empty()) return stretch_protocol(o.seed);
-  if (o.what == "stretch")
-    return schema::fail(ErrorKind::usage, "the stimuli of stretch are computed", "--textures",
-                        "leave it out");
-  if (o.what != "identification" && o.what != "amplitude")
-    return schema::fail(ErrorKind::usage,
-                        fmt::format("'{}' is not a protocol that comes with tactograph", o.what),
-                        "experiment new", "there are: stretch, identification, amplitude");
-  if (o.what == "amplitude" && !o.comparisons.empty())
-    return schema::fail(ErrorKind::usage, "amplitude has no comparisons", "--comparisons", "leave it out");
-  for (const std::string& file : o.textures) {
+// Of a protocol that comes with tactograph, the options that only it has.
+struct KnownProtocol {
+  const char* name;
+  std::vector<std::string> options;
+};
+const std::vector<KnownProtocol> kKnownProtocols = {{"stretch", {}},
+                                                    {"identification", {"--textures", "--comparisons"}},
+                                                    {"amplitude", {"--textures"}},
+                                                    {"ordering", {"--textures", "--intended"}},
+                                                    {"adjustment", {"--textures", "--goal", "--reference"}}};
+
+Result<void> check_new_options(const NewStudyOptions& o, const std::vector<std::string>& given) {
+  const auto known = std::ranges::find(kKnownProtocols, o.what, &KnownProtocol::name);
+  if (known == kKnownProtocols.end())
+    return schema::fail(
+        ErrorKind::usage, fmt::format("'{}' is not a protocol that comes with tactograph", o.what),
+        "experiment new", "there are: stretch, identification, amplitude, ordering, adjustment");
+  for (const std::string& option : given)
+    if (std::ranges::find(known->options, option) == known->options.end())
+      return schema::fail(ErrorKind::usage, fmt::format("is no option of {}", o.what), option,
+                          "leave it out");
+  return {};
+}
+
+std::string name_of_texture(const std::string& file) {
+  return std::filesystem::path(schema::stem_of(file, ".texture")).filename().string();
+}
+
+Result<void> read_named(const std::vector<std::string>& files, NamedTextures& textures) {
+  for (const std::string& file : files) {
     auto texture = schema::read_texture(file);
     TACTO_TRY(texture);
-    const std::string name = std::filesystem::path(schema::stem_of(file, ".texture")).filename().string();
+    const std::string name = name_of_texture(file);
     if (!textures.emplace(name, std::move(*texture)).second)
       return schema::fail(ErrorKind::usage, name + " is named twice", "--textures", "name each texture once");
   }
+  return {};
+}
+
+Result<schema::Protocol> new_ordering(const NewStudyOptions& o, const NamedTextures& textures) {
+  if (!o.intended.empty() && o.intended.size() != o.textures.size())
+    return schema::fail(ErrorKind::usage,
+                        fmt::format("has {} numbers for {} textures", o.intended.size(), o.textures.size()),
+                        "--intended", "give one for each texture, in their order");
+  std::map<std::string, double> intended;
+  for (std::size_t i = 0; i < o.intended.size(); ++i)
+    intended[name_of_texture(o.textures[i])] = o.intended[i];
+  return ordering_protocol(o.seed, textures, intended);
+}
+
+Result<schema::Protocol> new_adjustment(const NewStudyOptions& o, NamedTextures& textures) {
+  if (o.textures.size() != 1)
+    return schema::fail(ErrorKind::usage, fmt::format("there are {} textures", o.textures.size()),
+                        "--textures", "name one, which is adjusted");
+  if (!o.reference.empty() && o.goal != schema::Goal::match)
+    return schema::fail(ErrorKind::usage, fmt::format("the goal {} has none", schema::word_of(o.goal)),
+                        "--reference", "leave it out, or add --goal match");
+  const std::string adjusted = name_of_texture(o.textures.front());
+  if (!o.reference.empty() && name_of_texture(o.reference) != adjusted)
+    TACTO_TRY(read_named({o.reference}, textures));
+  return adjustment_protocol(o.seed, textures, adjusted, o.goal);
+}
+
+// Takes the textures that the protocol is of.
+Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& textures) {
+  if (o.what == "stretch") return stretch_protocol(o.seed);
+  TACTO_TRY(read_named(o.textures, textures));
   if (o.what == "amplitude") return amplitude_protocol(o.seed, textures);
+  if (o.what == "ordering") return new_ordering(o, textures);
+  if (o.what == "adjustment") return new_adjustment(o, textures);
   std::vector<std::string> comparisons = o.comparisons;
   if (comparisons.empty())
     for (const auto& [name, texture] : textures) comparisons.push_back(name);
@@ -221,7 +282,7 @@ Result<Report> run_resume_study(const RunStudyOptions& o) {
                           [&](RunRequest request) { return resume_run(o.what, std::move(request)); });
 }
 
-std::string proof_in_words(const Proof& proof, const TrialQueue& queue) {
+std::string proof_in_words(const Proof& proof, const TrialQueue& queue, schema::Task task) {
   std::string words = fmt::format("{} of {} trials delivered", proof.delivered, proof.trials);
   if (proof.placed > 0)
     words += fmt::format(", {} with real samples, of which there is only the operator's word", proof.placed);
@@ -232,7 +293,8 @@ std::string proof_in_words(const Proof& proof, const TrialQueue& queue) {
   if (proof.stretch_error)
     words += fmt::format("; predicted stretch within {:.2g} of the nominal one", *proof.stretch_error);
   if (proof.ratio_error)
-    words += fmt::format("; predicted ratio within {:.2g} of the asked one", *proof.ratio_error);
+    words += fmt::format("; predicted ratio within {:.2g} of the {} one", *proof.ratio_error,
+                         task == schema::Task::adjustment ? "accepted" : "asked");
   return words +
          fmt::format("; {} of {} sessions the same to the bit", proof.same_to_the_bit, proof.sessions);
 }
@@ -306,7 +368,8 @@ Result<Report> run_prove_run(const ProveOptions& o) {
   cli::Progress progress("proving");
   const Proof proof = prove(*run, [&](double part) { progress.update(part); });
   Report report;
-  report.add("verdict", proof_in_words(proof, run->queue)).add("proven", proof.holds());
+  report.add("verdict", proof_in_words(proof, run->queue, run->study.protocol.task))
+      .add("proven", proof.holds());
   report.add("complete", run->queue.has_ended())
       .add("trials", proof.trials)
       .add("delivered", proof.delivered);
@@ -446,12 +509,27 @@ cli::Action declare_new_study(CLI::App& app) {
   auto options = std::make_shared<NewStudyOptions>();
   app.add_option("PROTOCOL", options->what,
                  "stretch or identification: experiments 2 and 1 of Wiertlewski 2011; amplitude: after Fiene "
-                 "and Kuchenbecker 2007")
+                 "and Kuchenbecker 2007; ordering, adjustment: after Minsky et al. 1990")
       ->required();
   app.add_option("-o,--output", options->stem, "Stem of the study's files; default: the protocol's name");
-  app.add_option("--textures", options->textures,
-                 "Textures of force. Of identification: the standards, A,B,C,D,E; of amplitude: one")
+  app.add_option(
+         "--textures", options->textures,
+         "Textures of force. Of identification: the standards, A,B,C,D,E; of ordering: those that are "
+         "put in order; of amplitude and adjustment: one")
       ->delimiter(',');
+  app.add_option(
+         "--intended", options->intended,
+         "Of ordering: the parameter by which the textures were made, a number for each, in their order; "
+         "'analyse' compares the answers with it")
+      ->delimiter(',');
+  cli::add_choice<schema::Goal>(
+      app, "--goal", options->goal,
+      {{"least", schema::Goal::least}, {"greatest", schema::Goal::greatest}, {"match", schema::Goal::match}},
+      "Of adjustment: the least or the greatest gain at which it still is a texture, or that at which it is "
+      "as "
+      "strong as a reference");
+  app.add_option("--reference", options->reference,
+                 "Of adjustment, --goal match: the texture that is played before it; default: itself");
   app.add_option("--comparisons", options->comparisons,
                  "Of identification: which of them are presented, C,D,E; default: all")
       ->delimiter(',');
@@ -461,11 +539,19 @@ cli::Action declare_new_study(CLI::App& app) {
       "comparison, a real sample in one block and played in the other one, each of 100 trials or 15 "
       "minutes. amplitude: one texture at gains between 0 and 2 times that of the real sample, which is "
       "before "
-      "the participant; each is rated from -3 to 3 against it. "
+      "the participant; each is rated from -3 to 3 against it. ordering: all textures are felt freely, and "
+      "put in order of roughness. adjustment: the gain of a texture is changed by keys while it is played, "
+      "from a low start in odd trials and from a high one in even trials, until it is accepted. "
       "Label the real samples with the codes of STUDY.key.json, which neither operator nor participant "
       "reads.");
   cli::declare_force(app, options->existing);
-  return [options] { return run_new_study(*options); };
+  return [options, &app]() -> Result<Report> {
+    std::vector<std::string> given;
+    for (const char* const name : {"--textures", "--comparisons", "--intended", "--goal", "--reference"})
+      if (app.count(name) > 0) given.emplace_back(name);
+    TACTO_TRY(check_new_options(*options, given));
+    return run_new_study(*options);
+  };
 }
 
 cli::Action declare_check_study(CLI::App& app) {
@@ -489,7 +575,11 @@ cli::Action declare_run_study(CLI::App& app) {
       "identification: template,noise=9dB,hurry=5%,seed=1, which compares its spectrum with the standards'; "
       "its noise is tuned, so its success says nothing about people. Of amplitude: "
       "match=86%,weber=10%,lapse=2%,seed=1 "
-      "(match: the ratio that seems equal to the real sample)");
+      "(match: the ratio that seems equal to the real sample). Of ordering: order,noise=1dB,seed=1, by the "
+      "RMS "
+      "of the displacement. Of adjustment: threshold=20%,sd=10%,hysteresis=5%,seed=1, the ratio that it "
+      "looks "
+      "for, the standard deviation of its logarithm, and the difference of descending series");
   app.add_option("--answers", options->answers, kAnswersHelp)->excludes(observer);
   app.footer(
       "Each step is in STUDY-P07.trials.jsonl before the next one begins. Whether a trial was delivered is "

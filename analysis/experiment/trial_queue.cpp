@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 namespace tacto::analysis {
@@ -18,7 +19,20 @@ tl::unexpected<schema::Error> does_not_follow(const std::string& what) {
                       "the protocol, the key or the journal was changed");
 }
 
+// Of an ordering: the word has each of its codes once.
+bool is_order_of(const std::string& word, const StudyTrial& trial) {
+  if (trial.arranged.empty()) return true;
+  return std::ranges::is_permutation(codes_in(word), trial.arranged);
+}
+
 }  // namespace
+
+std::vector<std::string> codes_in(const std::string& word) {
+  std::vector<std::string> codes;
+  std::istringstream text(word);
+  for (std::string code; text >> code;) codes.push_back(code);
+  return codes;
+}
 
 TrialQueue::TrialQueue(std::vector<StudyTrial> order, int most_attempts)
     : queue_(order.begin(), order.end()), trials_(order.size()), most_attempts_(most_attempts) {}
@@ -39,11 +53,12 @@ Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
       return does_not_follow(fmt::format("sample {} of attempt {}", placed->label, placed->attempt));
     (*attempt)->placed = *placed;
   }
+  if (const auto* explored = std::get_if<schema::StimulusExplored>(&entry)) return explore(*explored);
   if (const auto* over = std::get_if<schema::BlockOver>(&entry)) return end_block(over->block);
   if (const auto* answered = std::get_if<schema::AttemptAnswered>(&entry)) {
     const auto attempt = open_attempt(answered->attempt);
     TACTO_TRY(attempt);
-    if (!(*attempt)->judged && !(*attempt)->placed)
+    if ((!(*attempt)->judged && !(*attempt)->placed) || !is_order_of(answered->word, (*attempt)->trial))
       return does_not_follow(fmt::format("attempt {}", answered->attempt));
     (*attempt)->answered = *answered;
     close();
@@ -86,6 +101,17 @@ Result<void> TrialQueue::begin(const schema::AttemptBegun& begun) {
 Result<Attempt*> TrialQueue::open_attempt(int number) {
   if (open_ && attempts_.back().begun.attempt == number) return &attempts_.back();
   return does_not_follow(fmt::format("attempt {}", number));
+}
+
+Result<void> TrialQueue::explore(const schema::StimulusExplored& explored) {
+  const auto attempt = open_attempt(explored.attempt);
+  TACTO_TRY(attempt);
+  const auto& arranged = (*attempt)->trial.arranged;
+  if ((*attempt)->judged || std::ranges::find(arranged, explored.stimulus) == arranged.end())
+    return does_not_follow(fmt::format("stimulus {} of attempt {}", explored.stimulus, explored.attempt));
+  (*attempt)->begun.stimuli.push_back(explored.stimulus);
+  (*attempt)->begun.sessions.push_back(explored.session);
+  return {};
 }
 
 void TrialQueue::close() {

@@ -14,7 +14,7 @@
 namespace tacto::analysis {
 
 struct Attempt {
-  schema::AttemptBegun begun;
+  schema::AttemptBegun begun;  ///< of ordering: with what was explored since
   StudyTrial trial;
   std::optional<schema::DeliveryJudged> judged;
   std::optional<schema::SamplePlaced> placed;
@@ -23,6 +23,9 @@ struct Attempt {
   /// Delivered, or placed as a real sample; and answered.
   bool counts() const { return answered && (placed || (judged && judged->delivered)); }
 };
+
+/// The codes of an order, from the word of its answer.
+std::vector<std::string> codes_in(const std::string& word);
 
 /// Trials in order, without the rest of a block whose time is over. One that has no answer because the run
 /// was interrupted comes again at once, as often as that happens: so a file of answers fits as it did before.
@@ -53,6 +56,7 @@ class TrialQueue {
  private:
   schema::Result<void> begin(const schema::AttemptBegun& begun);
   schema::Result<Attempt*> open_attempt(int number);
+  schema::Result<void> explore(const schema::StimulusExplored& explored);
   void close();
   schema::Result<void> end_block(int block);
 

@@ -40,12 +40,16 @@ struct ShownText {
   const char* name;
   std::string ProtocolTexts::*member;
 };
-constexpr const char* kTaskWords[] = {"two_interval", "identification", "amplitude"};
+constexpr const char* kTaskWords[] = {"two_interval", "identification", "amplitude", "ordering",
+                                      "adjustment"};
+constexpr const char* kGoalWords[] = {"least", "greatest", "match"};
 // The members of each task. Those of another one are refused.
 const std::vector<std::string> kTaskMembers[] = {
     {"standard", "keep", "levels"},
     {"standards", "comparisons", "conditions", "most_trials", "longest_s"},
-    {"standards", "largest_ratio"}};
+    {"standards", "largest_ratio"},
+    {"standards"},
+    {"standards", "goal", "smallest_ratio", "largest_ratio", "step_db"}};
 constexpr ShownText kShownTexts[] = {{"welcome", &ProtocolTexts::welcome},
                                      {"begin", &ProtocolTexts::begin},
                                      {"interval", &ProtocolTexts::interval},
@@ -77,6 +81,18 @@ void take_amplitude(const Json& body, Protocol& protocol) {
   protocol.largest_ratio = body["largest_ratio"];
 }
 
+void take_ordering(const Json& body, Protocol& protocol) {
+  protocol.standards = body["standards"].get<std::vector<std::string>>();
+  if (body.contains("intended")) protocol.intended = body["intended"].get<std::vector<double>>();
+}
+
+void take_adjustment(const Json& body, Protocol& protocol) {
+  take_amplitude(body, protocol);
+  protocol.goal = *goal_of(body["goal"].get<std::string>());
+  protocol.smallest_ratio = body["smallest_ratio"];
+  protocol.step_db = body["step_db"];
+}
+
 Protocol protocol_from(const Document& document) {
   const Json& body = document.body;
   Protocol protocol;
@@ -85,6 +101,8 @@ Protocol protocol_from(const Document& document) {
   if (protocol.task == Task::two_interval) take_two_interval(body, protocol);
   if (protocol.task == Task::identification) take_identification(body, protocol);
   if (protocol.task == Task::amplitude) take_amplitude(body, protocol);
+  if (protocol.task == Task::ordering) take_ordering(body, protocol);
+  if (protocol.task == Task::adjustment) take_adjustment(body, protocol);
   protocol.repetitions = body["repetitions"];
   protocol.seed = body["seed"];
   protocol.gain_m_per_n = body["gain_m_per_n"];
@@ -99,6 +117,7 @@ Protocol protocol_from(const Document& document) {
   for (const auto& [name, member] : kLimitNumbers) protocol.delivered.*member = delivered[name];
   for (const auto& [name, member] : kShownTexts) protocol.texts.*member = texts[name];
   protocol.texts.place = text_or(texts, "place");
+  protocol.texts.left = text_or(texts, "left");
   protocol.notes = text_or(body, "notes");
   keep_unknown(document, protocol);
   return protocol;
@@ -125,6 +144,18 @@ void put_amplitude(Json& body, const Protocol& protocol) {
   body["largest_ratio"] = protocol.largest_ratio;
 }
 
+void put_ordering(Json& body, const Protocol& protocol) {
+  body["standards"] = protocol.standards;
+  if (!protocol.intended.empty()) body["intended"] = protocol.intended;
+}
+
+void put_adjustment(Json& body, const Protocol& protocol) {
+  put_amplitude(body, protocol);
+  body["goal"] = word_of(protocol.goal);
+  body["smallest_ratio"] = protocol.smallest_ratio;
+  body["step_db"] = protocol.step_db;
+}
+
 Json protocol_body(const Protocol& protocol) {
   Json body = Json::object();
   put_text(body, "version", protocol.newer_version);
@@ -132,6 +163,8 @@ Json protocol_body(const Protocol& protocol) {
   if (protocol.task == Task::two_interval) put_two_interval(body, protocol);
   if (protocol.task == Task::identification) put_identification(body, protocol);
   if (protocol.task == Task::amplitude) put_amplitude(body, protocol);
+  if (protocol.task == Task::ordering) put_ordering(body, protocol);
+  if (protocol.task == Task::adjustment) put_adjustment(body, protocol);
   body["repetitions"] = protocol.repetitions;
   body["seed"] = protocol.seed;
   body["gain_m_per_n"] = protocol.gain_m_per_n;
@@ -151,6 +184,7 @@ Json protocol_body(const Protocol& protocol) {
   body["texts"] = Json::object();
   for (const auto& [name, member] : kShownTexts) body["texts"][name] = protocol.texts.*member;
   put_text(body["texts"], "place", protocol.texts.place);
+  put_text(body["texts"], "left", protocol.texts.left);
   put_text(body, "notes", protocol.notes);
   return body;
 }
@@ -171,6 +205,13 @@ Result<void> check_levels(const Protocol& protocol, const std::string& path) {
   return {};
 }
 
+std::size_t answers_of(const Protocol& protocol) {
+  if (protocol.task == Task::two_interval) return 2;
+  if (protocol.task == Task::amplitude) return 2 * kLargestRating + 1;
+  if (protocol.task == Task::adjustment) return static_cast<std::size_t>(Turn::accept);
+  return protocol.standards.size();
+}
+
 Result<void> check_answers(const Protocol& protocol, const std::string& path) {
   std::set<std::string> keys = {protocol.begin_key}, words;
   for (const auto& [key, word] : protocol.choices) {
@@ -181,13 +222,12 @@ Result<void> check_answers(const Protocol& protocol, const std::string& path) {
       return malformed_at(path, fmt::format("answers/choices/{}/word", words.size()).c_str(),
                           "two answers have the same word", "give them different words");
   }
-  const std::size_t expected = protocol.task == Task::two_interval ? 2
-                               : protocol.task == Task::amplitude  ? 2 * kLargestRating + 1
-                                                                   : protocol.standards.size();
+  const std::size_t expected = answers_of(protocol);
   if (protocol.choices.size() == expected) return {};
   return malformed_at(path, "answers/choices",
                       fmt::format("has {} answers, the task {}", protocol.choices.size(), expected),
-                      "give one for each interval, for each standard, or for each rating from -3 to 3");
+                      "give one for each interval, for each standard, for each rating from -3 to 3, or for "
+                      "weaker, stronger and accepted");
 }
 
 // A line of a file of answers is a word, a key or a label (K3): each has one meaning.
@@ -212,10 +252,17 @@ Result<void> check_words(const Protocol& protocol, const std::string& path) {
 }
 
 Result<void> check_names(const Protocol& protocol, const std::string& path) {
-  if (protocol.task != Task::two_interval &&
-      (protocol.task == Task::amplitude) != (protocol.standards.size() == 1))
-    return malformed_at(path, "standards", fmt::format("has {} names", protocol.standards.size()),
-                        "give one in the task amplitude, two or more in an identification");
+  const std::size_t names = protocol.standards.size();
+  const bool matches = protocol.task == Task::adjustment && protocol.goal == Goal::match;
+  const bool one = protocol.task == Task::amplitude || protocol.task == Task::adjustment;
+  if (protocol.task != Task::two_interval && (one != (names == 1)) && !(matches && names == 2))
+    return malformed_at(path, "standards", fmt::format("has {} names", names),
+                        "give two or more in an identification or ordering, else one; to match them, one or "
+                        "two");
+  if (!protocol.intended.empty() && protocol.intended.size() != names)
+    return malformed_at(path, "intended",
+                        fmt::format("has {} numbers for {} standards", protocol.intended.size(), names),
+                        "give one for each standard, in their order, or leave it out");
   std::set<std::string> standards;
   for (const std::string& name : protocol.standards)
     if (!standards.insert(name).second)
@@ -239,6 +286,9 @@ Result<void> check_members_of_task(const Json& body, const std::string& path) {
                                       expected ? "needs this member" : "does not have this member"),
                           expected ? "add it" : "remove it");
     }
+  if (body.contains("intended") && task_of(body) != Task::ordering)
+    return malformed_at(path, "intended", "only a protocol of the task ordering has this member",
+                        "remove it");
   return {};
 }
 
@@ -283,6 +333,16 @@ Result<Document> open_known(const std::string& path, std::string_view kind) {
 
 const char* word_of(Task task) {
   return kTaskWords[static_cast<int>(task)];
+}
+
+const char* word_of(Goal goal) {
+  return kGoalWords[static_cast<int>(goal)];
+}
+
+std::optional<Goal> goal_of(std::string_view word) {
+  const auto* const found = std::ranges::find(kGoalWords, word);
+  if (found == std::end(kGoalWords)) return std::nullopt;
+  return static_cast<Goal>(found - std::begin(kGoalWords));
 }
 
 bool is_label(std::string_view line) {
