@@ -7,18 +7,23 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <optional>
+#include <thread>
+#include <utility>
 
 #include "analysis/cli/participant_screen.hpp"
 #include "analysis/experiment/interval_play.hpp"
 #include "analysis/experiment/marked_proof.hpp"
+#include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/study_export.hpp"
 #include "analysis/experiment/study_power.hpp"
 #include "analysis/experiment/study_run.hpp"
+#include "analysis/experiment/trial_runner.hpp"
 #include "analysis/experiment/withdrawal.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/command/output_options.hpp"
@@ -38,6 +43,7 @@ struct NewStudyOptions {
   std::vector<std::string> textures, comparisons;
   std::vector<double> intended;
   schema::Goal goal = schema::Goal::least;
+  schema::LevelMethod method = schema::LevelMethod::constant;
   schema::Existing existing = schema::Existing::keep;
 };
 
@@ -62,7 +68,7 @@ Report study_report(const Study& study) {
   Report report;
   report.add("study", study.stem).add("task", schema::word_of(protocol.task));
   if (protocol.task == schema::Task::two_interval)
-    report.add("levels", protocol.levels.size());
+    report.add("levels", protocol.levels.size()).add("method", schema::word_of(protocol.method));
   else if (protocol.task == schema::Task::amplitude)
     report.add("largest_ratio", protocol.largest_ratio);
   else if (protocol.task == schema::Task::adjustment)
@@ -93,7 +99,7 @@ struct KnownProtocol {
   const char* name;
   std::vector<std::string> options;
 };
-const std::vector<KnownProtocol> kKnownProtocols = {{"stretch", {}},
+const std::vector<KnownProtocol> kKnownProtocols = {{"stretch", {"--method"}},
                                                     {"identification", {"--textures", "--comparisons"}},
                                                     {"amplitude", {"--textures"}},
                                                     {"ordering", {"--textures", "--intended"}},
@@ -153,7 +159,7 @@ Result<schema::Protocol> new_adjustment(const NewStudyOptions& o, NamedTextures&
 
 // Takes the textures that the protocol is of.
 Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& textures) {
-  if (o.what == "stretch") return stretch_protocol(o.seed);
+  if (o.what == "stretch") return stretch_protocol(o.seed, o.method);
   TACTO_TRY(read_named(o.textures, textures));
   if (o.what == "amplitude") return amplitude_protocol(o.seed, textures);
   if (o.what == "ordering") return new_ordering(o, textures);
@@ -213,12 +219,17 @@ void add_lost_trials(Report& report, const TrialQueue& queue) {
 }
 
 // Counts only: no screen names a stimulus.
+Report progress_row(const std::string& stem, const TrialQueue& queue) {
+  Report row;
+  row.add("run", stem).add("complete", queue.has_ended());
+  row.add("trials", queue.trials()).add("delivered_and_answered", queue.counted());
+  row.add("attempts", queue.attempts().size());
+  add_lost_trials(row, queue);
+  return row;
+}
+
 Report report_of_run(const Run& run) {
-  Report report;
-  report.add("run", run.stem).add("complete", run.queue.has_ended());
-  report.add("trials", run.queue.trials()).add("delivered_and_answered", run.queue.counted());
-  report.add("attempts", run.queue.attempts().size());
-  add_lost_trials(report, run.queue);
+  Report report = progress_row(run.stem, run.queue);
   if (!run.journal.plan.observer.empty()) report.add("simulated", observer_in_words(run));
   std::vector<std::string> written = {schema::journal_path(run.stem), run.stem + "/"};
   if (run.queue.has_ended()) written.push_back(run.stem + ".trials.tsv");
@@ -389,6 +400,45 @@ Result<Report> run_prove_run(const ProveOptions& o) {
   return proof.holds() ? report : report.ends_with(ErrorKind::unsuitable);
 }
 
+struct WatchOptions {
+  std::string study;
+  std::optional<double> time_s;
+};
+
+std::string progress_in_words(const std::string& stem, const TrialQueue& queue) {
+  return fmt::format("{}: {} of {} trials, {} attempts{}\n", stem, queue.counted(), queue.trials(),
+                     queue.attempts().size(), queue.has_ended() ? ", complete" : "");
+}
+
+Result<Report> run_watch_study(const WatchOptions& o) {
+  constexpr auto kLookEvery = std::chrono::milliseconds(500);
+  const auto study = read_study(o.study);
+  TACTO_TRY(study);
+  const cli::StopSignals signals;
+  const auto begun = std::chrono::steady_clock::now();
+  std::map<std::string, std::string> shown;
+  while (true) {
+    bool going_on = false;
+    std::vector<Report> rows;
+    for (const std::string& stem : runs_of(*study)) {
+      const auto journal = schema::read_journal(schema::journal_path(stem));
+      if (!journal && journal.error().kind == ErrorKind::unsuitable)
+        continue;  // its first line is being written
+      TACTO_TRY(journal);
+      const auto queue = queue_of(*journal, study->protocol, study->key);
+      TACTO_TRY(queue);
+      going_on = going_on || !queue->has_ended();
+      rows.push_back(progress_row(stem, *queue));
+      const std::string line = progress_in_words(stem, *queue);
+      if (std::exchange(shown[stem], line) != line) cli::write_message(line);
+    }
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begun;
+    if (!going_on || signals.stop_asked() || (o.time_s && elapsed.count() >= *o.time_s))
+      return Report().add("study", study->stem).add("runs", std::move(rows));
+    std::this_thread::sleep_for(kLookEvery);
+  }
+}
+
 struct PowerOptions {
   std::string study;
   std::vector<std::string> weber;
@@ -517,6 +567,13 @@ cli::Action declare_new_study(CLI::App& app) {
          "Textures of force. Of identification: the standards, A,B,C,D,E; of ordering: those that are "
          "put in order; of amplitude and adjustment: one")
       ->delimiter(',');
+  cli::add_choice<schema::LevelMethod>(
+      app, "--method", options->method,
+      {{"constant", schema::LevelMethod::constant},
+       {"staircase", schema::LevelMethod::staircase},
+       {"quest_plus", schema::LevelMethod::quest_plus}},
+      "Of stretch: each level equally often, or 60 trials whose levels follow "
+      "the answers");
   app.add_option(
          "--intended", options->intended,
          "Of ordering: the parameter by which the textures were made, a number for each, in their order; "
@@ -547,7 +604,8 @@ cli::Action declare_new_study(CLI::App& app) {
   cli::declare_force(app, options->existing);
   return [options, &app]() -> Result<Report> {
     std::vector<std::string> given;
-    for (const char* const name : {"--textures", "--comparisons", "--intended", "--goal", "--reference"})
+    for (const char* const name :
+         {"--textures", "--comparisons", "--intended", "--goal", "--reference", "--method"})
       if (app.count(name) > 0) given.emplace_back(name);
     TACTO_TRY(check_new_options(*options, given));
     return run_new_study(*options);
@@ -616,6 +674,17 @@ cli::Action declare_prove_run(CLI::App& app) {
       "computed again, is not the same to the bit. Exit code 0 does not say that an interval was delivered: "
       "see 'delivered' (yes, no, unknown) of each interval.");
   return [options] { return run_prove_run(*options); };
+}
+
+cli::Action declare_watch_study(CLI::App& app) {
+  auto options = std::make_shared<WatchOptions>();
+  app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
+  cli::add_quantity(app, "--time", options->time_s, schema::Dimension::time,
+                    "Duration; default: until no run of the study is going on, or Ctrl-C");
+  app.footer(
+      "A line for each run whenever its journal grows: how many of its trials are delivered and answered. An "
+      "interrupted run counts as going on. Nothing tells which stimuli they were.");
+  return [options] { return run_watch_study(*options); };
 }
 
 cli::Action declare_study_power(CLI::App& app) {

@@ -187,12 +187,20 @@ std::string Study::run(const std::string& participant) const {
   return stem + "-" + participant;
 }
 
-schema::Protocol stretch_protocol(const std::string& seed) {
+schema::Protocol stretch_protocol(const std::string& seed, schema::LevelMethod method) {
   schema::Protocol protocol;
   protocol.standard = {1.76e-3, 12.8e-6, 0.06};
   protocol.keep_slope = true;
   protocol.levels = {-0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7};
   protocol.repetitions = 10;
+  protocol.method = method;
+  if (method != schema::LevelMethod::constant) {
+    protocol.levels.clear();
+    for (int percent = -70; percent <= 70; percent += 5)
+      if (percent > 0 || (percent < 0 && method == schema::LevelMethod::quest_plus))
+        protocol.levels.push_back(percent / 100.0);
+    protocol.repetitions = 60;
+  }
   protocol.seed = seed;
   protocol.gain_m_per_n = kStimulusGain;
   protocol.pace = {0.01, 0.05, 0.06, 2};

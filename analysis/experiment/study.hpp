@@ -24,8 +24,10 @@ struct Study {
 };
 
 /// Experiment 2 of Wiertlewski, Lozada and Hayward 2011: a sinusoid of 1.76 mm and 12.8 um; its period and
-/// amplitude stretched by +-10, 30, 50 and 70 %, ten times each; which one has the smaller period.
-schema::Protocol stretch_protocol(const std::string& seed);
+/// amplitude stretched by +-10, 30, 50 and 70 %, ten times each; which one has the smaller period. With
+/// another method than constant 60 trials, at stretches of 5, 10 ... 70 %, of QUEST+ to both sides.
+schema::Protocol stretch_protocol(const std::string& seed,
+                                  schema::LevelMethod method = schema::LevelMethod::constant);
 
 /// Textures by their names.
 using NamedTextures = std::map<std::string, schema::Texture>;

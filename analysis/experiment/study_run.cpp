@@ -363,8 +363,7 @@ Result<Run> begin_run(const std::string& study_name, const std::string& particip
       study->name(),           participant,           study->protocol.sha256,
       study->key.sha256,       request.device_uri,    request.observer ? request.observer->text : "",
       schema::creation_time(), std::string(kCreator), order};
-  TrialQueue queue(ordered_trials(study->protocol, study->key, participant, order),
-                   study->protocol.most_attempts);
+  TrialQueue queue = queue_of_run(study->protocol, study->key, participant, order);
   Run run{stem, {plan, {}, 0}, std::move(*study), std::move(queue)};
   TACTO_TRY(go_on(run, *file, request, slowest->keeps_time(), plan));
   return run;

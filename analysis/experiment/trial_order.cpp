@@ -56,6 +56,13 @@ std::vector<StudyTrial> orderings(const schema::Protocol& protocol, const schema
                        [&](const StudyTrial& trial) { return hashed_text(protocol, participant, trial); });
 }
 
+std::vector<StudyTrial> adaptive_trials(const schema::Protocol& protocol, const std::string& participant) {
+  std::vector<StudyTrial> trials;
+  for (int i = 1; i <= protocol.repetitions; ++i) trials.push_back(StudyTrial{"level", i, 1, false, 1, true});
+  return sorted_by_sum(std::move(trials),
+                       [&](const StudyTrial& trial) { return hashed_text(protocol, participant, trial); });
+}
+
 // `kind`: a trial of the block, without its stimulus.
 std::vector<StudyTrial> trials_of_block(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                         const std::string& participant, const StudyTrial& kind) {
@@ -77,6 +84,7 @@ std::vector<StudyTrial> trials_of_block(const schema::Protocol& protocol, const 
 
 std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                        const std::string& participant, int order) {
+  if (protocol.method != schema::LevelMethod::constant) return adaptive_trials(protocol, participant);
   if (protocol.task == schema::Task::ordering) return orderings(protocol, key, participant);
   if (protocol.task != schema::Task::identification)
     return trials_of_block(protocol, key, participant, {{}, 0, 1, false, 1});

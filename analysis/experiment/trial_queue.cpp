@@ -34,8 +34,11 @@ std::vector<std::string> codes_in(const std::string& word) {
   return codes;
 }
 
-TrialQueue::TrialQueue(std::vector<StudyTrial> order, int most_attempts)
-    : queue_(order.begin(), order.end()), trials_(order.size()), most_attempts_(most_attempts) {}
+TrialQueue::TrialQueue(std::vector<StudyTrial> order, int most_attempts, ChooseCode choose)
+    : queue_(order.begin(), order.end()),
+      choose_(std::move(choose)),
+      trials_(order.size()),
+      most_attempts_(most_attempts) {}
 
 Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
   if (const auto* begun = std::get_if<schema::AttemptBegun>(&entry)) return begin(*begun);
@@ -69,7 +72,10 @@ Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
 }
 
 std::optional<StudyTrial> TrialQueue::next() const {
-  return queue_.empty() ? std::nullopt : std::optional(queue_.front());
+  if (queue_.empty()) return std::nullopt;
+  StudyTrial trial = queue_.front();
+  if (trial.adaptive) trial.code = choose_(attempts_);
+  return trial;
 }
 
 std::size_t TrialQueue::counted() const {
@@ -88,11 +94,12 @@ std::size_t TrialQueue::answers() const {
 
 Result<void> TrialQueue::begin(const schema::AttemptBegun& begun) {
   const int number = static_cast<int>(attempts_.size()) + 1;
-  if (open_ || begun.attempt != number || queue_.empty() || queue_.front().name() != begun.trial ||
-      queue_.front().block != begun.block)
+  const auto trial = next();
+  if (open_ || begun.attempt != number || !trial || trial->name() != begun.trial ||
+      trial->block != begun.block)
     return does_not_follow(fmt::format("attempt {} at trial {}", begun.attempt, begun.trial));
   if (!attempts_.empty() && attempts_.back().trial.block != begun.block) failed_.clear();
-  attempts_.push_back({begun, queue_.front(), {}, {}, {}});
+  attempts_.push_back({begun, *trial, {}, {}, {}});
   queue_.pop_front();
   open_ = true;
   return {};
@@ -119,7 +126,10 @@ void TrialQueue::close() {
   open_ = false;
   if (attempt.counts()) return;
   const bool failed = attempt.judged && !attempt.judged->delivered;
-  if (failed && ++failed_[attempt.begun.trial] >= most_attempts_) {
+  // A trial of an adaptive method comes again with another code.
+  const std::string trial =
+      attempt.trial.adaptive ? fmt::format("{}", attempt.trial.repetition) : attempt.begun.trial;
+  if (failed && ++failed_[trial] >= most_attempts_) {
     ++abandoned_;
     return;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -33,7 +34,9 @@ std::vector<std::string> codes_in(const std::string& word);
 /// attempts that were judged not delivered a trial is abandoned.
 class TrialQueue {
  public:
-  TrialQueue(std::vector<StudyTrial> order, int most_attempts);
+  /// Of an adaptive method: the code of the next trial, from all attempts.
+  using ChooseCode = std::function<std::string(const std::vector<Attempt>&)>;
+  TrialQueue(std::vector<StudyTrial> order, int most_attempts, ChooseCode choose = {});
 
   /// Takes the next entry of the journal. Errors: unsuitable, if it does not follow from those before.
   schema::Result<void> take(const schema::JournalEntry& entry);
@@ -61,6 +64,7 @@ class TrialQueue {
   schema::Result<void> end_block(int block);
 
   std::deque<StudyTrial> queue_;
+  ChooseCode choose_;
   std::map<std::string, int> failed_;  // attempts of each trial of this block that were not delivered
   std::vector<Attempt> attempts_;
   std::size_t trials_, abandoned_ = 0, timed_out_ = 0;

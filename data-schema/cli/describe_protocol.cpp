@@ -13,7 +13,8 @@ Result<cli::Report> describe_protocol(const std::string& path) {
   if (protocol->task == Task::two_interval)
     report.add("standard_period_m", protocol->standard.period_m)
         .add("standard_amplitude_m", protocol->standard.amplitude_m)
-        .add("levels", protocol->levels.size());
+        .add("levels", protocol->levels.size())
+        .add("method", word_of(protocol->method));
   else
     report.add("standards", protocol->standards.size());
   if (protocol->task == Task::identification)

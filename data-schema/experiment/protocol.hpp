@@ -28,6 +28,14 @@ enum class Task { two_interval, identification, amplitude, ordering, adjustment 
 /// "two_interval", "identification", "amplitude", "ordering", "adjustment".
 const char* word_of(Task task);
 
+/// Which level a trial of two intervals has. constant: each level as often as the others, in the order of the
+/// checksums. staircase: two right answers in a row lead to the next smaller stretch, a wrong one to the next
+/// larger (Levitt 1971), from the largest on. quest_plus: the level that says most (Watson 2017).
+enum class LevelMethod { constant, staircase, quest_plus };
+
+/// "constant", "staircase", "quest_plus".
+const char* word_of(LevelMethod method);
+
 /// What an adjustment looks for: the least or the greatest gain at which the texture is one still; or the
 /// gain at which it is as strong as the last standard, which is played before it at the ratio 1.
 enum class Goal { least, greatest, match };
@@ -79,6 +87,7 @@ struct Protocol {
   StandardStimulus standard;   ///< of two_interval, as the next two
   bool keep_slope = false;     ///< the amplitude is stretched alike
   std::vector<double> levels;  ///< stretch of the period: 0.3 is 30 % longer; ascending, never 0
+  LevelMethod method = LevelMethod::constant;
   /// Names of textures: the comparisons are standards; of amplitude there is one standard, of adjustment one
   /// or, to match them, two.
   std::vector<std::string> standards, comparisons;
@@ -93,7 +102,8 @@ struct Protocol {
   /// Of amplitude: gains of trials are uniform from 0 to this times gain_m_per_n. Of adjustment: the limit of
   /// what can be set.
   double largest_ratio = 1;
-  int repetitions = 0;      ///< of each level or comparison (in each condition); or the number of trials
+  /// Of each level (constant) or comparison (in each condition); else the number of trials.
+  int repetitions = 0;
   std::string seed;         ///< of codes and order
   double gain_m_per_n = 0;  ///< of playback; of amplitude and adjustment that of the ratio 1
   ProtocolPace pace;

@@ -42,7 +42,11 @@ struct ShownText {
 };
 constexpr const char* kTaskWords[] = {"two_interval", "identification", "amplitude", "ordering",
                                       "adjustment"};
+constexpr const char* kMethodWords[] = {"constant", "staircase", "quest_plus"};
 constexpr const char* kGoalWords[] = {"least", "greatest", "match"};
+// Those that a task may have.
+const std::pair<std::string, Task> kOptionalMembers[] = {{"intended", Task::ordering},
+                                                         {"method", Task::two_interval}};
 // The members of each task. Those of another one are refused.
 const std::vector<std::string> kTaskMembers[] = {
     {"standard", "keep", "levels"},
@@ -66,6 +70,9 @@ void take_two_interval(const Json& body, Protocol& protocol) {
   protocol.standard = {standard["period_m"], standard["amplitude_m"], standard["length_m"]};
   protocol.keep_slope = body["keep"] == "slope";
   protocol.levels = body["levels"].get<std::vector<double>>();
+  if (const auto method = text_or(body, "method"); !method.empty())
+    protocol.method =
+        static_cast<LevelMethod>(std::ranges::find(kMethodWords, method) - std::begin(kMethodWords));
 }
 
 void take_identification(const Json& body, Protocol& protocol) {
@@ -129,6 +136,7 @@ void put_two_interval(Json& body, const Protocol& protocol) {
                       {"length_m", protocol.standard.length_m}};
   body["keep"] = protocol.keep_slope ? "slope" : "amplitude";
   body["levels"] = protocol.levels;
+  if (protocol.method != LevelMethod::constant) body["method"] = word_of(protocol.method);
 }
 
 void put_identification(Json& body, const Protocol& protocol) {
@@ -195,6 +203,9 @@ Result<void> malformed_at(const std::string& path, const char* member, const std
 }
 
 Result<void> check_levels(const Protocol& protocol, const std::string& path) {
+  if (protocol.method == LevelMethod::staircase && protocol.levels.front() < 0 && protocol.levels.back() > 0)
+    return malformed_at(path, "levels", "a staircase has longer and shorter periods",
+                        "give only longer ones, or only shorter ones");
   for (std::size_t i = 0; i < protocol.levels.size(); ++i) {
     const std::string place = fmt::format("levels/{}", i);
     if (protocol.levels[i] == 0)
@@ -286,9 +297,11 @@ Result<void> check_members_of_task(const Json& body, const std::string& path) {
                                       expected ? "needs this member" : "does not have this member"),
                           expected ? "add it" : "remove it");
     }
-  if (body.contains("intended") && task_of(body) != Task::ordering)
-    return malformed_at(path, "intended", "only a protocol of the task ordering has this member",
-                        "remove it");
+  for (const auto& [name, task] : kOptionalMembers)
+    if (body.contains(name) && task_of(body) != task)
+      return malformed_at(path, name.c_str(),
+                          fmt::format("only a protocol of the task {} may have this member", word_of(task)),
+                          "remove it");
   return {};
 }
 
@@ -333,6 +346,10 @@ Result<Document> open_known(const std::string& path, std::string_view kind) {
 
 const char* word_of(Task task) {
   return kTaskWords[static_cast<int>(task)];
+}
+
+const char* word_of(LevelMethod method) {
+  return kMethodWords[static_cast<int>(method)];
 }
 
 const char* word_of(Goal goal) {

@@ -10,13 +10,16 @@
 #include <numbers>
 #include <set>
 
+#include "analysis/experiment/adaptive_levels.hpp"
 #include "analysis/experiment/interval_facts.hpp"
 #include "analysis/experiment/live_setting.hpp"
 #include "analysis/experiment/observer.hpp"
 #include "analysis/experiment/spatial_period.hpp"
 #include "analysis/experiment/study.hpp"
+#include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/template_observer.hpp"
 #include "analysis/experiment/trial_runner.hpp"
+#include "analysis/psychometrics/staircase.hpp"
 #include "data-schema/files/files.hpp"
 
 namespace tacto::analysis {
@@ -124,7 +127,7 @@ class TextRun {
 
   const schema::Protocol protocol_;
   const schema::ProtocolKey key_ = key_of(protocol_);
-  TrialQueue queue_{ordered_trials(protocol_, key_, "P01", 1), protocol_.most_attempts};
+  TrialQueue queue_ = queue_of_run(protocol_, key_, "P01", 1);
   std::string text_;
   std::size_t lines_ = 0;
 };
@@ -305,6 +308,104 @@ TEST(ExperimentRun, AJournalOfOrdersCutAtEachByteIsResumed) {
     ASSERT_EQ(counted.size(), 3U) << bytes;
     for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
   }
+}
+
+schema::Protocol adaptive(schema::LevelMethod method) {
+  schema::Protocol protocol = stretch_protocol("7", method);
+  protocol.repetitions = 20;
+  protocol.most_attempts = 100;
+  return protocol;
+}
+
+std::vector<double> stretches_of(const TrialQueue& queue, const schema::ProtocolKey& key, bool counted) {
+  std::vector<double> stretches;
+  for (const Attempt& attempt : queue.attempts())
+    if (!counted || attempt.counts()) stretches.push_back(stimulus_of(key, attempt.trial.code).stretch);
+  return stretches;
+}
+
+// An adaptive run is resumed with the same levels: they follow from the answers of the journal. (Interrupted
+// attempts are numbered, and every seventh fails, so only the levels that count are compared until the cut.)
+TEST(ExperimentRun, AnAdaptiveJournalCutAtEachLineGoesOnWithTheSameLevels) {
+  for (const auto method : {schema::LevelMethod::staircase, schema::LevelMethod::quest_plus}) {
+    const schema::Protocol protocol = adaptive(method);
+    TextRun whole(protocol);
+    ASSERT_TRUE(whole.go_on(""));
+    ASSERT_EQ(whole.queue().counted(), 20U);
+    ASSERT_EQ(whole.queue().attempts().size(), 23U);
+    const std::string& text = whole.text();
+    for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', end + 1)) {
+      TextRun resumed(protocol);
+      const auto went_on = resumed.go_on(text.substr(0, end + 1));
+      ASSERT_TRUE(went_on) << end << ": " << schema::message(went_on.error());
+      ASSERT_EQ(resumed.text().substr(0, end + 1), text.substr(0, end + 1)) << end;
+      ASSERT_TRUE(resumed.queue().has_ended()) << end;
+      ASSERT_EQ(resumed.queue().counted(), 20U) << end;
+      std::set<int> repetitions;
+      for (const Attempt& attempt : resumed.queue().attempts())
+        if (attempt.counts()) repetitions.insert(attempt.trial.repetition);
+      ASSERT_EQ(repetitions.size(), 20U) << end;
+    }
+  }
+}
+
+// Against the staircase and QUEST+ themselves, which are told the counted answers only: attempts 7, 14 and 21
+// fail.
+TEST(ExperimentRun, AdaptiveLevelsFollowFromTheAnswersThatCount) {
+  const schema::Protocol protocol = adaptive(schema::LevelMethod::staircase);
+  const schema::ProtocolKey key = key_of(protocol);
+  TextRun run(protocol);
+  ASSERT_TRUE(run.go_on(""));
+  Staircase staircase({2, 1, 0.05, 0.05, 0.05, 0.7}, 0.7);
+  std::size_t failed = 0;
+  for (const Attempt& attempt : run.queue().attempts()) {
+    EXPECT_NEAR(stimulus_of(key, attempt.trial.code).stretch, staircase.level(), 1e-9)
+        << attempt.begun.attempt;
+    if (attempt.counts()) staircase.take_answer(seemed_longer(attempt));
+    failed += !attempt.counts();
+  }
+  EXPECT_EQ(failed, 3U);
+  EXPECT_GT(staircase.reversals().size(), 0U);
+  const auto reversals = reversals_of(protocol, key, run.queue().attempts());
+  ASSERT_EQ(reversals.size(), staircase.reversals().size());
+  for (std::size_t i = 0; i < reversals.size(); ++i)
+    EXPECT_NEAR(reversals[i], staircase.reversals()[i], 1e-9);
+}
+
+// An observer with a JND of 25 %: QUEST+ asks near its steep part, not at the smallest and largest stretches
+// only.
+TEST(ExperimentRun, QuestPlusAsksWhereTheAnswersSayMost) {
+  const schema::Protocol protocol = adaptive(schema::LevelMethod::quest_plus);
+  const schema::ProtocolKey key = key_of(protocol);
+  TrialQueue queue = queue_of_run(protocol, key, "P01", 1);
+  const auto observer = parse_observer("weber=25%,seed=3");
+  ASSERT_TRUE(observer);
+  double squares = 0;
+  for (int number = 1; number <= 20; ++number) {
+    const StudyTrial trial = queue.next().value();
+    ASSERT_TRUE(queue.take(schema::AttemptBegun{number, trial.name(), {}, {}, 1, 0}));
+    ASSERT_TRUE(queue.take(schema::DeliveryJudged{number, true, {}, {}}));
+    const double standard = 2e-3, stretched = standard * (1 + stimulus_of(key, trial.code).stretch);
+    const bool first = trial.standard_comes_first();
+    const int choice = smaller_period(*observer, "P/" + std::to_string(number),
+                                      {first ? standard : stretched, first ? stretched : standard}, standard);
+    ASSERT_TRUE(queue.take(schema::AttemptAnswered{number, choice, "word", 0}));
+  }
+  const auto stretches = stretches_of(queue, key, true);
+  for (const double stretch : stretches) squares += stretch * stretch / 20;
+  EXPECT_TRUE(0.15 < std::sqrt(squares) && std::sqrt(squares) < 0.6) << std::sqrt(squares);
+  EXPECT_TRUE(std::ranges::min(stretches) < 0 && std::ranges::max(stretches) > 0);
+}
+
+// A trial that is never delivered is abandoned, also if its level changes in between.
+TEST(ExperimentRun, AnAdaptiveTrialIsAbandonedByItsNumber) {
+  schema::Protocol protocol = adaptive(schema::LevelMethod::quest_plus);
+  protocol.most_attempts = 1;
+  TextRun run(protocol);
+  ASSERT_TRUE(run.go_on(""));
+  EXPECT_EQ(run.queue().attempts().size(), 20U);
+  EXPECT_EQ(run.queue().abandoned(), 2U);
+  EXPECT_EQ(run.queue().counted(), 18U);
 }
 
 TEST(ExperimentRun, AnOrderThatIsNoneIsRefused) {

@@ -76,6 +76,20 @@ TEST_F(ProtocolFile, EachFaultHasItsPlace) {
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().kind, ErrorKind::malformed);
   EXPECT_NE(unknown.error().remedy.find("repetitions"), std::string::npos) << unknown.error().remedy;
+  for (const char* method : {"staircase", "quest_plus"}) {
+    nlohmann::json body = body_;
+    body["levels"] = {0.5, 0.7}, body["method"] = method;
+    PendingFiles pending;
+    ASSERT_TRUE(pending.write(folder_ / "adaptive.protocol.json", body.dump()));
+    ASSERT_TRUE(pending.commit());
+    const auto protocol = read_protocol(folder_ / "adaptive");
+    ASSERT_TRUE(protocol) << message(protocol.error());
+    EXPECT_EQ(word_of(protocol->method), std::string(method));
+    EXPECT_EQ(nlohmann::json::parse(protocol_text(*protocol).value()), body);
+  }
+  EXPECT_TRUE(read_with("/method", "quest_plus"));
+  expect_fault("/method", "staircase", "/levels");  // of both signs
+  expect_fault("/method", "quest", "/method");
   EXPECT_TRUE(read_with("/x_lab", 3));
   const auto newer = read_with("/version", "2.0");
   ASSERT_FALSE(newer);
