@@ -35,9 +35,8 @@ AdjustedPerson adjusted_person(const Run& run) {
   AdjustedPerson person;
   person.participant = run.journal.plan.participant;
   for (const Attempt& attempt : run.queue.attempts())
-    if (attempt.counts())
-      (attempt.trial.is_ascending() ? person.ascending : person.descending)
-          .push_back(accepted_ratio(attempt).value());
+    if (const auto ratio = accepted_ratio(attempt); ratio && attempt.counts())
+      (attempt.trial.is_ascending() ? person.ascending : person.descending).push_back(*ratio);
   person.means = adjustment_means(person.ascending, person.descending);
   return person;
 }

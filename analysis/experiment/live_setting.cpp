@@ -62,15 +62,11 @@ Result<SettingNow> LiveSetting::now(const playback::Player& player) {
   TACTO_TRY(wait_for_disk(player));
   if (unit_rms_m_ == 0) {
     const auto report = playback::report_strokes(session_);
-    TACTO_TRY(report);
-    if (report->strokes.empty() || report->strokes.front().target_rms_m == 0)
-      return schema::fail(ErrorKind::unsuitable, "has no stroke with a texture", session_,
-                          "use a path on the texture");
+    if (!report || report->strokes.empty() || report->strokes.front().target_rms_m == 0) return now;
     unit_rms_m_ = report->strokes.front().target_rms_m / ratio_;
   }
   const auto rms_m = predicted_rms_m(session_, passes_ * static_cast<std::uint64_t>(protocol_.pace.strokes));
-  TACTO_TRY(rms_m);
-  now.felt_ratio = *rms_m / unit_rms_m_;
+  if (rms_m) now.felt_ratio = *rms_m / unit_rms_m_;
   return now;
 }
 

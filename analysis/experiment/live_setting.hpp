@@ -15,7 +15,7 @@ namespace tacto::analysis {
 struct SettingNow {
   double ratio = 0;  ///< of the gain, to that of the protocol
   /// RMS of the predicted displacement of the last stroke over that of the texture at the ratio 1; 0: not
-  /// computed.
+  /// computed, or unknown because ticks are missing.
   double felt_ratio = 0;
 };
 

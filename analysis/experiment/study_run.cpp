@@ -178,12 +178,19 @@ class LiveSteps {
     IntervalPlay interval = interval_of(attempt, i);
     interval.ratio = attempt.trial.ratio;
     const double pass_s = paced_path(pace_of(protocol, interval)).duration_s();
-    LiveSetting setting(protocol, interval.session, pass_s, attempt.trial.ratio, asked_at,
-                        [&](const SettingNow& now) -> Result<std::optional<schema::Turn>> {
-                          if (!wanted) return request_.participant.turn(asked_at == AskedAt::pass);
-                          const double measured = request_.observer ? now.felt_ratio : now.ratio;
-                          return turn_towards(protocol, now.ratio, measured, *wanted);
-                        });
+    schema::Turn before = schema::Turn::accept;
+    const auto ask = [&](const SettingNow& now) -> Result<std::optional<schema::Turn>> {
+      if (!wanted) return request_.participant.turn(asked_at == AskedAt::pass);
+      const double measured = request_.observer ? now.felt_ratio : now.ratio;
+      // Nothing is felt where ticks are missing, and then the attempt is not delivered.
+      const schema::Turn turn =
+          measured > 0 ? turn_towards(protocol, now.ratio, measured, *wanted) : schema::Turn::accept;
+      // Between two settings that are equally near.
+      const bool back = before != schema::Turn::accept && turn != before;
+      before = back ? schema::Turn::accept : turn;
+      return before;
+    };
+    LiveSetting setting(protocol, interval.session, pass_s, attempt.trial.ratio, asked_at, ask);
     interval.steer = std::ref(setting);
     const auto goes_on = play_interval_of(attempt, i, interval, played);
     if (goes_on && !setting.accepted()) played.late.emplace_back(kNotAccepted);
@@ -219,18 +226,18 @@ class LiveSteps {
   }
 
   // By the displacement that the sessions predict; the mean level of a texture's intervals.
-  Result<GivenAnswer> order_by_level(const Attempt& attempt) const {
+  GivenAnswer order_by_level(const Attempt& attempt) const {
     std::vector<std::pair<double, int>> levels;
     for (const std::string& code : attempt.trial.arranged) {
       double sum_db = 0, count = 0;
       for (std::size_t i = 0; i < attempt.begun.stimuli.size(); ++i) {
         if (attempt.begun.stimuli[i] != code) continue;
         const auto rms_m = predicted_rms_m(full(attempt.begun.sessions[i]));
-        TACTO_TRY(rms_m);
+        if (!rms_m) continue;  // ticks are missing: it is not delivered
         sum_db += felt_level_db(*request_.observer, fmt::format("{}/{}", place(attempt), i), *rms_m);
         ++count;
       }
-      levels.emplace_back(sum_db / count, static_cast<int>(levels.size()) + 1);
+      levels.emplace_back(count > 0 ? sum_db / count : 0, static_cast<int>(levels.size()) + 1);
     }
     std::ranges::sort(levels);
     GivenAnswer answer;
