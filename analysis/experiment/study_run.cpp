@@ -120,6 +120,7 @@ class LiveSteps {
       TACTO_TRY(goes_on);
       if (!*goes_on) return std::nullopt;
     }
+    for (std::size_t i = 0; i < attempt.begun.stimuli.size(); ++i) TACTO_TRY(read_facts(attempt, i, played));
     return judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums, run_.study.protocol,
                            played.late);
   }
@@ -147,20 +148,23 @@ class LiveSteps {
 
   // False: the run ends.
   Result<bool> play_one(const Attempt& attempt, std::size_t i, IntervalsPlayed& played) {
-    return play_interval_of(attempt, i, interval_of(attempt, i), played);
+    return play_interval_of(interval_of(attempt, i), played);
   }
 
-  Result<bool> play_interval_of(const Attempt& attempt, std::size_t i, const IntervalPlay& interval,
-                                IntervalsPlayed& played) {
+  Result<bool> play_interval_of(const IntervalPlay& interval, IntervalsPlayed& played) const {
     const auto late = play_interval(run_.study.protocol, interval);
     TACTO_TRY(late);
     if (request_.stop_asked()) return false;
     if (!late->empty()) played.late.push_back(*late);
-    auto facts = interval_facts(interval.session);
+    return true;
+  }
+
+  Result<void> read_facts(const Attempt& attempt, std::size_t i, IntervalsPlayed& played) const {
+    auto facts = interval_facts(full(attempt.begun.sessions[i]));
     TACTO_TRY(facts);
     played.facts.push_back(std::move(*facts));
     played.sums.push_back(stimulus_of(run_.study.key, attempt.begun.stimuli[i]).sha256);
-    return true;
+    return {};
   }
 
   Result<bool> adjust(const Attempt& attempt, std::size_t i, IntervalsPlayed& played) {
@@ -192,7 +196,7 @@ class LiveSteps {
     };
     LiveSetting setting(protocol, interval.session, pass_s, attempt.trial.ratio, asked_at, ask);
     interval.steer = std::ref(setting);
-    const auto goes_on = play_interval_of(attempt, i, interval, played);
+    const auto goes_on = play_interval_of(interval, played);
     if (goes_on && !setting.accepted()) played.late.emplace_back(kNotAccepted);
     return goes_on;
   }
@@ -218,6 +222,7 @@ class LiveSteps {
       const auto goes_on = play_one(attempt, i, played);
       TACTO_TRY(goes_on);
       if (!*goes_on) return std::nullopt;
+      TACTO_TRY(read_facts(attempt, i, played));
       const bool felt = reasons_against(played.facts.back(), run_.study.protocol, played.sums.back()).empty();
       tries[chosen] = felt ? 0 : std::max(tries[chosen] - 1, 0);
     }
