@@ -6,9 +6,11 @@
 #include "analysis/cli/experiment_study.hpp"
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
+#include "analysis/experiment/adjustment_answers.hpp"
 #include "analysis/experiment/amplitude_answers.hpp"
 #include "analysis/experiment/answers_page.hpp"
 #include "analysis/experiment/identification_answers.hpp"
+#include "analysis/experiment/ordering_answers.hpp"
 #include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/withdrawal.hpp"
 #include "analysis/page/picture_svg.hpp"
@@ -312,6 +314,62 @@ Report amplitude_report(const AmplitudeAnswers& all, const std::string& verdict)
   return report.add("people", std::move(people));
 }
 
+void add_ordered(Report& row, const OrderingAnswers& all, const OrderedBy& by) {
+  row.add("orders", by.orders);
+  Report ranks;
+  for (std::size_t i = 0; i < all.standards.size(); ++i) ranks.add(all.standards[i], by.mean_ranks[i]);
+  row.add("mean_ranks", std::vector<Report>{ranks});
+  if (by.agreement)
+    row.add("w", by.agreement->w)
+        .add("chi_squared", by.agreement->chi_squared)
+        .add("degrees_of_freedom", by.agreement->freedom)
+        .add("p", by.agreement->p);
+  if (by.intended) row.add("spearman_rho", by.intended->rho).add("kendall_tau", by.intended->tau);
+}
+
+Report ordering_report(const OrderingAnswers& all, const std::string& verdict) {
+  Report report;
+  report.add("verdict", verdict);
+  if (!all.simulated.empty()) report.add("simulated", all.simulated);
+  if (all.abandoned > 0) report.add("abandoned", all.abandoned);
+  Report over;
+  add_ordered(over, all, all.all);
+  report.add("over_people", std::vector<Report>{over});
+  std::vector<Report> people;
+  for (const OrderedBy& each : all.people) {
+    people.emplace_back().add("participant", each.participant);
+    add_ordered(people.back(), all, each);
+  }
+  return report.add("people", std::move(people));
+}
+
+void add_series(Report& row, const std::string& key, const std::optional<SeriesMean>& series) {
+  if (!series) return;
+  row.add(key + "_settings", series->settings);
+  add_estimate(row, key, series->ratio);
+  if (series->deviation_db) row.add(key + "_deviation_db", *series->deviation_db);
+}
+
+Report adjustment_report(const AdjustmentAnswers& all, const std::string& verdict) {
+  Report report;
+  report.add("verdict", verdict).add("goal", schema::word_of(all.goal));
+  if (!all.simulated.empty()) report.add("simulated", all.simulated);
+  if (all.abandoned > 0) report.add("abandoned", all.abandoned);
+  if (all.ratio) add_estimate(report, "ratio", *all.ratio);
+  if (all.ratio) report.add("rms_m", all.unit_rms_m * all.ratio->value);
+  if (all.hysteresis_db) add_estimate(report, "hysteresis_db", *all.hysteresis_db);
+  std::vector<Report> people;
+  for (const AdjustedPerson& each : all.people) {
+    Report& row = people.emplace_back();
+    row.add("participant", each.participant);
+    if (each.means.middle) add_estimate(row, "ratio", *each.means.middle);
+    add_series(row, "ascending", each.means.ascending);
+    add_series(row, "descending", each.means.descending);
+    if (each.means.hysteresis_db) add_estimate(row, "hysteresis_db", *each.means.hysteresis_db);
+  }
+  return report.add("people", std::move(people));
+}
+
 Result<Report> analyse_task(const AnalyseOptions& o, bool json) {
   const auto protocol = schema::read_protocol(o.fit.file);
   TACTO_TRY(protocol);
@@ -326,6 +384,17 @@ Result<Report> analyse_task(const AnalyseOptions& o, bool json) {
     const AmplitudeAnswers answers = amplitude_answers(*runs);
     const Findings findings = findings_of(answers);
     return write_fit(o.fit, findings, amplitude_report(answers, findings.verdict()), json);
+  }
+  if (protocol->task == schema::Task::ordering) {
+    const OrderingAnswers answers = ordering_answers(*runs);
+    const Findings findings = findings_of(answers);
+    return write_fit(o.fit, findings, ordering_report(answers, findings.verdict()), json);
+  }
+  if (protocol->task == schema::Task::adjustment) {
+    const auto answers = adjustment_answers(*runs);
+    TACTO_TRY(answers);
+    const Findings findings = findings_of(*answers);
+    return write_fit(o.fit, findings, adjustment_report(*answers, findings.verdict()), json);
   }
   const IdentificationAnswers answers = identification_answers(*runs);
   const Findings findings = findings_of(answers);
@@ -367,7 +436,13 @@ cli::Action declare_analyse(CLI::App& app) {
       "alike, with "
       "the prior Beta(1, 19). Median and 95 % interval of the posterior; of several people the geometric "
       "mean of "
-      "their matches, by Student's t.");
+      "their matches, by Student's t.\nOf ordering: the mean ranks over people, Kendall's W of their mean "
+      "ranks, "
+      "and the correlation of the mean ranks with the intended parameter.\nOf adjustment: the geometric mean "
+      "of "
+      "the ratios that were accepted, in ascending and in descending series, with Student's 95 % interval; "
+      "the "
+      "middle of both, and their difference with an interval after Welch.");
   CLI::App* const verb = app.get_parent();
   return [options, verb] { return run_analyse(*options, verb->count("--json") > 0); };
 }
@@ -377,8 +452,10 @@ constexpr cli::VerbPart kExperimentParts[] = {
     {"check", "Check a study's files: protocol, key, stimuli", declare_check_study},
     {"run", "Run a study with one participant, or with a simulated observer", declare_run_study},
     {"resume", "Continue an interrupted run", declare_resume_study},
+    {"watch", "Print the progress of a study's runs while they go on", declare_watch_study},
     {"prove", "Compute from the sessions of a run what was delivered", declare_prove_run},
-    {"analyse", "Fit psychometric functions to the answers of a study, count confusions, or find a match",
+    {"analyse",
+     "Fit psychometric functions to the answers of a study, count confusions, find a match or an order",
      declare_analyse},
     {"power", "How many participants a study needs for a difference of Weber fractions", declare_study_power},
     {"export", "Write the trials of a study as CSV and BIDS, with a script for R", declare_export_study},
@@ -405,6 +482,11 @@ const cli::Verb kExperimentVerb{
     "template\n"
     "  tactograph experiment run amplitude -d sim: --participant P01 --observer "
     "match=86%,weber=10%\n"
+    "  tactograph experiment new ordering --textures A,C,E --intended 0.2,0.5,1 -o roughness\n"
+    "  tactograph experiment run roughness -d sim: --participant P01 --observer order,noise=1dB\n"
+    "  tactograph experiment new adjustment --textures E --goal least -o least\n"
+    "  tactograph experiment run least -d sim: --participant P01 --observer threshold=20%,sd=10%\n"
+    "  tactograph experiment watch stretch\n"
     "  tactograph experiment prove stretch-P01\n"
     "  tactograph experiment analyse stretch --unblind -o stretch.html\n"
     "  tactograph experiment prove sessions/2026-11-29.session\n"

@@ -7,17 +7,23 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
+#include <thread>
+#include <utility>
 
 #include "analysis/cli/participant_screen.hpp"
 #include "analysis/experiment/interval_play.hpp"
 #include "analysis/experiment/marked_proof.hpp"
+#include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/study_export.hpp"
 #include "analysis/experiment/study_power.hpp"
 #include "analysis/experiment/study_run.hpp"
+#include "analysis/experiment/trial_runner.hpp"
 #include "analysis/experiment/withdrawal.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/command/output_options.hpp"
@@ -33,8 +39,11 @@ using schema::ErrorKind;
 using schema::Result;
 
 struct NewStudyOptions {
-  std::string what, stem, seed = "1";
+  std::string what, stem, seed = "1", reference;
   std::vector<std::string> textures, comparisons;
+  std::vector<double> intended;
+  schema::Goal goal = schema::Goal::least;
+  schema::LevelMethod method = schema::LevelMethod::constant;
   schema::Existing existing = schema::Existing::keep;
 };
 
@@ -51,16 +60,24 @@ constexpr const char* kDeviceHelp =
     "Device: usb:, sim: ... (as of 'play'; an emulated finger moves at the protocol's pace)";
 constexpr const char* kAnswersHelp =
     "File with an answer on each line, its word or its key, and between them the labels (K3) of the real "
-    "samples that the operator places; default: the keys of this terminal";
+    "samples that the operator places; of ordering the numbers from least to most (2 1 3); of adjustment the "
+    "ratio that is set (0.25); default: the keys of this terminal";
 
 Report study_report(const Study& study) {
   const schema::Protocol& protocol = study.protocol;
   Report report;
   report.add("study", study.stem).add("task", schema::word_of(protocol.task));
   if (protocol.task == schema::Task::two_interval)
-    report.add("levels", protocol.levels.size());
+    report.add("levels", protocol.levels.size()).add("method", schema::word_of(protocol.method));
   else if (protocol.task == schema::Task::amplitude)
     report.add("largest_ratio", protocol.largest_ratio);
+  else if (protocol.task == schema::Task::adjustment)
+    report.add("goal", schema::word_of(protocol.goal))
+        .add("smallest_ratio", protocol.smallest_ratio)
+        .add("largest_ratio", protocol.largest_ratio)
+        .add("step_db", protocol.step_db);
+  else if (protocol.task == schema::Task::ordering)
+    report.add("standards", protocol.standards.size());
   else
     report.add("standards", protocol.standards.size())
         .add("comparisons", protocol.comparisons.size())
@@ -77,26 +94,76 @@ Result<Report> warn_and_report(const Study& study) {
   return study_report(study);
 }
 
-// Takes the textures that the protocol is of.
-Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& textures) {
-  if (o.what == "stretch" && o.textures.empty() && o.comparisons.empty()) return stretch_protocol(o.seed);
-  if (o.what == "stretch")
-    return schema::fail(ErrorKind::usage, "the stimuli of stretch are computed", "--textures",
-                        "leave it out");
-  if (o.what != "identification" && o.what != "amplitude")
-    return schema::fail(ErrorKind::usage,
-                        fmt::format("'{}' is not a protocol that comes with tactograph", o.what),
-                        "experiment new", "there are: stretch, identification, amplitude");
-  if (o.what == "amplitude" && !o.comparisons.empty())
-    return schema::fail(ErrorKind::usage, "amplitude has no comparisons", "--comparisons", "leave it out");
-  for (const std::string& file : o.textures) {
+// Of a protocol that comes with tactograph, the options that only it has.
+struct KnownProtocol {
+  const char* name;
+  std::vector<std::string> options;
+};
+const std::vector<KnownProtocol> kKnownProtocols = {{"stretch", {"--method"}},
+                                                    {"identification", {"--textures", "--comparisons"}},
+                                                    {"amplitude", {"--textures"}},
+                                                    {"ordering", {"--textures", "--intended"}},
+                                                    {"adjustment", {"--textures", "--goal", "--reference"}}};
+
+Result<void> check_new_options(const NewStudyOptions& o, const std::vector<std::string>& given) {
+  const auto known = std::ranges::find(kKnownProtocols, o.what, &KnownProtocol::name);
+  if (known == kKnownProtocols.end())
+    return schema::fail(
+        ErrorKind::usage, fmt::format("'{}' is not a protocol that comes with tactograph", o.what),
+        "experiment new", "there are: stretch, identification, amplitude, ordering, adjustment");
+  for (const std::string& option : given)
+    if (std::ranges::find(known->options, option) == known->options.end())
+      return schema::fail(ErrorKind::usage, fmt::format("is no option of {}", o.what), option,
+                          "leave it out");
+  return {};
+}
+
+std::string name_of_texture(const std::string& file) {
+  return std::filesystem::path(schema::stem_of(file, ".texture")).filename().string();
+}
+
+Result<void> read_named(const std::vector<std::string>& files, NamedTextures& textures) {
+  for (const std::string& file : files) {
     auto texture = schema::read_texture(file);
     TACTO_TRY(texture);
-    const std::string name = std::filesystem::path(schema::stem_of(file, ".texture")).filename().string();
+    const std::string name = name_of_texture(file);
     if (!textures.emplace(name, std::move(*texture)).second)
       return schema::fail(ErrorKind::usage, name + " is named twice", "--textures", "name each texture once");
   }
+  return {};
+}
+
+Result<schema::Protocol> new_ordering(const NewStudyOptions& o, const NamedTextures& textures) {
+  if (!o.intended.empty() && o.intended.size() != o.textures.size())
+    return schema::fail(ErrorKind::usage,
+                        fmt::format("has {} numbers for {} textures", o.intended.size(), o.textures.size()),
+                        "--intended", "give one for each texture, in their order");
+  std::map<std::string, double> intended;
+  for (std::size_t i = 0; i < o.intended.size(); ++i)
+    intended[name_of_texture(o.textures[i])] = o.intended[i];
+  return ordering_protocol(o.seed, textures, intended);
+}
+
+Result<schema::Protocol> new_adjustment(const NewStudyOptions& o, NamedTextures& textures) {
+  if (o.textures.size() != 1)
+    return schema::fail(ErrorKind::usage, fmt::format("there are {} textures", o.textures.size()),
+                        "--textures", "name one, which is adjusted");
+  if (!o.reference.empty() && o.goal != schema::Goal::match)
+    return schema::fail(ErrorKind::usage, fmt::format("the goal {} has none", schema::word_of(o.goal)),
+                        "--reference", "leave it out, or add --goal match");
+  const std::string adjusted = name_of_texture(o.textures.front());
+  if (!o.reference.empty() && name_of_texture(o.reference) != adjusted)
+    TACTO_TRY(read_named({o.reference}, textures));
+  return adjustment_protocol(o.seed, textures, adjusted, o.goal);
+}
+
+// Takes the textures that the protocol is of.
+Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& textures) {
+  if (o.what == "stretch") return stretch_protocol(o.seed, o.method);
+  TACTO_TRY(read_named(o.textures, textures));
   if (o.what == "amplitude") return amplitude_protocol(o.seed, textures);
+  if (o.what == "ordering") return new_ordering(o, textures);
+  if (o.what == "adjustment") return new_adjustment(o, textures);
   std::vector<std::string> comparisons = o.comparisons;
   if (comparisons.empty())
     for (const auto& [name, texture] : textures) comparisons.push_back(name);
@@ -152,12 +219,17 @@ void add_lost_trials(Report& report, const TrialQueue& queue) {
 }
 
 // Counts only: no screen names a stimulus.
+Report progress_row(const std::string& stem, const TrialQueue& queue) {
+  Report row;
+  row.add("run", stem).add("complete", queue.has_ended());
+  row.add("trials", queue.trials()).add("delivered_and_answered", queue.counted());
+  row.add("attempts", queue.attempts().size());
+  add_lost_trials(row, queue);
+  return row;
+}
+
 Report report_of_run(const Run& run) {
-  Report report;
-  report.add("run", run.stem).add("complete", run.queue.has_ended());
-  report.add("trials", run.queue.trials()).add("delivered_and_answered", run.queue.counted());
-  report.add("attempts", run.queue.attempts().size());
-  add_lost_trials(report, run.queue);
+  Report report = progress_row(run.stem, run.queue);
   if (!run.journal.plan.observer.empty()) report.add("simulated", observer_in_words(run));
   std::vector<std::string> written = {schema::journal_path(run.stem), run.stem + "/"};
   if (run.queue.has_ended()) written.push_back(run.stem + ".trials.tsv");
@@ -221,7 +293,7 @@ Result<Report> run_resume_study(const RunStudyOptions& o) {
                           [&](RunRequest request) { return resume_run(o.what, std::move(request)); });
 }
 
-std::string proof_in_words(const Proof& proof, const TrialQueue& queue) {
+std::string proof_in_words(const Proof& proof, const TrialQueue& queue, schema::Task task) {
   std::string words = fmt::format("{} of {} trials delivered", proof.delivered, proof.trials);
   if (proof.placed > 0)
     words += fmt::format(", {} with real samples, of which there is only the operator's word", proof.placed);
@@ -232,7 +304,8 @@ std::string proof_in_words(const Proof& proof, const TrialQueue& queue) {
   if (proof.stretch_error)
     words += fmt::format("; predicted stretch within {:.2g} of the nominal one", *proof.stretch_error);
   if (proof.ratio_error)
-    words += fmt::format("; predicted ratio within {:.2g} of the asked one", *proof.ratio_error);
+    words += fmt::format("; predicted ratio within {:.2g} of the {} one", *proof.ratio_error,
+                         task == schema::Task::adjustment ? "accepted" : "asked");
   return words +
          fmt::format("; {} of {} sessions the same to the bit", proof.same_to_the_bit, proof.sessions);
 }
@@ -306,7 +379,8 @@ Result<Report> run_prove_run(const ProveOptions& o) {
   cli::Progress progress("proving");
   const Proof proof = prove(*run, [&](double part) { progress.update(part); });
   Report report;
-  report.add("verdict", proof_in_words(proof, run->queue)).add("proven", proof.holds());
+  report.add("verdict", proof_in_words(proof, run->queue, run->study.protocol.task))
+      .add("proven", proof.holds());
   report.add("complete", run->queue.has_ended())
       .add("trials", proof.trials)
       .add("delivered", proof.delivered);
@@ -324,6 +398,45 @@ Result<Report> run_prove_run(const ProveOptions& o) {
   if (!run->journal.plan.observer.empty()) report.add("observer", observer_in_words(*run));
   if (!proof.faults.empty()) report.add("faults", proof.faults);
   return proof.holds() ? report : report.ends_with(ErrorKind::unsuitable);
+}
+
+struct WatchOptions {
+  std::string study;
+  std::optional<double> time_s;
+};
+
+std::string progress_in_words(const std::string& stem, const TrialQueue& queue) {
+  return fmt::format("{}: {} of {} trials, {} attempts{}\n", stem, queue.counted(), queue.trials(),
+                     queue.attempts().size(), queue.has_ended() ? ", complete" : "");
+}
+
+Result<Report> run_watch_study(const WatchOptions& o) {
+  constexpr auto kLookEvery = std::chrono::milliseconds(500);
+  const auto study = read_study(o.study);
+  TACTO_TRY(study);
+  const cli::StopSignals signals;
+  const auto begun = std::chrono::steady_clock::now();
+  std::map<std::string, std::string> shown;
+  while (true) {
+    bool going_on = false;
+    std::vector<Report> rows;
+    for (const std::string& stem : runs_of(*study)) {
+      const auto journal = schema::read_journal(schema::journal_path(stem));
+      if (!journal && journal.error().kind == ErrorKind::unsuitable)
+        continue;  // its first line is being written
+      TACTO_TRY(journal);
+      const auto queue = queue_of(*journal, study->protocol, study->key);
+      TACTO_TRY(queue);
+      going_on = going_on || !queue->has_ended();
+      rows.push_back(progress_row(stem, *queue));
+      const std::string line = progress_in_words(stem, *queue);
+      if (std::exchange(shown[stem], line) != line) cli::write_message(line);
+    }
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begun;
+    if (!going_on || signals.stop_asked() || (o.time_s && elapsed.count() >= *o.time_s))
+      return Report().add("study", study->stem).add("runs", std::move(rows));
+    std::this_thread::sleep_for(kLookEvery);
+  }
 }
 
 struct PowerOptions {
@@ -446,12 +559,34 @@ cli::Action declare_new_study(CLI::App& app) {
   auto options = std::make_shared<NewStudyOptions>();
   app.add_option("PROTOCOL", options->what,
                  "stretch or identification: experiments 2 and 1 of Wiertlewski 2011; amplitude: after Fiene "
-                 "and Kuchenbecker 2007")
+                 "and Kuchenbecker 2007; ordering, adjustment: after Minsky et al. 1990")
       ->required();
   app.add_option("-o,--output", options->stem, "Stem of the study's files; default: the protocol's name");
-  app.add_option("--textures", options->textures,
-                 "Textures of force. Of identification: the standards, A,B,C,D,E; of amplitude: one")
+  app.add_option(
+         "--textures", options->textures,
+         "Textures of force. Of identification: the standards, A,B,C,D,E; of ordering: those that are "
+         "put in order; of amplitude and adjustment: one")
       ->delimiter(',');
+  cli::add_choice<schema::LevelMethod>(
+      app, "--method", options->method,
+      {{"constant", schema::LevelMethod::constant},
+       {"staircase", schema::LevelMethod::staircase},
+       {"quest_plus", schema::LevelMethod::quest_plus}},
+      "Of stretch: each level equally often, or 60 trials whose levels follow "
+      "the answers");
+  app.add_option(
+         "--intended", options->intended,
+         "Of ordering: the parameter by which the textures were made, a number for each, in their order; "
+         "'analyse' compares the answers with it")
+      ->delimiter(',');
+  cli::add_choice<schema::Goal>(
+      app, "--goal", options->goal,
+      {{"least", schema::Goal::least}, {"greatest", schema::Goal::greatest}, {"match", schema::Goal::match}},
+      "Of adjustment: the least or the greatest gain at which it still is a texture, or that at which it is "
+      "as "
+      "strong as a reference");
+  app.add_option("--reference", options->reference,
+                 "Of adjustment, --goal match: the texture that is played before it; default: itself");
   app.add_option("--comparisons", options->comparisons,
                  "Of identification: which of them are presented, C,D,E; default: all")
       ->delimiter(',');
@@ -461,11 +596,20 @@ cli::Action declare_new_study(CLI::App& app) {
       "comparison, a real sample in one block and played in the other one, each of 100 trials or 15 "
       "minutes. amplitude: one texture at gains between 0 and 2 times that of the real sample, which is "
       "before "
-      "the participant; each is rated from -3 to 3 against it. "
+      "the participant; each is rated from -3 to 3 against it. ordering: all textures are felt freely, and "
+      "put in order of roughness. adjustment: the gain of a texture is changed by keys while it is played, "
+      "from a low start in odd trials and from a high one in even trials, until it is accepted. "
       "Label the real samples with the codes of STUDY.key.json, which neither operator nor participant "
       "reads.");
   cli::declare_force(app, options->existing);
-  return [options] { return run_new_study(*options); };
+  return [options, &app]() -> Result<Report> {
+    std::vector<std::string> given;
+    for (const char* const name :
+         {"--textures", "--comparisons", "--intended", "--goal", "--reference", "--method"})
+      if (app.count(name) > 0) given.emplace_back(name);
+    TACTO_TRY(check_new_options(*options, given));
+    return run_new_study(*options);
+  };
 }
 
 cli::Action declare_check_study(CLI::App& app) {
@@ -489,7 +633,11 @@ cli::Action declare_run_study(CLI::App& app) {
       "identification: template,noise=9dB,hurry=5%,seed=1, which compares its spectrum with the standards'; "
       "its noise is tuned, so its success says nothing about people. Of amplitude: "
       "match=86%,weber=10%,lapse=2%,seed=1 "
-      "(match: the ratio that seems equal to the real sample)");
+      "(match: the ratio that seems equal to the real sample). Of ordering: order,noise=1dB,seed=1, by the "
+      "RMS "
+      "of the displacement. Of adjustment: threshold=20%,sd=10%,hysteresis=5%,seed=1, the ratio that it "
+      "looks "
+      "for, the standard deviation of its logarithm, and the difference of descending series");
   app.add_option("--answers", options->answers, kAnswersHelp)->excludes(observer);
   app.footer(
       "Each step is in STUDY-P07.trials.jsonl before the next one begins. Whether a trial was delivered is "
@@ -526,6 +674,17 @@ cli::Action declare_prove_run(CLI::App& app) {
       "computed again, is not the same to the bit. Exit code 0 does not say that an interval was delivered: "
       "see 'delivered' (yes, no, unknown) of each interval.");
   return [options] { return run_prove_run(*options); };
+}
+
+cli::Action declare_watch_study(CLI::App& app) {
+  auto options = std::make_shared<WatchOptions>();
+  app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
+  cli::add_quantity(app, "--time", options->time_s, schema::Dimension::time,
+                    "Duration; default: until no run of the study is going on, or Ctrl-C");
+  app.footer(
+      "A line for each run whenever its journal grows: how many of its trials are delivered and answered. An "
+      "interrupted run counts as going on. Nothing tells which stimuli they were.");
+  return [options] { return run_watch_study(*options); };
 }
 
 cli::Action declare_study_power(CLI::App& app) {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <sstream>
@@ -74,18 +75,23 @@ Result<void> ParticipantScreen::check_terminal() const {
 }
 
 Participant ParticipantScreen::participant() {
-  const auto go_ahead = [this](int /*interval*/) {
-    if (!std::exchange(welcomed_, true)) show(protocol_.texts.welcome);
+  const auto go_ahead = [this](int interval) {
+    welcome();
     show(protocol_.texts.begin);
     if (wait_for(protocol_.begin_key) == 0) return false;
-    show(protocol_.texts.interval);
+    show(adjusts(interval) ? protocol_.texts.question : protocol_.texts.interval);
     return true;
   };
   const auto answer = [this](std::size_t /*number*/) -> Result<std::optional<GivenAnswer>> {
     show(protocol_.texts.question);
     const ScreenClock::time_point asked = ScreenClock::now();
-    std::string keys;
-    for (const schema::AnswerWord& choice : protocol_.choices) keys += choice.key;
+    if (protocol_.task == schema::Task::ordering) {
+      auto order = wait_for_order();
+      if (order.empty()) return std::nullopt;
+      const std::chrono::duration<double> after = ScreenClock::now() - asked;
+      return GivenAnswer{0, after.count(), std::move(order)};
+    }
+    const std::string keys = choice_keys();
     const char key = wait_for(keys);
     if (key == 0) return std::nullopt;
     const std::chrono::duration<double> after = ScreenClock::now() - asked;
@@ -94,7 +100,77 @@ Participant ParticipantScreen::participant() {
   const auto place = [this](const std::string& label, std::size_t /*number*/) {
     return wait_for_label(label);
   };
-  return {place, go_ahead, answer};
+  const auto explore = [this](const std::vector<int>& left) { return wait_for_texture(left); };
+  const auto turn = [this](bool wait) { return next_turn(wait); };
+  return {place, go_ahead, answer, explore, turn, {}};
+}
+
+void ParticipantScreen::welcome() {
+  if (!std::exchange(welcomed_, true)) show(protocol_.texts.welcome);
+}
+
+bool ParticipantScreen::adjusts(int interval) const {
+  return protocol_.task == schema::Task::adjustment &&
+         interval == (protocol_.goal == schema::Goal::match ? 2 : 1);
+}
+
+// The number of a texture, or 0 for the order, once each was felt; none: the run ends.
+std::optional<int> ParticipantScreen::wait_for_texture(const std::vector<int>& left) {
+  welcome();
+  show(protocol_.texts.begin);
+  std::string keys = choice_keys();
+  if (left.empty()) keys += protocol_.begin_key;
+  std::vector<std::string> to_feel;
+  for (const int number : left)
+    to_feel.push_back(protocol_.choices[static_cast<std::size_t>(number) - 1].word);
+  if (!left.empty()) show(fmt::format("{}: {}", protocol_.texts.left, fmt::join(to_feel, " ")));
+  const char key = wait_for(keys);
+  if (key == 0) return std::nullopt;
+  const auto number = keys.find(key) + 1;
+  if (number > protocol_.choices.size()) return 0;
+  show(protocol_.texts.interval);
+  return static_cast<int>(number);
+}
+
+// The numbers of all textures, as they are typed; empty: the run ends.
+std::vector<int> ParticipantScreen::wait_for_order() {
+  drain_keys();
+  const std::string keys = choice_keys();
+  std::string typed;
+  while (!stop_asked_()) {
+    const char key = keys_.next();
+    if (key == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    if (key == '\b' || key == '\x7f') take_typed(key, typed);
+    if (keys.find(key) != std::string::npos && typed.find(key) == std::string::npos) take_typed(key, typed);
+    if (typed.size() < keys.size() || key != protocol_.begin_key.front()) continue;
+    std::vector<int> order;
+    for (const char each : typed) order.push_back(static_cast<int>(keys.find(each)) + 1);
+    return order;
+  }
+  return {};
+}
+
+// The arrows up and down are keys, too.
+std::optional<schema::Turn> ParticipantScreen::next_turn(bool wait) {
+  while (!stop_asked_()) {
+    char key = keys_.next();
+    if (key == '\x1b' && keys_.next() == '[') {
+      const char arrow = keys_.next();
+      if (arrow == 'A') return schema::Turn::stronger;
+      if (arrow == 'B') return schema::Turn::weaker;
+    }
+    const auto number = choice_keys().find(key);
+    if (key != 0 && number != std::string::npos) return static_cast<schema::Turn>(number + 1);
+    if (key == 0 && !wait) return std::nullopt;
+    if (key == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return std::nullopt;
+}
+
+std::string ParticipantScreen::choice_keys() const {
+  std::string keys;
+  for (const schema::AnswerWord& choice : protocol_.choices) keys += choice.key;
+  return keys;
 }
 
 void ParticipantScreen::show_end() const {
@@ -139,37 +215,99 @@ Result<bool> ParticipantScreen::wait_for_label(const std::string& label) {
   return false;
 }
 
+namespace {
+
+tl::unexpected<schema::Error> no_answer(const std::string& line, const std::string& where,
+                                        const std::string& remedy) {
+  return schema::fail(ErrorKind::malformed, fmt::format("'{}' is not an answer", line), where, remedy);
+}
+
+std::string words_of(const schema::Protocol& protocol) {
+  std::vector<std::string> words;
+  for (const schema::AnswerWord& each : protocol.choices) words.push_back(each.word);
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+Result<GivenAnswer> read_order(const std::string& line, const std::string& where,
+                               const schema::Protocol& protocol) {
+  GivenAnswer answer;
+  std::istringstream words(line);
+  for (std::string word; words >> word;) answer.order.push_back(choice_number(word, protocol));
+  std::vector<int> sorted = answer.order;
+  std::ranges::sort(sorted);
+  for (std::size_t i = 0; i < protocol.choices.size(); ++i)
+    if (sorted.size() != protocol.choices.size() || sorted[i] != static_cast<int>(i) + 1)
+      return no_answer(line, where,
+                       fmt::format("give each of {} once, from least to most", words_of(protocol)));
+  return answer;
+}
+
+Result<double> read_ratio(const std::string& line, const std::string& where,
+                          const schema::Protocol& protocol) {
+  double ratio = 0;
+  const auto [end, failed] = std::from_chars(line.data(), line.data() + line.size(), ratio);
+  const bool whole = failed == std::errc() && end == line.data() + line.size();
+  if (whole && protocol.smallest_ratio <= ratio && ratio <= protocol.largest_ratio) return ratio;
+  return no_answer(line, where,
+                   fmt::format("give the ratio that is set, {:g} to {:g}", protocol.smallest_ratio,
+                               protocol.largest_ratio));
+}
+
+// In the order of the file.
+struct Answers {
+  std::vector<GivenAnswer> given;
+  std::vector<double> ratios;
+  std::vector<std::pair<std::string, std::string>> labels;  // with their places
+};
+
+Result<void> take_line(const std::string& line, const std::string& where, const schema::Protocol& protocol,
+                       Answers& answers) {
+  if (protocol.task == schema::Task::adjustment) {
+    const auto ratio = read_ratio(line, where, protocol);
+    TACTO_TRY(ratio);
+    answers.ratios.push_back(*ratio);
+  } else if (protocol.task == schema::Task::ordering) {
+    auto order = read_order(line, where, protocol);
+    TACTO_TRY(order);
+    answers.given.push_back(std::move(*order));
+  } else if (const int choice = choice_number(line, protocol); choice != 0) {
+    answers.given.push_back({choice, 0});
+  } else if (schema::is_label(line)) {
+    answers.labels.emplace_back(line, where);
+  } else {
+    return no_answer(line, where, fmt::format("give one of {}", words_of(protocol)));
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<Participant> answers_from(const std::string& file, const schema::Protocol& protocol) {
   const auto text = schema::read_file(file);
   TACTO_TRY(text);
-  std::vector<int> answers;
-  std::vector<std::pair<std::string, std::string>> labels;  // with their places
+  Answers answers;
   std::istringstream lines(*text);
   std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
     if (line.ends_with('\r')) line.pop_back();
-    const std::string where = fmt::format("{}: line {}", file, ++number);
-    if (const int choice = choice_number(line, protocol); choice != 0) {
-      answers.push_back(choice);
-    } else if (schema::is_label(line)) {
-      labels.emplace_back(line, where);
-    } else {
-      std::vector<std::string> words;
-      for (const schema::AnswerWord& each : protocol.choices) words.push_back(each.word);
-      return schema::fail(ErrorKind::malformed, fmt::format("'{}' is not an answer", line), where,
-                          fmt::format("give one of {}", fmt::join(words, ", ")));
-    }
+    TACTO_TRY(take_line(line, fmt::format("{}: line {}", file, ++number), protocol, answers));
   }
-  const auto place = [labels](const std::string& label, std::size_t at) -> Result<bool> {
+  const auto place = [labels = answers.labels](const std::string& label, std::size_t at) -> Result<bool> {
     if (at >= labels.size()) return false;
     if (labels[at].first != label) return wrong_label(labels[at].first, label, labels[at].second);
     return true;
   };
-  const auto answer = [answers](std::size_t at) -> Result<std::optional<GivenAnswer>> {
-    if (at >= answers.size()) return std::nullopt;
-    return GivenAnswer{answers[at], 0};
+  const auto answer = [given = answers.given](std::size_t at) -> Result<std::optional<GivenAnswer>> {
+    if (at >= given.size()) return std::nullopt;
+    return given[at];
   };
-  return Participant{place, [](int) { return true; }, answer};
+  const auto explore = [](const std::vector<int>& left) {
+    return std::optional(left.empty() ? 0 : left.front());
+  };
+  const auto wanted = [ratios = answers.ratios](std::size_t at) {
+    return at < ratios.size() ? std::optional(ratios[at]) : std::nullopt;
+  };
+  return Participant{place, [](int) { return true; }, answer, explore, {}, wanted};
 }
 
 }  // namespace tacto::analysis

@@ -25,6 +25,12 @@ class ParticipantScreen {
   void drain_keys();
   char wait_for(std::string_view keys);
   schema::Result<bool> wait_for_label(const std::string& label);
+  void welcome();
+  bool adjusts(int interval) const;
+  std::optional<int> wait_for_texture(const std::vector<int>& left);
+  std::vector<int> wait_for_order();
+  std::optional<schema::Turn> next_turn(bool wait);
+  std::string choice_keys() const;
 
   const schema::Protocol& protocol_;
   const std::function<bool()>& stop_asked_;
@@ -32,9 +38,10 @@ class ParticipantScreen {
   bool welcomed_ = false;
 };
 
-/// The answers of a file, one on each line: a word or a key of the protocol. The operator's labels of real
-/// samples (K3) are lines between them; answers and labels are counted separately. After the last one the run
-/// ends. Errors: not_found; malformed, with the line.
+/// The answers of a file, one on each line: a word or a key of the protocol; of ordering all of them, from
+/// least to most; of adjustment the ratio that is set. The operator's labels of real samples (K3) are lines
+/// between them; answers and labels are counted separately. After the last one the run ends. Errors:
+/// not_found; malformed, with the line.
 schema::Result<Participant> answers_from(const std::string& file, const schema::Protocol& protocol);
 
 }  // namespace tacto::analysis

@@ -231,6 +231,7 @@ std::vector<ResultFigure> answers_figures(const AnswersFit& all) {
   else if (misfit(all) && !all.options.overdispersed)
     figures.push_back({"note", "--overdispersed widens the intervals for answers that scatter so"});
   for (const std::string& note : all_notes(all)) figures.push_back({"note", note});
+  for (const std::string& each : all.table.reversals) figures.push_back({"reversals", each});
   return figures;
 }
 

@@ -29,6 +29,7 @@ struct AnswersTable {
   std::string level_name, unit;                 ///< of the level; without its unit, which may be empty
   std::vector<AnswerGroup<LevelCount>> groups;  ///< in the order of their texts, numbers by value
   std::string simulated;                        ///< by what, where an answer or a session is simulated
+  std::vector<std::string> reversals = {};      ///< of staircases, their mean, in words
 };
 
 /// Reads counts of answers against levels. Without names of columns, those that are not in `by` are, in this

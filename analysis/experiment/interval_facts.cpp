@@ -41,7 +41,7 @@ std::optional<double> predicted_period_m(const std::string& session) {
   return spatial_period_m(position_m, stroke->predicted_m);
 }
 
-// Of all strokes. Precondition: each has a target, of one texture at this gain.
+// Precondition: each has a target, of one texture at this gain.
 double predicted_gain_m_per_n(std::span<const playback::PlayedStroke> strokes, double gain_m_per_n) {
   double predicted_m2 = 0, target_m2 = 0;
   for (const playback::PlayedStroke& stroke : strokes) {
@@ -93,6 +93,14 @@ void add_strokes(std::span<const playback::PlayedStroke> strokes, IntervalFacts&
   if (target && sensor) facts.measured_error_db = measured_db;
 }
 
+Result<double> predicted_rms_m(const std::string& session, std::uint64_t stroke) {
+  const auto read = playback::read_session_stroke(session, stroke);
+  TACTO_TRY(read);
+  double sum = 0;
+  for (const double value_m : read->predicted_m) sum += value_m * value_m;
+  return std::sqrt(sum / static_cast<double>(read->predicted_m.size()));
+}
+
 Result<IntervalFacts> interval_facts(const std::string& session) {
   auto reader = schema::SessionReader::open(session);
   TACTO_TRY(reader);
@@ -106,9 +114,12 @@ Result<IntervalFacts> interval_facts(const std::string& session) {
     if (report->limits) facts.removed_by_limits_db = report->limits->removed_db();
     add_strokes(report->strokes, facts);
     const schema::SessionHeader& header = reader->header();
+    facts.last_gain = report->last_gain;
+    const std::span<const playback::PlayedStroke> strokes = report->strokes;
     if (header.textures.size() == 1 && facts.predicted_error_db)
       facts.predicted_gain_m_per_n =
-          predicted_gain_m_per_n(report->strokes, header.initial_gain * header.textures.front().gain_m_per_n);
+          predicted_gain_m_per_n(report->last_gain == header.initial_gain ? strokes : strokes.last(1),
+                                 report->last_gain * header.textures.front().gain_m_per_n);
   }
   if (facts.strokes > 0) facts.predicted_period_m = predicted_period_m(session);
   return facts;
@@ -142,14 +153,31 @@ std::vector<std::string> reasons_against(const IntervalFacts& facts, const schem
   return why;
 }
 
+namespace {
+
+// Of an ordering: a stimulus was felt as it should be in one of its intervals, so the others do not count.
+bool is_felt(const std::string& sha256, const std::vector<std::string>& all,
+             const std::vector<std::vector<std::string>>& why) {
+  for (std::size_t i = 0; i < why.size(); ++i)
+    if (all[i] == sha256 && why[i].empty()) return true;
+  return false;
+}
+
+}  // namespace
+
 schema::DeliveryJudged judged_delivery(int attempt, std::vector<IntervalFacts> intervals,
                                        const std::vector<std::string>& sha256,
                                        const schema::Protocol& protocol,
                                        const std::vector<std::string>& late_start) {
   schema::DeliveryJudged judged{attempt, false, late_start, {}};
+  std::vector<std::vector<std::string>> why;
   for (std::size_t i = 0; i < intervals.size(); ++i)
-    for (const std::string& reason : reasons_against(intervals[i], protocol, sha256[i]))
+    why.push_back(reasons_against(intervals[i], protocol, sha256[i]));
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    if (protocol.task == schema::Task::ordering && is_felt(sha256[i], sha256, why)) continue;
+    for (const std::string& reason : why[i])
       judged.why.push_back(fmt::format("interval {}: {}", i + 1, reason));
+  }
   judged.delivered = judged.why.empty();
   judged.intervals = std::move(intervals);
   return judged;

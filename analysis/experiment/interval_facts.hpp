@@ -18,6 +18,10 @@ namespace tacto::analysis {
 /// malformed, for a file without a header.
 schema::Result<schema::IntervalFacts> interval_facts(const std::string& session);
 
+/// RMS of the displacement that a session predicts for a stroke (0: the longest one). Errors: those of
+/// read_session_stroke.
+schema::Result<double> predicted_rms_m(const std::string& session, std::uint64_t stroke = 0);
+
 /// Adds a tick to the counts.
 void count_tick(const schema::SessionTick& tick, schema::IntervalFacts& facts);
 /// Speeds and errors of the strokes of an interval.
@@ -33,7 +37,9 @@ std::vector<std::string> reasons_by_limits(const schema::IntervalFacts& facts,
 std::vector<std::string> reasons_against(const schema::IntervalFacts& facts, const schema::Protocol& protocol,
                                          const std::string& sha256);
 
-/// The same for all intervals of an attempt. `late_start` holds further reasons, which are in no session.
+/// The same for all intervals of an attempt. In an ordering, which has several intervals of one stimulus,
+/// those of a stimulus count only if none of them was delivered. `late_start` holds further reasons, which
+/// are in no session.
 schema::DeliveryJudged judged_delivery(int attempt, std::vector<schema::IntervalFacts> intervals,
                                        const std::vector<std::string>& sha256,
                                        const schema::Protocol& protocol,

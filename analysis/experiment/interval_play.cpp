@@ -45,13 +45,14 @@ playback::PlayOptions options_of(const schema::Protocol& protocol, const Interva
   playback::PlayOptions options;
   options.program.file = play.stimulus;
   options.program.at_m = 0;
-  options.program.gain = schema::Gain{play.ratio * protocol.gain_m_per_n, false};
+  options.program.gain = schema::Gain{(play.steer ? 1 : play.ratio) * protocol.gain_m_per_n, false};
+  if (play.steer) options.gain = play.ratio;
   options.device_uri = play.device_uri;
   options.session = play.session;
-  schema::ProtocolPace pace = protocol.pace;
-  if (play.hurried) pace.speed_mps *= 2;
-  playback::FingerPath path = paced_path(pace);
-  options.time_s = path.duration_s();
+  playback::FingerPath path = paced_path(pace_of(protocol, play));
+  options.time_s = play.steer ? kLongestSettingS : path.duration_s();
+  options.path_repeated = static_cast<bool>(play.steer);
+  options.steer = play.steer;
   if (is_emulated(play.device_uri)) options.finger_path = std::move(path);
   return options;
 }
@@ -67,7 +68,7 @@ Result<double> load_time_s(const Study& study, const std::string& code, const st
     return fail(ErrorKind::unsuitable, "the device does not report its transducer", device_uri,
                 "give the device its calibration, or use another one");
   const auto options = options_of(
-      study.protocol, {device_uri, study.stimulus(code), {}, false, {}, study.protocol.largest_ratio});
+      study.protocol, {device_uri, study.stimulus(code), {}, false, {}, study.protocol.largest_ratio, {}});
   playback::PrepareOptions prepare;
   prepare.most_samples = device->client->description().welcome.profile_samples;
   const auto program = playback::make_program(options.program, transducer->name, prepare);
@@ -101,6 +102,12 @@ playback::FingerPath paced_path(const schema::ProtocolPace& pace) {
   path.time_s.push_back(path.time_s.back() + kRestS);
   path.position_m.push_back(path.position_m.back());
   return path;
+}
+
+schema::ProtocolPace pace_of(const schema::Protocol& protocol, const IntervalPlay& play) {
+  schema::ProtocolPace pace = protocol.pace;
+  if (play.hurried) pace.speed_mps *= 2;
+  return pace;
 }
 
 Result<std::string> play_interval(const schema::Protocol& protocol, const IntervalPlay& play) {

@@ -8,6 +8,7 @@
 
 #include "analysis/experiment/study.hpp"
 #include "playback/model/finger_path.hpp"
+#include "playback/player/player.hpp"
 
 namespace tacto::analysis {
 
@@ -22,7 +23,15 @@ struct IntervalPlay {
   bool hurried = false;  ///< an emulated finger moves at twice the speed
   std::function<bool()> stop_asked;
   double ratio = 1;  ///< gain over that of the protocol
+  /// Of an interval in which the gain is changed, from `ratio` on: PlayOptions::steer. The interval then
+  /// lasts until this ends it, or kLongestSettingS; an emulated finger repeats the pace.
+  std::function<schema::Result<bool>(playback::Player&, double)> steer = {};
 };
+
+inline constexpr double kLongestSettingS = 600;
+
+/// The pace of the interval's finger.
+schema::ProtocolPace pace_of(const schema::Protocol& protocol, const IntervalPlay& play);
 
 /// Begins `lead_s` after this call on a device that keeps time, when the texture is on the device, and lasts
 /// as long as the pace. An emulated finger follows the pace. Returns words if it could begin only later, else
@@ -37,6 +46,8 @@ inline constexpr double kUsualLeadOverLoad = 2;
 struct SlowestLoad {
   double time_s = 0;
   std::string code;
+
+  bool keeps_time() const { return !code.empty(); }  ///< of the device
 };
 
 /// Whether the device can play every stimulus, at the largest gain, each of them loaded once, as an interval

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <vector>
 
 #include "analysis/experiment/trial_order.hpp"
+#include "data-schema/base/decibels.hpp"
 #include "data-schema/base/nearest_word.hpp"
 #include "data-schema/base/quantity.hpp"
 
@@ -22,22 +24,48 @@ namespace {
 
 constexpr double kQuantile75 = 0.6744897501960817;  // of the normal distribution, at 0.75
 
-constexpr std::string_view kTemplateWord = "template";
+using schema::Task;
+
+constexpr double kUsualOrderNoiseDb = 1;
+
+// Observers without a number that defines them.
+const std::map<std::string_view, Task> kTaskOfWord = {{"template", Task::identification},
+                                                      {"order", Task::ordering}};
 
 struct ObserverShare {
   std::string name;
   double Observer::*member;
   double most;
+  std::vector<Task> of;
 };
-const ObserverShare kObserverShares[] = {{"weber", &Observer::weber, 10},
-                                         {"match", &Observer::match, 10},
-                                         {"lapse", &Observer::lapse, 1},
-                                         {"hurry", &Observer::hurry, 1}};
+const ObserverShare kObserverShares[] = {
+    {"weber", &Observer::weber, 10, {Task::two_interval, Task::amplitude}},
+    {"match", &Observer::match, 10, {Task::amplitude}},
+    {"threshold", &Observer::threshold, 10, {Task::adjustment}},
+    {"sd", &Observer::sd, 1, {Task::adjustment}},
+    {"hysteresis", &Observer::hysteresis, 1, {Task::adjustment}},
+    {"lapse", &Observer::lapse, 1, {Task::two_interval, Task::amplitude}},
+    {"hurry",
+     &Observer::hurry,
+     1,
+     {Task::two_interval, Task::identification, Task::amplitude, Task::ordering, Task::adjustment}}};
 
 tl::unexpected<schema::Error> bad_observer(const std::string& what) {
-  return fail(
-      ErrorKind::usage, what, "--observer",
-      "give for example weber=25.3%,lapse=2%,seed=1, or match=86%,weber=10%,seed=1, or template,seed=1");
+  return fail(ErrorKind::usage, what, "--observer",
+              "give for example weber=25.3%,lapse=2%,seed=1, or match=86%,weber=10%,seed=1, or "
+              "template,seed=1, or order,noise=1dB,seed=1, or threshold=20%,sd=10%,seed=1");
+}
+
+bool has_noise(const Observer& observer) {
+  return observer.task == Task::identification || observer.task == Task::ordering;
+}
+
+std::vector<std::string> names_of(const Observer& observer) {
+  std::vector<std::string> names = {"seed"};
+  if (has_noise(observer)) names.emplace_back("noise");
+  for (const ObserverShare& each : kObserverShares)
+    if (std::ranges::find(each.of, observer.task) != each.of.end()) names.push_back(each.name);
+  return names;
 }
 
 Result<void> set(Observer& observer, const std::string& name, const std::string& value) {
@@ -45,27 +73,37 @@ Result<void> set(Observer& observer, const std::string& name, const std::string&
     observer.seed = value;
     return {};
   }
-  if (name == "noise" && observer.identifies) {
+  const std::vector<std::string> names = names_of(observer);
+  if (std::ranges::find(names, name) == names.end())
+    return bad_observer(fmt::format("'{}' is unknown to an observer of the task {}{}", name,
+                                    schema::word_of(observer.task), schema::did_you_mean(name, names)));
+  if (name == "noise") {
     const auto noise_db = schema::parse_quantity(value, schema::Dimension::level);
     if (!noise_db || !(*noise_db >= 0))
       return fail(ErrorKind::usage, "noise is not a level from 0 dB", "--observer",
-                  "give for example template,noise=12dB,seed=1");
+                  fmt::format("give for example {},noise=12dB,seed=1",
+                              observer.task == Task::ordering ? "order" : "template"));
     observer.noise_db = *noise_db;
     return {};
   }
   const auto* const found = std::ranges::find(kObserverShares, name, &ObserverShare::name);
-  if (found == std::end(kObserverShares) || (observer.identifies && found->member != &Observer::hurry))
-    return bad_observer(fmt::format(
-        "'{}' is unknown{}", name,
-        schema::did_you_mean(name, observer.identifies ? std::vector<std::string>{"noise", "hurry", "seed"}
-                                                       : std::vector<std::string>{"weber", "match", "lapse",
-                                                                                  "hurry", "seed"})));
+  if (found == std::end(kObserverShares)) return bad_observer("seed has no value");
   const auto share = schema::parse_quantity(value, schema::Dimension::share);
   if (!share) return bad_observer(fmt::format("{}: {}", name, share.error().what));
   if (!(*share >= 0 && *share <= found->most))
     return bad_observer(fmt::format("{} is not from 0 % to {:g} %", name, 100 * found->most));
   observer.*(found->member) = *share;
   return {};
+}
+
+// By a word at the beginning, or by a name.
+Task task_of(const std::vector<std::string>& parts) {
+  if (const auto found = kTaskOfWord.find(parts.front()); found != kTaskOfWord.end()) return found->second;
+  const auto has = [&](std::string_view name) {
+    return std::ranges::any_of(parts, [&](const std::string& part) { return part.starts_with(name); });
+  };
+  if (has("threshold=")) return Task::adjustment;
+  return has("match=") ? Task::amplitude : Task::two_interval;
 }
 
 }  // namespace
@@ -83,20 +121,23 @@ double normal_of(const Observer& observer, const std::string& place) {
 Result<Observer> parse_observer(std::string_view text) {
   Observer observer;
   observer.text = text;
+  std::vector<std::string> parts;
   for (std::size_t from = 0; from <= text.size();) {
     const std::size_t end = std::min(text.find(',', from), text.size());
-    const std::string part(text.substr(from, end - from));
-    const auto equals = part.find('=');
-    if (from == 0 && part == kTemplateWord) {
-      observer.identifies = true;
-      from = end + 1;
-      continue;
-    }
-    if (equals == std::string::npos) return bad_observer(fmt::format("'{}' is not NAME=VALUE", part));
-    TACTO_TRY(set(observer, part.substr(0, equals), part.substr(equals + 1)));
+    parts.emplace_back(text.substr(from, end - from));
     from = end + 1;
   }
-  if (!observer.identifies && !(observer.weber > 0)) return bad_observer("weber is missing, or 0");
+  observer.task = task_of(parts);
+  if (kTaskOfWord.contains(parts.front())) parts.erase(parts.begin());
+  for (const std::string& part : parts) {
+    const auto equals = part.find('=');
+    if (equals == std::string::npos) return bad_observer(fmt::format("'{}' is not NAME=VALUE", part));
+    TACTO_TRY(set(observer, part.substr(0, equals), part.substr(equals + 1)));
+  }
+  const bool by_weber = observer.task == Task::two_interval || observer.task == Task::amplitude;
+  if (by_weber && !(observer.weber > 0)) return bad_observer("weber is missing, or 0");
+  if (observer.task == Task::amplitude && !(observer.match > 0)) return bad_observer("match is 0");
+  if (observer.task == Task::adjustment && !(observer.threshold > 0)) return bad_observer("threshold is 0");
   return observer;
 }
 
@@ -115,6 +156,18 @@ int rated(const Observer& observer, const std::string& place, double ratio) {
   const double noise = observer.weber / kQuantile75 * normal_of(observer, place);
   return static_cast<int>(
       std::lround(std::clamp<double>(kMost * (ratio - observer.match + noise), -kMost, kMost)));
+}
+
+double felt_level_db(const Observer& observer, const std::string& place, double rms_m) {
+  constexpr double kReferenceM = 1e-6;
+  return schema::amplitude_db(rms_m / kReferenceM) +
+         observer.noise_db.value_or(kUsualOrderNoiseDb) * normal_of(observer, place);
+}
+
+double criterion_of(const Observer& observer, const std::string& place, bool ascending) {
+  const double shift = std::sqrt(1 + observer.hysteresis);
+  return observer.threshold * std::exp(observer.sd * normal_of(observer, place)) *
+         (ascending ? 1 / shift : shift);
 }
 
 bool hurries(const Observer& observer, const std::string& place) {

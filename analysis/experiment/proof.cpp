@@ -24,7 +24,9 @@ namespace {
 
 constexpr const char *kStretchColumns = "standard_interval\tnominal_stretch\tpredicted_stretch",
                      *kIdentificationColumns = "block\tcondition\tpresented",
-                     *kAmplitudeColumns = "nominal_ratio\tpredicted_ratio";
+                     *kAmplitudeColumns = "nominal_ratio\tpredicted_ratio",
+                     *kOrderingColumns = "explorations",
+                     *kAdjustmentColumns = "series\tstart_ratio\tpredicted_ratio";
 constexpr const char* kTrialColumns =
     "attempt\ttrial\t{}\tpredicted_error_db\tmeasured_error_db\t{}\tanswer\tanswer_s\tdelivered\twhy\t"
     "simulated\n";
@@ -104,7 +106,11 @@ class Prover {
                                           fmt::join(attempt.judged->why, "; ")));
     if (!again.counts()) return;
     ++proof_.delivered;
-    if (task_of(run_) == schema::Task::amplitude) compare_ratio(again);
+    if (task_of(run_) == schema::Task::adjustment && accepted_ratio(again) != accepted_ratio(attempt))
+      proof_.faults.push_back(fmt::format("attempt {}: its session does not end with the gain of the journal",
+                                          attempt.begun.attempt));
+    if (task_of(run_) == schema::Task::amplitude || task_of(run_) == schema::Task::adjustment)
+      compare_ratio(again);
     if (task_of(run_) != schema::Task::two_interval) return;
     const double nominal = stimulus_of(run_.study.key, attempt.trial.code).stretch;
     if (const auto predicted = predicted_stretch(again))
@@ -114,9 +120,10 @@ class Prover {
   }
 
   void compare_ratio(const Attempt& attempt) {
+    const double asked = task_of(run_) == schema::Task::amplitude ? attempt.trial.ratio
+                                                                  : accepted_ratio(attempt).value_or(NAN);
     if (const auto predicted = predicted_ratio(run_, attempt))
-      proof_.ratio_error =
-          std::max(proof_.ratio_error.value_or(0), std::abs(*predicted - attempt.trial.ratio));
+      proof_.ratio_error = std::max(proof_.ratio_error.value_or(0), std::abs(*predicted - asked));
     else
       proof_.faults.push_back(
           fmt::format("attempt {}: its session does not say the gain", attempt.begun.attempt));
@@ -135,19 +142,37 @@ std::string level_cell(const Attempt& attempt, std::optional<double> schema::Int
   return worst ? fmt::format("{:.9g}", *worst) : "";
 }
 
+std::string number_cell(const std::optional<double>& number) {
+  return number ? fmt::format("{:.9g}", *number) : "";
+}
+
 std::string cells_of_task(const Run& run, const Attempt& attempt) {
+  if (task_of(run) == schema::Task::ordering) return fmt::format("{}", attempt.begun.stimuli.size());
   const schema::CodedStimulus& stimulus = stimulus_of(run.study.key, attempt.trial.code);
-  if (task_of(run) == schema::Task::amplitude) {
-    const auto ratio = attempt.judged ? predicted_ratio(run, attempt) : std::nullopt;
-    return fmt::format("{:.9g}\t{}", attempt.trial.ratio, ratio ? fmt::format("{:.9g}", *ratio) : "");
-  }
+  const auto ratio = attempt.judged ? predicted_ratio(run, attempt) : std::nullopt;
+  if (task_of(run) == schema::Task::adjustment)
+    return fmt::format("{}\t{:.9g}\t{}", attempt.trial.is_ascending() ? "ascending" : "descending",
+                       attempt.trial.ratio, number_cell(ratio));
+  if (task_of(run) == schema::Task::amplitude)
+    return fmt::format("{:.9g}\t{}", attempt.trial.ratio, number_cell(ratio));
   if (task_of(run) == schema::Task::identification)
     return fmt::format("{}\t{}\t{}", attempt.trial.block,
                        attempt.trial.real ? schema::kRealCondition : schema::kVirtualCondition,
                        stimulus.name);
   const auto predicted = attempt.judged ? predicted_stretch(attempt) : std::nullopt;
   return fmt::format("{}\t{:.9g}\t{}", attempt.trial.standard_comes_first() ? 1 : 2, stimulus.stretch,
-                     predicted ? fmt::format("{:.9g}", *predicted) : "");
+                     number_cell(predicted));
+}
+
+// The answer as a number, or what stands for one.
+std::string answer_cell(const Run& run, const Attempt& attempt) {
+  if (task_of(run) == schema::Task::amplitude) return fmt::format("{}", rating_of(attempt));
+  if (task_of(run) == schema::Task::adjustment) return number_cell(accepted_ratio(attempt));
+  if (task_of(run) != schema::Task::ordering) return fmt::format("{}", attempt.answered->choice);
+  std::vector<std::string> names;
+  for (const std::string& code : codes_in(attempt.answered->word))
+    names.push_back(stimulus_of(run.study.key, code).name);
+  return fmt::format("{}", fmt::join(names, " "));
 }
 
 std::string trial_row(const Run& run, const Attempt& attempt) {
@@ -157,9 +182,7 @@ std::string trial_row(const Run& run, const Attempt& attempt) {
        {&schema::IntervalFacts::predicted_error_db, &schema::IntervalFacts::measured_error_db})
     row += "\t" + (attempt.judged ? level_cell(attempt, member) : "");
   if (const auto& answered = attempt.answered)
-    row += fmt::format("\t{}\t{}\t{:.3f}",
-                       task_of(run) == schema::Task::amplitude ? rating_of(attempt) : answered->choice,
-                       answered->word, answered->answer_s);
+    row += fmt::format("\t{}\t{}\t{:.3f}", answer_cell(run, attempt), answered->word, answered->answer_s);
   else
     row += "\t\t\t";
   row += std::string("\t") + (!attempt.judged ? "unknown" : attempt.judged->delivered ? "yes" : "no");
@@ -194,6 +217,7 @@ Result<Run> run_of(const std::string& stem, schema::Journal journal) {
 Proof prove(const Run& run, const std::function<void(double)>& tell) {
   Proof proof;
   proof.trials = run.queue.trials();
+  proof.ratio_tolerance = kRatioTolerance * run.study.protocol.largest_ratio;
   proof.attempts = run.queue.attempts().size();
   Prover prover(run, proof);
   double done = 0;
@@ -214,10 +238,15 @@ std::optional<double> predicted_stretch(const Attempt& attempt) {
 }
 
 std::optional<double> predicted_ratio(const Run& run, const Attempt& attempt) {
-  if (attempt.judged->intervals.size() != 1) return std::nullopt;
-  const auto& gain_m_per_n = attempt.judged->intervals.front().predicted_gain_m_per_n;
+  if (attempt.judged->intervals.empty()) return std::nullopt;
+  const auto& gain_m_per_n = attempt.judged->intervals.back().predicted_gain_m_per_n;
   if (!gain_m_per_n) return std::nullopt;
   return *gain_m_per_n / run.study.protocol.gain_m_per_n;
+}
+
+std::optional<double> accepted_ratio(const Attempt& attempt) {
+  if (!attempt.judged || attempt.judged->intervals.empty()) return std::nullopt;
+  return attempt.judged->intervals.back().last_gain;
 }
 
 int rating_of(const Attempt& attempt) {
@@ -236,7 +265,9 @@ std::string observer_in_words(const Run& run) {
 std::string trials_table(const Run& run) {
   constexpr std::pair<const char*, const char*> kColumnsOfTask[] = {{kStretchColumns, "answer_interval"},
                                                                     {kIdentificationColumns, "answer_choice"},
-                                                                    {kAmplitudeColumns, "rating"}};
+                                                                    {kAmplitudeColumns, "rating"},
+                                                                    {kOrderingColumns, "order"},
+                                                                    {kAdjustmentColumns, "accepted_ratio"}};
   const auto& [columns, answer] = kColumnsOfTask[static_cast<int>(task_of(run))];
   std::string table = fmt::format(kTrialColumns, columns, answer);
   for (const Attempt& attempt : run.queue.attempts()) table += trial_row(run, attempt) + "\n";

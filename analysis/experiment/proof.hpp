@@ -27,10 +27,10 @@ schema::Result<Run> read_run(const std::string& name);
 /// The same for a journal that was read already.
 schema::Result<Run> run_of(const std::string& stem, schema::Journal journal);
 
-/// How far the predicted stretch may be from the nominal one, and the predicted ratio from the asked one: 1 %
-/// of the largest ratio of `new amplitude`.
+/// How far the predicted stretch may be from the nominal one, and the predicted ratio from the asked or the
+/// accepted one, re the protocol's largest ratio.
 inline constexpr double kStretchTolerance = 0.01;
-inline constexpr double kRatioTolerance = 0.02;
+inline constexpr double kRatioTolerance = 0.01;
 
 struct Proof {
   std::size_t trials = 0;                                 ///< planned; without those whose time was over
@@ -40,14 +40,15 @@ struct Proof {
   std::size_t placed = 0;  ///< answered real samples: what they were is the operator's word
   /// Largest |predicted - nominal| of those delivered; of two intervals.
   std::optional<double> stretch_error;
-  /// Largest |predicted - asked| of those delivered; of amplitude.
+  /// Largest |predicted - asked| of those delivered, of amplitude; |predicted - accepted| of adjustment.
   std::optional<double> ratio_error;
+  double ratio_tolerance = 0;
   std::vector<std::string> faults;  ///< what differs from the journal, session by session
   std::string simulated;
 
   bool holds() const {
     return faults.empty() && same_to_the_bit == sessions && stretch_error.value_or(0) <= kStretchTolerance &&
-           ratio_error.value_or(0) <= kRatioTolerance;
+           ratio_error.value_or(0) <= ratio_tolerance;
   }
 };
 
@@ -59,8 +60,12 @@ Proof prove(const Run& run, const std::function<void(double)>& tell);
 /// 1; none: a period is unknown.
 std::optional<double> predicted_stretch(const Attempt& attempt);
 
-/// Of a trial of amplitude: the gain that the session predicts, over that of the protocol; none: unknown.
+/// Of a trial of amplitude or adjustment: the gain that the session predicts, over that of the protocol;
+/// none: unknown.
 std::optional<double> predicted_ratio(const Run& run, const Attempt& attempt);
+
+/// Of an adjustment: the last gain of its session, over that of the protocol; none: unknown.
+std::optional<double> accepted_ratio(const Attempt& attempt);
 
 /// From -3 to 3. Precondition: an answer in the task amplitude.
 int rating_of(const Attempt& attempt);

@@ -85,6 +85,12 @@ Result<void> fit_to_textures(schema::Protocol& protocol, const NamedTextures& te
   return {};
 }
 
+Result<void> check_several(const NamedTextures& textures) {
+  if (textures.size() >= 2 && textures.size() <= kAnswerKeys.size()) return {};
+  return fail(ErrorKind::usage, fmt::format("there are {} textures", textures.size()), "--textures",
+              fmt::format("name 2 to {}", kAnswerKeys.size()));
+}
+
 Result<schema::Texture> stimulus_texture(const schema::Protocol& protocol, const NamedTextures& textures,
                                          const schema::CodedStimulus& stimulus) {
   if (!stimulus.name.empty()) return coded(textures.at(stimulus.name));
@@ -181,12 +187,20 @@ std::string Study::run(const std::string& participant) const {
   return stem + "-" + participant;
 }
 
-schema::Protocol stretch_protocol(const std::string& seed) {
+schema::Protocol stretch_protocol(const std::string& seed, schema::LevelMethod method) {
   schema::Protocol protocol;
   protocol.standard = {1.76e-3, 12.8e-6, 0.06};
   protocol.keep_slope = true;
   protocol.levels = {-0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7};
   protocol.repetitions = 10;
+  protocol.method = method;
+  if (method != schema::LevelMethod::constant) {
+    protocol.levels.clear();
+    for (int percent = -70; percent <= 70; percent += 5)
+      if (percent > 0 || (percent < 0 && method == schema::LevelMethod::quest_plus))
+        protocol.levels.push_back(percent / 100.0);
+    protocol.repetitions = 60;
+  }
   protocol.seed = seed;
   protocol.gain_m_per_n = kStimulusGain;
   protocol.pace = {0.01, 0.05, 0.06, 2};
@@ -202,15 +216,14 @@ schema::Protocol stretch_protocol(const std::string& seed) {
                     "Move the finger to the right end and back.",
                     "Which one had the smaller period? f: the first, j: the second.",
                     "That was all. Thank you.",
+                    "",
                     ""};
   return protocol;
 }
 
 Result<schema::Protocol> identification_protocol(const std::string& seed, const NamedTextures& textures,
                                                  const std::vector<std::string>& comparisons) {
-  if (textures.size() < 2 || textures.size() > kAnswerKeys.size())
-    return fail(ErrorKind::usage, fmt::format("there are {} textures", textures.size()), "--textures",
-                fmt::format("name 2 to {}", kAnswerKeys.size()));
+  TACTO_TRY(check_several(textures));
   for (const std::string& name : comparisons)
     if (!textures.contains(name))
       return fail(ErrorKind::usage, fmt::format("'{}' is none of the textures", name), "--comparisons",
@@ -249,6 +262,66 @@ Result<schema::Protocol> amplitude_protocol(const std::string& seed, const Named
       "Compared with the real sample, the texture was: a: much weaker (-3), s: weaker (-2), d: a little "
       "weaker "
       "(-1), f: equal (0), j: a little stronger (1), k: stronger (2), l: much stronger (3).";
+  return protocol;
+}
+
+Result<schema::Protocol> ordering_protocol(const std::string& seed, const NamedTextures& textures,
+                                           const std::map<std::string, double>& intended) {
+  TACTO_TRY(check_several(textures));
+  schema::Protocol protocol = stretch_protocol(seed);
+  protocol.task = schema::Task::ordering;
+  TACTO_TRY(fit_to_textures(protocol, textures, 1));
+  protocol.repetitions = 3;
+  for (const std::string& name : protocol.standards) {
+    const std::string number(1, kAnswerKeys[protocol.choices.size()]);
+    protocol.choices.push_back({number, number});
+    if (intended.empty()) continue;
+    if (!intended.contains(name))
+      return fail(ErrorKind::usage, fmt::format("has no number for {}", name), "--intended",
+                  "give one for each texture, in their order");
+    protocol.intended.push_back(intended.at(name));
+  }
+  protocol.texts.welcome =
+      fmt::format("You feel {} textures, as often as you like, and put them in order of roughness.",
+                  protocol.standards.size());
+  protocol.texts.begin = fmt::format(
+      "Put the finger at the left end and press a number, {} to {}, to feel that texture. Press the space "
+      "bar "
+      "to give the order.",
+      kAnswerKeys.front(), protocol.choices.back().key);
+  protocol.texts.left = "Not felt yet, or not at the right speed";
+  protocol.texts.question =
+      "Press the numbers from the smoothest texture to the roughest one, then the space bar. Backspace takes "
+      "one back.";
+  return protocol;
+}
+
+Result<schema::Protocol> adjustment_protocol(const std::string& seed, const NamedTextures& textures,
+                                             const std::string& adjusted, schema::Goal goal) {
+  if (textures.size() > (goal == schema::Goal::match ? 2 : 1))
+    return fail(ErrorKind::usage, fmt::format("there are {} textures", textures.size()), "--textures",
+                "name one to be adjusted; --reference is for the goal match");
+  schema::Protocol protocol = stretch_protocol(seed);
+  protocol.task = schema::Task::adjustment;
+  protocol.goal = goal;
+  protocol.smallest_ratio = 0.05, protocol.largest_ratio = 4, protocol.step_db = 1;
+  TACTO_TRY(fit_to_textures(protocol, textures, protocol.largest_ratio));
+  std::ranges::stable_partition(protocol.standards, [&](const auto& name) { return name == adjusted; });
+  protocol.repetitions = 10;
+  // The finger moves freely, and weak settings are played with the steps of the drive.
+  protocol.delivered.slowest_mps = 0.02, protocol.delivered.fastest_mps = 0.12;
+  protocol.delivered.error_db = -10;
+  protocol.choices = {{"f", "weaker"}, {"j", "stronger"}, {"a", "accepted"}};
+  constexpr const char* kWhat[] = {"the weakest setting that still feels like a texture",
+                                   "the strongest setting that still feels like a texture",
+                                   "the setting that is as strong as the first texture"};
+  const char* const what = kWhat[static_cast<int>(goal)];
+  protocol.texts.welcome = fmt::format("You change how strong a texture is. Find {}.", what);
+  if (goal == schema::Goal::match)
+    protocol.texts.welcome += " You feel the first texture, and then the one that you change.";
+  protocol.texts.interval = "Move the finger to the right end and back.";
+  protocol.texts.question = fmt::format(
+      "Find {}: f or the arrow down: weaker, j or the arrow up: stronger, a: this is it. Keep moving.", what);
   return protocol;
 }
 
@@ -292,6 +365,10 @@ Result<Study> read_study(const std::string& name) {
 
 const schema::CodedStimulus& standard_of(const schema::ProtocolKey& key) {
   return *std::ranges::find(key.stimuli, 0.0, &schema::CodedStimulus::stretch);
+}
+
+const schema::CodedStimulus& reference_of(const Study& study) {
+  return *std::ranges::find(study.key.stimuli, study.protocol.standards.back(), &schema::CodedStimulus::name);
 }
 
 const schema::CodedStimulus& stimulus_of(const schema::ProtocolKey& key, const std::string& code) {

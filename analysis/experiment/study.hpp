@@ -24,8 +24,10 @@ struct Study {
 };
 
 /// Experiment 2 of Wiertlewski, Lozada and Hayward 2011: a sinusoid of 1.76 mm and 12.8 um; its period and
-/// amplitude stretched by +-10, 30, 50 and 70 %, ten times each; which one has the smaller period.
-schema::Protocol stretch_protocol(const std::string& seed);
+/// amplitude stretched by +-10, 30, 50 and 70 %, ten times each; which one has the smaller period. With
+/// another method than constant 60 trials, at stretches of 5, 10 ... 70 %, of QUEST+ to both sides.
+schema::Protocol stretch_protocol(const std::string& seed,
+                                  schema::LevelMethod method = schema::LevelMethod::constant);
 
 /// Textures by their names.
 using NamedTextures = std::map<std::string, schema::Texture>;
@@ -44,6 +46,20 @@ schema::Result<schema::Protocol> identification_protocol(const std::string& seed
 /// twice the force. Errors: usage, if there is not one texture; as identification_protocol.
 schema::Result<schema::Protocol> amplitude_protocol(const std::string& seed, const NamedTextures& textures);
 
+/// After Minsky et al. 1990: the textures are felt freely and put in order of roughness, three times.
+/// `intended`: the parameter by which they were made, by their names; empty: unknown. Path and gain as of an
+/// identification. Errors: as identification_protocol; usage: a texture without its number.
+schema::Result<schema::Protocol> ordering_protocol(const std::string& seed, const NamedTextures& textures,
+                                                   const std::map<std::string, double>& intended);
+
+/// After the same paper: the gain of `adjusted` is changed until the goal is reached, five times from below
+/// and five times from above, in steps of 1 dB between 0.05 and 4 times the protocol's gain. `textures` holds
+/// it and, to match it, the other one as its reference; without another one it is its own. Path and gain as
+/// of an identification, for four times the force. Errors: as identification_protocol; usage: more textures
+/// than the goal has.
+schema::Result<schema::Protocol> adjustment_protocol(const std::string& seed, const NamedTextures& textures,
+                                                     const std::string& adjusted, schema::Goal goal);
+
 /// Makes the stimuli (spatial/transform; or of `textures`, without what names their surface) and writes all
 /// files. Errors: usage, if there is one of them and it is to be kept, or a folder of another kind;
 /// cannot_write, also if the study has runs; those of stretching.
@@ -58,6 +74,8 @@ schema::Result<Study> read_study(const std::string& name);
 
 /// The code and the SHA-256 of the standard. Precondition: a study of two intervals that was read.
 const schema::CodedStimulus& standard_of(const schema::ProtocolKey& key);
+/// Of an adjustment that matches: the texture that is played first.
+const schema::CodedStimulus& reference_of(const Study& study);
 const schema::CodedStimulus& stimulus_of(const schema::ProtocolKey& key, const std::string& code);
 
 /// The stimuli that lose more than a tenth of their power at the slowest or fastest accepted speed, in words,

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 
+#include "analysis/experiment/adaptive_levels.hpp"
 #include "analysis/experiment/withdrawal.hpp"
 #include "data-schema/base/creation_time.hpp"
 
@@ -32,6 +33,15 @@ AnswerGroup<LevelCount> answers_of_run(const Run& run) {
   AnswerGroup<LevelCount> group{{run.journal.plan.participant}, {}};
   for (const auto& [stretch, level] : levels) group.rows.push_back(level);
   return group;
+}
+
+std::string reversals_in_words(const Run& run) {
+  const auto reversals = reversals_of(run.study.protocol, run.study.key, run.queue.attempts());
+  double mean = 0;
+  for (const double stretch : reversals) mean += stretch / static_cast<double>(reversals.size());
+  if (reversals.empty()) return run.journal.plan.participant + ": none";
+  return fmt::format("{}: {:.3g}, mean of {} reversals", run.journal.plan.participant, mean,
+                     reversals.size());
 }
 
 // Reads the file and writes it with a further line.
@@ -109,6 +119,8 @@ Result<AnswersTable> study_answers(const std::string& name, bool unblind) {
   std::vector<std::string> simulated;
   for (const Run& run : *runs) {
     table.groups.push_back(answers_of_run(run));
+    if (run.study.protocol.method == schema::LevelMethod::staircase)
+      table.reversals.push_back(reversals_in_words(run));
     add_simulated(simulated, run);
   }
   table.columns.by = {"participant"};

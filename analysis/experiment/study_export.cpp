@@ -25,12 +25,18 @@ struct Column {
 // Those of trials_table(), of each task, and what is added to them.
 constexpr Column kColumns[] = {
     {"attempt", "number of the attempt in the run; what was not delivered comes again", ""},
-    {"trial", "code of the stretched stimulus, or of the comparison, and number of its repetition", ""},
+    {"trial", "code of the stretched stimulus, the comparison or the standard, and number of its repetition",
+     ""},
     {"block", "number of the block of trials", ""},
     {"condition", "whether the comparisons were real samples or played (virtual)", ""},
     {"presented", "name of the comparison", ""},
     {"answer_choice", "number of the standard that was answered", ""},
     {"correct", "1: the answer is the comparison, else 0", ""},
+    {"explorations", "number of textures that were felt, each of them once or more", ""},
+    {"order", "names of the textures in the order of the answer, from least to most", ""},
+    {"series", "ascending: the setting began at a low gain; descending: at a high one", ""},
+    {"start_ratio", "gain at its beginning over that of the protocol", "1"},
+    {"accepted_ratio", "the same of the gain that was accepted, the last one of the session", "1"},
     {"nominal_ratio", "gain of the trial over that at which the displacement is the real sample's", "1"},
     {"predicted_ratio", "the same of the displacement that the transducer's model predicts", "1"},
     {"rating", "from -3, much weaker than the real sample, to 3, much stronger", ""},
@@ -40,7 +46,7 @@ constexpr Column kColumns[] = {
     {"predicted_error_db", "RMS of predicted displacement - target of the worst stroke, re the target", "dB"},
     {"measured_error_db", "the same of the displacement that the tray's sensor measured", "dB"},
     {"answer_interval", "interval whose stimulus seemed to have the smaller period, 1 or 2", ""},
-    {"answer", "the answer in the protocol's word", ""},
+    {"answer", "the answer in the protocol's word; of an order the codes", ""},
     {"answer_s", "time from the question to the answer; 0 of an observer or a file", "s"},
     {"delivered",
      "whether the session proves that the intervals kept the protocol's limits; unknown of real samples", ""},
@@ -132,7 +138,8 @@ std::vector<std::vector<std::string>> rows_of(const Run& run) {
   lines.pop_back();
   for (std::size_t i = 0; i < lines.size(); ++i) {
     rows.push_back(split(lines[i], '\t'));
-    if (run.study.protocol.task == schema::Task::amplitude) continue;
+    if (!is_two_interval(run.study.protocol) && run.study.protocol.task != schema::Task::identification)
+      continue;
     const Attempt* const attempt = i > 0 ? &run.queue.attempts()[i - 1] : nullptr;
     const bool answered = attempt != nullptr && attempt->answered;
     const char* const name = is_two_interval(run.study.protocol) ? "seemed_longer" : "correct";

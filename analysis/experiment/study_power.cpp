@@ -124,6 +124,10 @@ Result<StudyPower> study_power(const schema::Protocol& protocol, const PowerAssu
     return schema::fail(schema::ErrorKind::unsuitable,
                         fmt::format("the task {} has no Weber fraction", schema::word_of(protocol.task)),
                         "STUDY", "power is for protocols of two intervals, such as 'new stretch'");
+  if (protocol.method != schema::LevelMethod::constant)
+    return schema::fail(schema::ErrorKind::unsuitable,
+                        fmt::format("the method {} is not simulated", schema::word_of(protocol.method)),
+                        "STUDY", "power is for levels that are constant");
   Draws draws(assumed.seed);
   PsychometricOptions fit;
   if (!assumed.lapse) fit.lapse = 0;

@@ -2,13 +2,16 @@
 #include "analysis/experiment/study_run.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 
 #include "analysis/experiment/interval_facts.hpp"
 #include "analysis/experiment/interval_play.hpp"
+#include "analysis/experiment/live_setting.hpp"
 #include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/template_observer.hpp"
 #include "analysis/experiment/trial_runner.hpp"
@@ -26,11 +29,13 @@ namespace {
 
 using BlockClock = std::chrono::steady_clock;
 
+constexpr const char* kNotAccepted = "no setting was accepted";
+
 // The steps of a run on a device.
 class LiveSteps {
  public:
-  LiveSteps(Run& run, schema::JournalFile& file, const RunRequest& request)
-      : run_(run), file_(file), request_(request) {}
+  LiveSteps(Run& run, schema::JournalFile& file, const RunRequest& request, bool keeps_time)
+      : run_(run), file_(file), request_(request), keeps_time_(keeps_time) {}
 
   TrialSteps steps() {
     return {[this](const schema::JournalEntry& entry) { return keep(entry); },
@@ -72,8 +77,12 @@ class LiveSteps {
   }
 
   schema::AttemptBegun begun(const StudyTrial& trial, int attempt) {
-    schema::AttemptBegun begun{attempt, trial.name(), {trial.code}, {}, trial.block, block_s(trial.block)};
-    if (run_.study.protocol.task == schema::Task::two_interval)
+    schema::AttemptBegun begun{attempt, trial.name(), {}, {}, trial.block, block_s(trial.block)};
+    if (task() == schema::Task::ordering) return begun;
+    begun.stimuli = {trial.code};
+    if (run_.study.protocol.goal == schema::Goal::match)
+      begun.stimuli.insert(begun.stimuli.begin(), reference_of(run_.study).code);
+    if (task() == schema::Task::two_interval)
       begun.stimuli.insert(trial.standard_comes_first() ? begun.stimuli.begin() : begun.stimuli.end(),
                            standard_of(run_.study.key).code);
     for (std::size_t i = 1; i <= begun.stimuli.size() && !trial.real; ++i)
@@ -83,6 +92,7 @@ class LiveSteps {
 
   Result<std::optional<schema::JournalEntry>> present(const Attempt& attempt) {
     request_.tell(static_cast<double>(run_.queue.counted()) / static_cast<double>(run_.queue.trials()));
+    if (task() == schema::Task::ordering) return explore(attempt);
     if (!attempt.trial.real) return play(attempt);
     const std::string& label = attempt.trial.code;
     if (!request_.observer) {
@@ -101,26 +111,150 @@ class LiveSteps {
   bool go_ahead(int interval) const { return request_.observer || request_.participant.go_ahead(interval); }
 
   Result<std::optional<schema::JournalEntry>> play(const Attempt& attempt) {
-    std::vector<std::string> late, sums;
-    IntervalPlay interval{request_.device_uri, {}, {}, false, request_.stop_asked, attempt.trial.ratio};
-    interval.hurried = request_.observer && hurries(*request_.observer, place(attempt));
+    IntervalsPlayed played;
     for (std::size_t i = 0; i < attempt.begun.stimuli.size(); ++i) {
       if (!go_ahead(static_cast<int>(i) + 1)) return std::nullopt;
-      interval.stimulus = run_.study.stimulus(attempt.begun.stimuli[i]);
-      interval.session = full(attempt.begun.sessions[i]);
-      sums.push_back(stimulus_of(run_.study.key, attempt.begun.stimuli[i]).sha256);
-      const auto played = play_interval(run_.study.protocol, interval);
-      TACTO_TRY(played);
-      if (request_.stop_asked()) return std::nullopt;
-      if (!played->empty()) late.push_back(*played);
+      const bool last = i + 1 == attempt.begun.stimuli.size();
+      const auto goes_on = task() == schema::Task::adjustment && last ? adjust(attempt, i, played)
+                                                                      : play_one(attempt, i, played);
+      TACTO_TRY(goes_on);
+      if (!*goes_on) return std::nullopt;
     }
+    for (std::size_t i = 0; i < attempt.begun.stimuli.size(); ++i) TACTO_TRY(read_facts(attempt, i, played));
+    return judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums, run_.study.protocol,
+                           played.late);
+  }
+
+  // The intervals of an attempt, in order, and reasons that are in no session.
+  struct IntervalsPlayed {
     std::vector<schema::IntervalFacts> facts;
-    for (const std::string& session : attempt.begun.sessions) {
-      auto each = interval_facts(full(session));
-      TACTO_TRY(each);
-      facts.push_back(std::move(*each));
+    std::vector<std::string> sums, late;
+  };
+
+  IntervalPlay interval_of(const Attempt& attempt, std::size_t i) const {
+    IntervalPlay interval{request_.device_uri,
+                          run_.study.stimulus(attempt.begun.stimuli[i]),
+                          full(attempt.begun.sessions[i]),
+                          false,
+                          request_.stop_asked,
+                          task() == schema::Task::amplitude ? attempt.trial.ratio : 1,
+                          {}};
+    const bool alone = task() == schema::Task::ordering;
+    interval.hurried =
+        request_.observer &&
+        hurries(*request_.observer, alone ? fmt::format("{}/{}", place(attempt), i) : place(attempt));
+    return interval;
+  }
+
+  // False: the run ends.
+  Result<bool> play_one(const Attempt& attempt, std::size_t i, IntervalsPlayed& played) {
+    return play_interval_of(interval_of(attempt, i), played);
+  }
+
+  Result<bool> play_interval_of(const IntervalPlay& interval, IntervalsPlayed& played) const {
+    const auto late = play_interval(run_.study.protocol, interval);
+    TACTO_TRY(late);
+    if (request_.stop_asked()) return false;
+    if (!late->empty()) played.late.push_back(*late);
+    return true;
+  }
+
+  Result<void> read_facts(const Attempt& attempt, std::size_t i, IntervalsPlayed& played) const {
+    auto facts = interval_facts(full(attempt.begun.sessions[i]));
+    TACTO_TRY(facts);
+    played.facts.push_back(std::move(*facts));
+    played.sums.push_back(stimulus_of(run_.study.key, attempt.begun.stimuli[i]).sha256);
+    return {};
+  }
+
+  Result<bool> adjust(const Attempt& attempt, std::size_t i, IntervalsPlayed& played) {
+    const schema::Protocol& protocol = run_.study.protocol;
+    std::optional<double> wanted;
+    if (request_.observer) {
+      wanted = criterion_of(*request_.observer, place(attempt), attempt.trial.is_ascending());
+    } else if (request_.participant.wanted) {
+      wanted = request_.participant.wanted(run_.queue.answers());
+      if (!wanted) return false;
     }
-    return judged_delivery(attempt.begun.attempt, std::move(facts), sums, run_.study.protocol, late);
+    const AskedAt asked_at = request_.observer        ? AskedAt::pass_with_felt
+                             : wanted || !keeps_time_ ? AskedAt::pass
+                                                      : AskedAt::any_time;
+    IntervalPlay interval = interval_of(attempt, i);
+    interval.ratio = attempt.trial.ratio;
+    const double pass_s = paced_path(pace_of(protocol, interval)).duration_s();
+    schema::Turn before = schema::Turn::accept;
+    const auto ask = [&](const SettingNow& now) -> Result<std::optional<schema::Turn>> {
+      if (!wanted) return request_.participant.turn(asked_at == AskedAt::pass);
+      const double measured = request_.observer ? now.felt_ratio : now.ratio;
+      // Nothing is felt where ticks are missing, and then the attempt is not delivered.
+      const schema::Turn turn =
+          measured > 0 ? turn_towards(protocol, now.ratio, measured, *wanted) : schema::Turn::accept;
+      // Between two settings that are equally near.
+      const bool back = before != schema::Turn::accept && turn != before;
+      before = back ? schema::Turn::accept : turn;
+      return before;
+    };
+    LiveSetting setting(protocol, interval.session, pass_s, attempt.trial.ratio, asked_at, ask);
+    interval.steer = std::ref(setting);
+    const auto goes_on = play_interval_of(interval, played);
+    if (goes_on && !setting.accepted()) played.late.emplace_back(kNotAccepted);
+    return goes_on;
+  }
+
+  // How often each texture must be felt yet: 0 times if it was delivered, or failed too often.
+  Result<std::optional<schema::JournalEntry>> explore(const Attempt& attempt) {
+    IntervalsPlayed played;
+    std::vector<int> tries(attempt.trial.arranged.size(), run_.study.protocol.most_attempts);
+    while (true) {
+      std::vector<int> left;
+      for (std::size_t i = 0; i < tries.size(); ++i)
+        if (tries[i] > 0) left.push_back(static_cast<int>(i) + 1);
+      const auto next = request_.observer ? std::optional(left.empty() ? 0 : left.front())
+                                          : request_.participant.explore(left);
+      if (!next || request_.stop_asked()) return std::nullopt;
+      if (*next == 0) break;
+      const auto chosen = static_cast<std::size_t>(*next) - 1;
+      const std::size_t i = attempt.begun.stimuli.size();
+      const schema::StimulusExplored explored{attempt.begun.attempt, attempt.trial.arranged[chosen],
+                                              free_session(attempt.begun.attempt, static_cast<int>(i) + 1)};
+      TACTO_TRY(keep(explored));
+      TACTO_TRY(run_.queue.take(explored));
+      const auto goes_on = play_one(attempt, i, played);
+      TACTO_TRY(goes_on);
+      if (!*goes_on) return std::nullopt;
+      TACTO_TRY(read_facts(attempt, i, played));
+      const bool felt = reasons_against(played.facts.back(), run_.study.protocol, played.sums.back()).empty();
+      tries[chosen] = felt ? 0 : std::max(tries[chosen] - 1, 0);
+    }
+    return judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums, run_.study.protocol,
+                           played.late);
+  }
+
+  // By the displacement that the sessions predict; the mean level of a texture's intervals.
+  GivenAnswer order_by_level(const Attempt& attempt) const {
+    std::vector<std::pair<double, int>> levels;
+    for (const std::string& code : attempt.trial.arranged) {
+      double sum_db = 0, count = 0;
+      for (std::size_t i = 0; i < attempt.begun.stimuli.size(); ++i) {
+        if (attempt.begun.stimuli[i] != code) continue;
+        const auto rms_m = predicted_rms_m(full(attempt.begun.sessions[i]));
+        if (!rms_m) continue;  // ticks are missing: it is not delivered
+        sum_db += felt_level_db(*request_.observer, fmt::format("{}/{}", place(attempt), i), *rms_m);
+        ++count;
+      }
+      levels.emplace_back(count > 0 ? sum_db / count : 0, static_cast<int>(levels.size()) + 1);
+    }
+    std::ranges::sort(levels);
+    GivenAnswer answer;
+    for (const auto& [level_db, number] : levels) answer.order.push_back(number);
+    return answer;
+  }
+
+  std::string order_in_words(const Attempt& attempt, const std::vector<int>& order) const {
+    std::vector<std::string> codes;
+    for (const int number : order)
+      codes.push_back(attempt.trial.arranged[static_cast<std::size_t>(number) - 1]);
+    return fmt::format("{}", fmt::join(codes, " "));
   }
 
   Result<std::optional<schema::AttemptAnswered>> answer(const Attempt& attempt) {
@@ -128,13 +262,19 @@ class LiveSteps {
     TACTO_TRY(given);
     if (!*given) return std::nullopt;
     const int choice = (*given)->choice;
+    if (task() == schema::Task::ordering)
+      return schema::AttemptAnswered{attempt.begun.attempt, 0, order_in_words(attempt, (*given)->order),
+                                     (*given)->answer_s};
+    if (choice == 0) return schema::AttemptAnswered{attempt.begun.attempt, 0, "none", 0};
     const std::string& word = run_.study.protocol.choices[static_cast<std::size_t>(choice) - 1].word;
     return schema::AttemptAnswered{attempt.begun.attempt, choice, word, (*given)->answer_s};
   }
 
   Result<std::optional<GivenAnswer>> given_answer(const Attempt& attempt) {
+    if (task() == schema::Task::adjustment) return GivenAnswer{accepted_choice(attempt), 0};
     if (!request_.observer) return request_.participant.answer(run_.queue.answers());
-    if (run_.study.protocol.task == schema::Task::identification) {
+    if (task() == schema::Task::ordering) return order_by_level(attempt);
+    if (task() == schema::Task::identification) {
       if (!templates_) {
         auto templates = TemplateObserver::of(run_.study);
         TACTO_TRY(templates);
@@ -146,7 +286,7 @@ class LiveSteps {
                          0};
     }
     const auto& intervals = attempt.judged->intervals;
-    if (run_.study.protocol.task == schema::Task::amplitude) {
+    if (task() == schema::Task::amplitude) {
       const double ratio = predicted_ratio(run_, attempt).value_or(0);
       return GivenAnswer{rated(*request_.observer, place(attempt), ratio) + schema::kLargestRating + 1, 0};
     }
@@ -156,9 +296,18 @@ class LiveSteps {
     return GivenAnswer{choice, 0};
   }
 
+  // The setting was accepted in the session, before it was judged.
+  static int accepted_choice(const Attempt& attempt) {
+    const bool none = std::ranges::find(attempt.judged->why, kNotAccepted) != attempt.judged->why.end();
+    return none ? 0 : static_cast<int>(schema::Turn::accept);
+  }
+
+  schema::Task task() const { return run_.study.protocol.task; }
+
   Run& run_;
   schema::JournalFile& file_;
   const RunRequest& request_;
+  bool keeps_time_;
   std::optional<TemplateObserver> templates_;
   int block_ = 0;
   double block_base_s_ = 0;
@@ -182,8 +331,9 @@ int next_order(const Study& study) {
 }
 
 Result<void> check_observer(const schema::Protocol& protocol, const std::optional<Observer>& observer) {
-  constexpr const char* kExamples[] = {"weber=25.3%", "template", "match=86%,weber=10%"};
-  if (!observer || observer->task() == protocol.task) return {};
+  constexpr const char* kExamples[] = {"weber=25.3%", "template", "match=86%,weber=10%", "order,noise=1dB",
+                                       "threshold=20%,sd=10%"};
+  if (!observer || observer->task == protocol.task) return {};
   return fail(
       ErrorKind::usage,
       fmt::format("'{}' cannot answer in the task {}", observer->text, schema::word_of(protocol.task)),
@@ -197,9 +347,9 @@ Result<void> write_table(const Run& run) {
 }
 
 // Runs what is left. `first`: the entry with which this begins.
-Result<void> go_on(Run& run, schema::JournalFile& file, const RunRequest& request,
+Result<void> go_on(Run& run, schema::JournalFile& file, const RunRequest& request, bool keeps_time,
                    const schema::JournalEntry& first) {
-  LiveSteps live(run, file, request);
+  LiveSteps live(run, file, request, keeps_time);
   TACTO_TRY(live.keep(first));
   TACTO_TRY(run.queue.take(first));
   TACTO_TRY(run_trials(run.queue, live.steps()));
@@ -215,7 +365,8 @@ Result<Run> begin_run(const std::string& study_name, const std::string& particip
   TACTO_TRY(study);
   TACTO_TRY(check_not_withdrawn(study->stem, participant));
   TACTO_TRY(check_observer(study->protocol, request.observer));
-  TACTO_TRY(check_on_device(*study, request.device_uri));
+  const auto slowest = check_on_device(*study, request.device_uri);
+  TACTO_TRY(slowest);
   const int order = next_order(*study);
   const std::string stem = study->run(participant);
   auto file = schema::JournalFile::create(schema::journal_path(stem));
@@ -224,10 +375,9 @@ Result<Run> begin_run(const std::string& study_name, const std::string& particip
       study->name(),           participant,           study->protocol.sha256,
       study->key.sha256,       request.device_uri,    request.observer ? request.observer->text : "",
       schema::creation_time(), std::string(kCreator), order};
-  TrialQueue queue(ordered_trials(study->protocol, study->key, participant, order),
-                   study->protocol.most_attempts);
+  TrialQueue queue = queue_of_run(study->protocol, study->key, participant, order);
   Run run{stem, {plan, {}, 0}, std::move(*study), std::move(queue)};
-  TACTO_TRY(go_on(run, *file, request, plan));
+  TACTO_TRY(go_on(run, *file, request, slowest->keeps_time(), plan));
   return run;
 }
 
@@ -247,8 +397,9 @@ Result<Run> resume_run(const std::string& name, RunRequest request) {
     TACTO_TRY(observer);
     request.observer = std::move(*observer);
   }
-  TACTO_TRY(check_on_device(run->study, request.device_uri));
-  TACTO_TRY(go_on(*run, *file, request, schema::RunResumed{schema::creation_time()}));
+  const auto slowest = check_on_device(run->study, request.device_uri);
+  TACTO_TRY(slowest);
+  TACTO_TRY(go_on(*run, *file, request, slowest->keeps_time(), schema::RunResumed{schema::creation_time()}));
   return std::move(*run);
 }
 

@@ -5,16 +5,19 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analysis/experiment/observer.hpp"
 #include "analysis/experiment/proof.hpp"
 
 namespace tacto::analysis {
 
-/// An answer: its number among the protocol's choices, from 1, and the time from the question.
+/// An answer: its number among the protocol's choices, from 1, and the time from the question. Of ordering
+/// the numbers of all choices, from least to most.
 struct GivenAnswer {
   int choice = 0;
   double answer_s = 0;
+  std::vector<int> order = {};
 };
 
 /// The person, or a file in its place.
@@ -26,6 +29,13 @@ struct Participant {
   std::function<bool(int interval)> go_ahead;
   /// Asks the question; none: the run ends. `number` is that of the answer in the run, from 0.
   std::function<schema::Result<std::optional<GivenAnswer>>(std::size_t number)> answer;
+  /// Of ordering: which texture is felt next, by its number among the choices; 0: the question may come,
+  /// which is possible if `left`, the textures that must be felt yet, is empty. None: the run ends.
+  std::function<std::optional<int>(const std::vector<int>& left)> explore;
+  /// Of adjustment, of a person: the next key; waits for it on request. None: no key, or the run ends.
+  std::function<std::optional<schema::Turn>(bool wait)> turn;
+  /// Of adjustment, of a file: the ratio that is to be set. None: the run ends.
+  std::function<std::optional<double>(std::size_t number)> wanted;
 };
 
 struct RunRequest {

@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "data-schema/files/files.hpp"
 
 namespace tacto::analysis {
 namespace {
+
+constexpr double kPartOfStarts = 0.25;  // of the range, at each of its ends
 
 template <class Value, class TextOf>
 std::vector<Value> sorted_by_sum(std::vector<Value> values, const TextOf& text_of) {
@@ -23,6 +26,7 @@ std::vector<Value> sorted_by_sum(std::vector<Value> values, const TextOf& text_o
 
 bool is_presented(const schema::Protocol& protocol, const schema::CodedStimulus& stimulus) {
   if (protocol.task == schema::Task::two_interval) return stimulus.stretch != 0;
+  if (protocol.task == schema::Task::adjustment) return stimulus.name == protocol.standards.front();
   return protocol.task == schema::Task::amplitude ||
          std::ranges::find(protocol.comparisons, stimulus.name) != protocol.comparisons.end();
 }
@@ -32,6 +36,33 @@ std::string hashed_text(const schema::Protocol& protocol, const std::string& par
   return fmt::format("{}/{}/{}/{}", protocol.seed, participant, trial.block, trial.name());
 }
 
+double start_ratio(const schema::Protocol& protocol, const StudyTrial& trial, const std::string& text) {
+  const double part = kPartOfStarts * uniform_by_sum(text + "/start");
+  const double shift = std::pow(protocol.largest_ratio / protocol.smallest_ratio, part);
+  return trial.is_ascending() ? protocol.smallest_ratio * shift : protocol.largest_ratio / shift;
+}
+
+std::vector<StudyTrial> orderings(const schema::Protocol& protocol, const schema::ProtocolKey& key,
+                                  const std::string& participant) {
+  std::vector<StudyTrial> trials;
+  std::vector<std::string> codes;
+  for (const schema::CodedStimulus& stimulus : key.stimuli) codes.push_back(stimulus.code);
+  for (int i = 1; i <= protocol.repetitions; ++i) {
+    StudyTrial& trial = trials.emplace_back(StudyTrial{"all", i, 1, false, 1});
+    const std::string text = hashed_text(protocol, participant, trial);
+    trial.arranged = sorted_by_sum(codes, [&](const std::string& code) { return text + "/" + code; });
+  }
+  return sorted_by_sum(std::move(trials),
+                       [&](const StudyTrial& trial) { return hashed_text(protocol, participant, trial); });
+}
+
+std::vector<StudyTrial> adaptive_trials(const schema::Protocol& protocol, const std::string& participant) {
+  std::vector<StudyTrial> trials;
+  for (int i = 1; i <= protocol.repetitions; ++i) trials.push_back(StudyTrial{"level", i, 1, false, 1, true});
+  return sorted_by_sum(std::move(trials),
+                       [&](const StudyTrial& trial) { return hashed_text(protocol, participant, trial); });
+}
+
 // `kind`: a trial of the block, without its stimulus.
 std::vector<StudyTrial> trials_of_block(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                         const std::string& participant, const StudyTrial& kind) {
@@ -39,10 +70,12 @@ std::vector<StudyTrial> trials_of_block(const schema::Protocol& protocol, const 
   for (const schema::CodedStimulus& stimulus : key.stimuli)
     for (int i = 1; i <= protocol.repetitions && is_presented(protocol, stimulus); ++i)
       trials.push_back({stimulus.code, i, kind.block, kind.real, 1});
-  if (protocol.task == schema::Task::amplitude)
-    for (StudyTrial& trial : trials)
-      trial.ratio =
-          protocol.largest_ratio * uniform_by_sum(hashed_text(protocol, participant, trial) + "/ratio");
+  for (StudyTrial& trial : trials) {
+    const std::string text = hashed_text(protocol, participant, trial);
+    if (protocol.task == schema::Task::amplitude)
+      trial.ratio = protocol.largest_ratio * uniform_by_sum(text + "/ratio");
+    if (protocol.task == schema::Task::adjustment) trial.ratio = start_ratio(protocol, trial, text);
+  }
   return sorted_by_sum(std::move(trials),
                        [&](const StudyTrial& trial) { return hashed_text(protocol, participant, trial); });
 }
@@ -51,6 +84,8 @@ std::vector<StudyTrial> trials_of_block(const schema::Protocol& protocol, const 
 
 std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                        const std::string& participant, int order) {
+  if (protocol.method != schema::LevelMethod::constant) return adaptive_trials(protocol, participant);
+  if (protocol.task == schema::Task::ordering) return orderings(protocol, key, participant);
   if (protocol.task != schema::Task::identification)
     return trials_of_block(protocol, key, participant, {{}, 0, 1, false, 1});
   std::vector<StudyTrial> trials;

@@ -10,21 +10,27 @@
 namespace tacto::analysis {
 
 struct StudyTrial {
-  std::string code;  ///< of the stretched stimulus, or of the comparison
+  std::string code;  ///< of the stretched stimulus, the comparison or the standard; of ordering "all"
   int repetition = 0;
   int block = 1;
-  bool real = false;  ///< a sample on the bench, instead of playback
-  double ratio = 1;   ///< its gain over that of the protocol
+  bool real = false;      ///< a sample on the bench, instead of playback
+  double ratio = 1;       ///< its gain over that of the protocol; of adjustment, the gain at its start
+  bool adaptive = false;  ///< its code is chosen when its turn comes
+  std::vector<std::string> arranged = {};  ///< of ordering: the codes of the first, second ... texture
 
   std::string name() const { return code + "." + std::to_string(repetition); }
   bool standard_comes_first() const { return repetition % 2 == 1; }
+  bool is_ascending() const { return repetition % 2 == 1; }  ///< of adjustment: it begins at low gains
 };
 
 /// All trials of a participant. Those of each block are sorted by the SHA-256 of
 /// SEED/PARTICIPANT/BLOCK/CODE.REPETITION. two_interval and amplitude have one block, 1; the blocks of an
 /// identification are its conditions, in the order of row `order` of their Williams square, and each has its
 /// first most_trials trials. The ratio of a trial of amplitude is largest_ratio times uniform_by_sum() of
-/// that text with /ratio at its end.
+/// that text with /ratio at its end. Of an adaptive method CODE is "level" in that order. The textures of a
+/// trial of ordering are sorted by the SHA-256 of that text with /CODE at its end. An adjustment starts at
+/// uniform_by_sum() of that text with /start at its end, times a quarter of the range of ratios in dB, from
+/// its lower end in odd repetitions, from its upper one in even ones.
 std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                        const std::string& participant, int order);
 

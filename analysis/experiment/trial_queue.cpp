@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 namespace tacto::analysis {
@@ -18,10 +19,26 @@ tl::unexpected<schema::Error> does_not_follow(const std::string& what) {
                       "the protocol, the key or the journal was changed");
 }
 
+// Of an ordering: the word has each of its codes once.
+bool is_order_of(const std::string& word, const StudyTrial& trial) {
+  if (trial.arranged.empty()) return true;
+  return std::ranges::is_permutation(codes_in(word), trial.arranged);
+}
+
 }  // namespace
 
-TrialQueue::TrialQueue(std::vector<StudyTrial> order, int most_attempts)
-    : queue_(order.begin(), order.end()), trials_(order.size()), most_attempts_(most_attempts) {}
+std::vector<std::string> codes_in(const std::string& word) {
+  std::vector<std::string> codes;
+  std::istringstream text(word);
+  for (std::string code; text >> code;) codes.push_back(code);
+  return codes;
+}
+
+TrialQueue::TrialQueue(std::vector<StudyTrial> order, int most_attempts, ChooseCode choose)
+    : queue_(order.begin(), order.end()),
+      choose_(std::move(choose)),
+      trials_(order.size()),
+      most_attempts_(most_attempts) {}
 
 Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
   if (const auto* begun = std::get_if<schema::AttemptBegun>(&entry)) return begin(*begun);
@@ -39,11 +56,12 @@ Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
       return does_not_follow(fmt::format("sample {} of attempt {}", placed->label, placed->attempt));
     (*attempt)->placed = *placed;
   }
+  if (const auto* explored = std::get_if<schema::StimulusExplored>(&entry)) return explore(*explored);
   if (const auto* over = std::get_if<schema::BlockOver>(&entry)) return end_block(over->block);
   if (const auto* answered = std::get_if<schema::AttemptAnswered>(&entry)) {
     const auto attempt = open_attempt(answered->attempt);
     TACTO_TRY(attempt);
-    if (!(*attempt)->judged && !(*attempt)->placed)
+    if ((!(*attempt)->judged && !(*attempt)->placed) || !is_order_of(answered->word, (*attempt)->trial))
       return does_not_follow(fmt::format("attempt {}", answered->attempt));
     (*attempt)->answered = *answered;
     close();
@@ -54,7 +72,10 @@ Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
 }
 
 std::optional<StudyTrial> TrialQueue::next() const {
-  return queue_.empty() ? std::nullopt : std::optional(queue_.front());
+  if (queue_.empty()) return std::nullopt;
+  StudyTrial trial = queue_.front();
+  if (trial.adaptive) trial.code = choose_(attempts_);
+  return trial;
 }
 
 std::size_t TrialQueue::counted() const {
@@ -73,11 +94,12 @@ std::size_t TrialQueue::answers() const {
 
 Result<void> TrialQueue::begin(const schema::AttemptBegun& begun) {
   const int number = static_cast<int>(attempts_.size()) + 1;
-  if (open_ || begun.attempt != number || queue_.empty() || queue_.front().name() != begun.trial ||
-      queue_.front().block != begun.block)
+  const auto trial = next();
+  if (open_ || begun.attempt != number || !trial || trial->name() != begun.trial ||
+      trial->block != begun.block)
     return does_not_follow(fmt::format("attempt {} at trial {}", begun.attempt, begun.trial));
   if (!attempts_.empty() && attempts_.back().trial.block != begun.block) failed_.clear();
-  attempts_.push_back({begun, queue_.front(), {}, {}, {}});
+  attempts_.push_back({begun, *trial, {}, {}, {}});
   queue_.pop_front();
   open_ = true;
   return {};
@@ -88,12 +110,26 @@ Result<Attempt*> TrialQueue::open_attempt(int number) {
   return does_not_follow(fmt::format("attempt {}", number));
 }
 
+Result<void> TrialQueue::explore(const schema::StimulusExplored& explored) {
+  const auto attempt = open_attempt(explored.attempt);
+  TACTO_TRY(attempt);
+  const auto& arranged = (*attempt)->trial.arranged;
+  if ((*attempt)->judged || std::ranges::find(arranged, explored.stimulus) == arranged.end())
+    return does_not_follow(fmt::format("stimulus {} of attempt {}", explored.stimulus, explored.attempt));
+  (*attempt)->begun.stimuli.push_back(explored.stimulus);
+  (*attempt)->begun.sessions.push_back(explored.session);
+  return {};
+}
+
 void TrialQueue::close() {
   const Attempt& attempt = attempts_.back();
   open_ = false;
   if (attempt.counts()) return;
   const bool failed = attempt.judged && !attempt.judged->delivered;
-  if (failed && ++failed_[attempt.begun.trial] >= most_attempts_) {
+  // A trial of an adaptive method comes again with another code.
+  const std::string trial =
+      attempt.trial.adaptive ? fmt::format("{}", attempt.trial.repetition) : attempt.begun.trial;
+  if (failed && ++failed_[trial] >= most_attempts_) {
     ++abandoned_;
     return;
   }

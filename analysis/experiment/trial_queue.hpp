@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@
 namespace tacto::analysis {
 
 struct Attempt {
-  schema::AttemptBegun begun;
+  schema::AttemptBegun begun;  ///< of ordering: with what was explored since
   StudyTrial trial;
   std::optional<schema::DeliveryJudged> judged;
   std::optional<schema::SamplePlaced> placed;
@@ -24,13 +25,18 @@ struct Attempt {
   bool counts() const { return answered && (placed || (judged && judged->delivered)); }
 };
 
+/// The codes of an order, from the word of its answer.
+std::vector<std::string> codes_in(const std::string& word);
+
 /// Trials in order, without the rest of a block whose time is over. One that has no answer because the run
 /// was interrupted comes again at once, as often as that happens: so a file of answers fits as it did before.
 /// One that was answered but not delivered comes again at the end of its block. After `most_attempts`
 /// attempts that were judged not delivered a trial is abandoned.
 class TrialQueue {
  public:
-  TrialQueue(std::vector<StudyTrial> order, int most_attempts);
+  /// Of an adaptive method: the code of the next trial, from all attempts.
+  using ChooseCode = std::function<std::string(const std::vector<Attempt>&)>;
+  TrialQueue(std::vector<StudyTrial> order, int most_attempts, ChooseCode choose = {});
 
   /// Takes the next entry of the journal. Errors: unsuitable, if it does not follow from those before.
   schema::Result<void> take(const schema::JournalEntry& entry);
@@ -53,10 +59,12 @@ class TrialQueue {
  private:
   schema::Result<void> begin(const schema::AttemptBegun& begun);
   schema::Result<Attempt*> open_attempt(int number);
+  schema::Result<void> explore(const schema::StimulusExplored& explored);
   void close();
   schema::Result<void> end_block(int block);
 
   std::deque<StudyTrial> queue_;
+  ChooseCode choose_;
   std::map<std::string, int> failed_;  // attempts of each trial of this block that were not delivered
   std::vector<Attempt> attempts_;
   std::size_t trials_, abandoned_ = 0, timed_out_ = 0;

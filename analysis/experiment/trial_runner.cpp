@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/experiment/trial_runner.hpp"
 
+#include "analysis/experiment/adaptive_levels.hpp"
 #include "data-schema/base/creation_time.hpp"
 
 namespace tacto::analysis {
@@ -44,10 +45,18 @@ Result<void> run_trials(TrialQueue& queue, const TrialSteps& steps) {
   return keep_and_take(queue, steps, schema::RunEnded{schema::creation_time()});
 }
 
+TrialQueue queue_of_run(const schema::Protocol& protocol, const schema::ProtocolKey& key,
+                        const std::string& participant, int order) {
+  // Copies: the queue may outlive both.
+  const auto choose = [protocol, key](const std::vector<Attempt>& attempts) {
+    return adaptive_code(protocol, key, attempts);
+  };
+  return TrialQueue(ordered_trials(protocol, key, participant, order), protocol.most_attempts, choose);
+}
+
 Result<TrialQueue> queue_of(const schema::Journal& journal, const schema::Protocol& protocol,
                             const schema::ProtocolKey& key) {
-  TrialQueue queue(ordered_trials(protocol, key, journal.plan.participant, journal.plan.order),
-                   protocol.most_attempts);
+  TrialQueue queue = queue_of_run(protocol, key, journal.plan.participant, journal.plan.order);
   for (const schema::JournalEntry& entry : journal.entries) TACTO_TRY(queue.take(entry));
   return queue;
 }

@@ -29,6 +29,10 @@ struct TrialSteps {
 /// taken by the queue, which is the code that resumes a journal. Errors: those of the steps.
 schema::Result<void> run_trials(TrialQueue& queue, const TrialSteps& steps);
 
+/// The queue of a run that begins.
+TrialQueue queue_of_run(const schema::Protocol& protocol, const schema::ProtocolKey& key,
+                        const std::string& participant, int order);
+
 /// The queue of a journal. Errors: unsuitable: an entry that does not follow.
 schema::Result<TrialQueue> queue_of(const schema::Journal& journal, const schema::Protocol& protocol,
                                     const schema::ProtocolKey& key);

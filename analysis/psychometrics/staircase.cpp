@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/psychometrics/staircase.hpp"
 
+#include <algorithm>
+
 namespace tacto::analysis {
 
 void Staircase::take_answer(bool correct) {
@@ -11,7 +13,7 @@ void Staircase::take_answer(bool correct) {
   const int direction = rises ? 1 : -1;
   if (direction == -direction_) reversals_.push_back(level_);
   direction_ = direction;
-  level_ += rises ? rule_.up : -rule_.down;
+  level_ = std::clamp(level_ + (rises ? rule_.up : -rule_.down), rule_.lowest, rule_.highest);
   correct_ = wrong_ = 0;
 }
 

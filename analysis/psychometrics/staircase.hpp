@@ -3,6 +3,7 @@
 // 49).
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace tacto::analysis {
 struct StaircaseRule {
   std::size_t correct_to_fall = 2, wrong_to_rise = 1;
   double up = 1, down = 1;
+  double lowest = -INFINITY, highest = INFINITY;  ///< the level stays between them
 };
 
 /// Gives the level of each trial and finds its reversals. Pure.

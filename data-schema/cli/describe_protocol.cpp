@@ -13,11 +13,13 @@ Result<cli::Report> describe_protocol(const std::string& path) {
   if (protocol->task == Task::two_interval)
     report.add("standard_period_m", protocol->standard.period_m)
         .add("standard_amplitude_m", protocol->standard.amplitude_m)
-        .add("levels", protocol->levels.size());
+        .add("levels", protocol->levels.size())
+        .add("method", word_of(protocol->method));
   else
-    report.add("standards", protocol->standards.size())
-        .add("comparisons", protocol->comparisons.size())
-        .add("conditions", protocol->conditions);
+    report.add("standards", protocol->standards.size());
+  if (protocol->task == Task::identification)
+    report.add("comparisons", protocol->comparisons.size()).add("conditions", protocol->conditions);
+  if (protocol->task == Task::adjustment) report.add("goal", word_of(protocol->goal));
   report.add("repetitions", protocol->repetitions);
   report.add("participants", protocol->participants).add("seed", protocol->seed);
   add_text(report, "notes", protocol->notes);

@@ -41,6 +41,13 @@ struct SamplePlaced {
   std::string label;  ///< as the operator typed it: the code of the trial
 };
 
+/// Of ordering: the participant feels a stimulus of the attempt, the next interval of it.
+struct StimulusExplored {
+  int attempt = 0;
+  std::string stimulus;  ///< code
+  std::string session;   ///< from the journal's folder
+};
+
 /// What a session says of one interval.
 struct IntervalFacts {
   std::uint64_t ticks = 0, lost_ticks = 0, fault_ticks = 0, late_ticks = 0, blind_ticks = 0;
@@ -53,8 +60,10 @@ struct IntervalFacts {
   std::optional<double> predicted_error_db;    ///< of the worst stroke; none: the target is unknown
   std::optional<double> measured_error_db;     ///< the same, if the tray has a sensor
   std::optional<double> predicted_period_m;    ///< of the predicted displacement along position
-  /// RMS of the predicted displacement of all strokes, re that of the texture's force in the band.
+  /// RMS of the predicted displacement of all strokes, re that of the texture's force in the band; if the
+  /// gain was changed, of the last stroke, at the last gain.
   std::optional<double> predicted_gain_m_per_n;
+  std::optional<double> last_gain;  ///< at the end of playback, as a factor of the texture's gain
   bool operator==(const IntervalFacts&) const = default;
 };
 
@@ -68,8 +77,9 @@ struct DeliveryJudged {
 
 struct AttemptAnswered {
   int attempt = 0;
-  int choice = 0;       ///< of the protocol's choices, from 1
-  std::string word;     ///< as the protocol names it
+  /// Of the protocol's choices, from 1. 0: an order, or no setting was accepted.
+  int choice = 0;
+  std::string word;     ///< as the protocol names it; of an order the codes from least to most, "K3 K1"
   double answer_s = 0;  ///< from the question to the key; 0 of an observer and of a file
 };
 
@@ -87,8 +97,8 @@ struct RunEnded {
   std::string created;
 };
 
-using JournalEntry = std::variant<RunPlanned, AttemptBegun, DeliveryJudged, SamplePlaced, AttemptAnswered,
-                                  BlockOver, RunResumed, RunEnded>;
+using JournalEntry = std::variant<RunPlanned, AttemptBegun, DeliveryJudged, SamplePlaced, StimulusExplored,
+                                  AttemptAnswered, BlockOver, RunResumed, RunEnded>;
 
 /// The line of an entry, with its end: a JSON object whose last member `check` has the first 16 hexadecimal
 /// digits of the SHA-256 of the line without that member (and with the closing brace).

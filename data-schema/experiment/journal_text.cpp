@@ -49,7 +49,8 @@ constexpr PerhapsFact kPerhapsFacts[] = {{"removed_by_limits_db", &IntervalFacts
                                          {"predicted_error_db", &IntervalFacts::predicted_error_db},
                                          {"measured_error_db", &IntervalFacts::measured_error_db},
                                          {"predicted_period_m", &IntervalFacts::predicted_period_m},
-                                         {"predicted_gain_m_per_n", &IntervalFacts::predicted_gain_m_per_n}};
+                                         {"predicted_gain_m_per_n", &IntervalFacts::predicted_gain_m_per_n},
+                                         {"last_gain", &IntervalFacts::last_gain}};
 
 struct PlanText {
   const char* name;
@@ -108,6 +109,10 @@ struct EntryWriter {
   void operator()(const SamplePlaced& placed) const {
     body["event"] = "placed", body["attempt"] = placed.attempt, body["label"] = placed.label;
   }
+  void operator()(const StimulusExplored& explored) const {
+    body["event"] = "explored", body["attempt"] = explored.attempt;
+    body["stimulus"] = explored.stimulus, body["session"] = explored.session;
+  }
   void operator()(const AttemptAnswered& answered) const {
     body["event"] = "answered", body["attempt"] = answered.attempt, body["choice"] = answered.choice;
     body["word"] = answered.word, body["answer_s"] = answered.answer_s;
@@ -139,6 +144,8 @@ JournalEntry journal_entry_from(const Json& body) {
   }
   if (event == "answered")
     return AttemptAnswered{body.at("attempt"), body.at("choice"), body.at("word"), body.at("answer_s")};
+  if (event == "explored")
+    return StimulusExplored{body.at("attempt"), body.at("stimulus"), body.at("session")};
   if (event == "placed") return SamplePlaced{body.at("attempt"), body.at("label")};
   if (event == "block_over") return BlockOver{body.at("block")};
   if (event == "resumed") return RunResumed{body.at("created")};

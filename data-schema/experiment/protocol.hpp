@@ -3,6 +3,7 @@
 // stimulus plays under which code.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,17 +20,38 @@ struct StandardStimulus {
 /// What a trial asks. two_interval: the standard and a stretched version of it are played, one after the
 /// other; which of them has the smaller period. identification: one of the comparisons is played, or lies on
 /// the bench as a real sample; which of the standards it is. amplitude: the standard is played, at a gain of
-/// each trial; how strong it is, re the real sample that is before the participant.
-enum class Task { two_interval, identification, amplitude };
+/// each trial; how strong it is, re the real sample that is before the participant. ordering: all standards,
+/// each felt as often as the participant likes; their order, from least to most. adjustment: the first
+/// standard is played, and the participant changes its gain until the goal is reached.
+enum class Task { two_interval, identification, amplitude, ordering, adjustment };
 
-/// "two_interval", "identification", "amplitude".
+/// "two_interval", "identification", "amplitude", "ordering", "adjustment".
 const char* word_of(Task task);
+
+/// Which level a trial of two intervals has. constant: each level as often as the others, in the order of the
+/// checksums. staircase: two right answers in a row lead to the next smaller stretch, a wrong one to the next
+/// larger (Levitt 1971), from the largest on. quest_plus: the level that says most (Watson 2017).
+enum class LevelMethod { constant, staircase, quest_plus };
+
+/// "constant", "staircase", "quest_plus".
+const char* word_of(LevelMethod method);
+
+/// What an adjustment looks for: the least or the greatest gain at which the texture is one still; or the
+/// gain at which it is as strong as the last standard, which is played before it at the ratio 1.
+enum class Goal { least, greatest, match };
+
+/// "least", "greatest", "match"; and back.
+const char* word_of(Goal goal);
+std::optional<Goal> goal_of(std::string_view word);
 
 /// One condition of an identification: the comparisons are real samples, or played.
 inline constexpr const char *kRealCondition = "real", *kVirtualCondition = "virtual";
 
 /// The answers of the task amplitude, in order: the ratings -3 to 3.
 inline constexpr int kLargestRating = 3;
+
+/// The answers of the task adjustment, in order and from 1: a step down, a step up, and the end.
+enum class Turn { weaker = 1, stronger, accept };
 
 /// How the finger is to move in each interval.
 struct ProtocolPace {
@@ -56,6 +78,7 @@ struct AnswerWord {
 struct ProtocolTexts {
   std::string welcome, begin, interval, question, end;
   std::string place;  ///< to the operator, before a real sample's label; in an identification only
+  std::string left;   ///< before the numbers of the textures that must be felt yet; in an ordering only
 };
 
 /// What the task does not have is empty.
@@ -64,20 +87,29 @@ struct Protocol {
   StandardStimulus standard;   ///< of two_interval, as the next two
   bool keep_slope = false;     ///< the amplitude is stretched alike
   std::vector<double> levels;  ///< stretch of the period: 0.3 is 30 % longer; ascending, never 0
-  /// Names of textures: the comparisons are standards; of amplitude there is one standard.
+  LevelMethod method = LevelMethod::constant;
+  /// Names of textures: the comparisons are standards; of amplitude there is one standard, of adjustment one
+  /// or, to match them, two.
   std::vector<std::string> standards, comparisons;
+  /// Of ordering: the parameter by which the standards were made, one number for each; empty: unknown.
+  std::vector<double> intended;
+  Goal goal = Goal::least;  ///< of adjustment, as the next two
+  double smallest_ratio = 0, step_db = 0;
   std::vector<std::string>
       conditions;        ///< of an identification, a block each; their order is a row of a Williams square
   int most_trials = 0;   ///< of one block
   double longest_s = 0;  ///< of one block: then no further trial of it begins
-  double largest_ratio = 1;  ///< of amplitude: gains of trials are uniform from 0 to this times gain_m_per_n
-  int repetitions = 0;       ///< of each level or comparison (in each condition); trials of amplitude
-  std::string seed;          ///< of codes and order
-  double gain_m_per_n = 0;   ///< of playback; of amplitude that of the ratio 1
+  /// Of amplitude: gains of trials are uniform from 0 to this times gain_m_per_n. Of adjustment: the limit of
+  /// what can be set.
+  double largest_ratio = 1;
+  /// Of each level (constant) or comparison (in each condition); else the number of trials.
+  int repetitions = 0;
+  std::string seed;         ///< of codes and order
+  double gain_m_per_n = 0;  ///< of playback; of amplitude and adjustment that of the ratio 1
   ProtocolPace pace;
   double lead_s = 0;  ///< from the participant's go-ahead to the beginning of an interval: above any load
   std::vector<AnswerWord>
-      choices;  ///< the answers: first and second interval; a standard each, in order; or ratings
+      choices;  ///< the answers: first and second interval; a standard each, in order; ratings; or Turn
   std::string begin_key;
   int most_attempts = 0;  ///< of one trial; then the run goes on without it
   int participants = 0;   ///< planned: before they are complete, the analysis needs --unblind

@@ -40,12 +40,20 @@ struct ShownText {
   const char* name;
   std::string ProtocolTexts::*member;
 };
-constexpr const char* kTaskWords[] = {"two_interval", "identification", "amplitude"};
+constexpr const char* kTaskWords[] = {"two_interval", "identification", "amplitude", "ordering",
+                                      "adjustment"};
+constexpr const char* kMethodWords[] = {"constant", "staircase", "quest_plus"};
+constexpr const char* kGoalWords[] = {"least", "greatest", "match"};
+// Those that a task may have.
+const std::pair<std::string, Task> kOptionalMembers[] = {{"intended", Task::ordering},
+                                                         {"method", Task::two_interval}};
 // The members of each task. Those of another one are refused.
 const std::vector<std::string> kTaskMembers[] = {
     {"standard", "keep", "levels"},
     {"standards", "comparisons", "conditions", "most_trials", "longest_s"},
-    {"standards", "largest_ratio"}};
+    {"standards", "largest_ratio"},
+    {"standards"},
+    {"standards", "goal", "smallest_ratio", "largest_ratio", "step_db"}};
 constexpr ShownText kShownTexts[] = {{"welcome", &ProtocolTexts::welcome},
                                      {"begin", &ProtocolTexts::begin},
                                      {"interval", &ProtocolTexts::interval},
@@ -62,6 +70,9 @@ void take_two_interval(const Json& body, Protocol& protocol) {
   protocol.standard = {standard["period_m"], standard["amplitude_m"], standard["length_m"]};
   protocol.keep_slope = body["keep"] == "slope";
   protocol.levels = body["levels"].get<std::vector<double>>();
+  if (const auto method = text_or(body, "method"); !method.empty())
+    protocol.method =
+        static_cast<LevelMethod>(std::ranges::find(kMethodWords, method) - std::begin(kMethodWords));
 }
 
 void take_identification(const Json& body, Protocol& protocol) {
@@ -77,6 +88,18 @@ void take_amplitude(const Json& body, Protocol& protocol) {
   protocol.largest_ratio = body["largest_ratio"];
 }
 
+void take_ordering(const Json& body, Protocol& protocol) {
+  protocol.standards = body["standards"].get<std::vector<std::string>>();
+  if (body.contains("intended")) protocol.intended = body["intended"].get<std::vector<double>>();
+}
+
+void take_adjustment(const Json& body, Protocol& protocol) {
+  take_amplitude(body, protocol);
+  protocol.goal = *goal_of(body["goal"].get<std::string>());
+  protocol.smallest_ratio = body["smallest_ratio"];
+  protocol.step_db = body["step_db"];
+}
+
 Protocol protocol_from(const Document& document) {
   const Json& body = document.body;
   Protocol protocol;
@@ -85,6 +108,8 @@ Protocol protocol_from(const Document& document) {
   if (protocol.task == Task::two_interval) take_two_interval(body, protocol);
   if (protocol.task == Task::identification) take_identification(body, protocol);
   if (protocol.task == Task::amplitude) take_amplitude(body, protocol);
+  if (protocol.task == Task::ordering) take_ordering(body, protocol);
+  if (protocol.task == Task::adjustment) take_adjustment(body, protocol);
   protocol.repetitions = body["repetitions"];
   protocol.seed = body["seed"];
   protocol.gain_m_per_n = body["gain_m_per_n"];
@@ -99,6 +124,7 @@ Protocol protocol_from(const Document& document) {
   for (const auto& [name, member] : kLimitNumbers) protocol.delivered.*member = delivered[name];
   for (const auto& [name, member] : kShownTexts) protocol.texts.*member = texts[name];
   protocol.texts.place = text_or(texts, "place");
+  protocol.texts.left = text_or(texts, "left");
   protocol.notes = text_or(body, "notes");
   keep_unknown(document, protocol);
   return protocol;
@@ -110,6 +136,7 @@ void put_two_interval(Json& body, const Protocol& protocol) {
                       {"length_m", protocol.standard.length_m}};
   body["keep"] = protocol.keep_slope ? "slope" : "amplitude";
   body["levels"] = protocol.levels;
+  if (protocol.method != LevelMethod::constant) body["method"] = word_of(protocol.method);
 }
 
 void put_identification(Json& body, const Protocol& protocol) {
@@ -125,6 +152,18 @@ void put_amplitude(Json& body, const Protocol& protocol) {
   body["largest_ratio"] = protocol.largest_ratio;
 }
 
+void put_ordering(Json& body, const Protocol& protocol) {
+  body["standards"] = protocol.standards;
+  if (!protocol.intended.empty()) body["intended"] = protocol.intended;
+}
+
+void put_adjustment(Json& body, const Protocol& protocol) {
+  put_amplitude(body, protocol);
+  body["goal"] = word_of(protocol.goal);
+  body["smallest_ratio"] = protocol.smallest_ratio;
+  body["step_db"] = protocol.step_db;
+}
+
 Json protocol_body(const Protocol& protocol) {
   Json body = Json::object();
   put_text(body, "version", protocol.newer_version);
@@ -132,6 +171,8 @@ Json protocol_body(const Protocol& protocol) {
   if (protocol.task == Task::two_interval) put_two_interval(body, protocol);
   if (protocol.task == Task::identification) put_identification(body, protocol);
   if (protocol.task == Task::amplitude) put_amplitude(body, protocol);
+  if (protocol.task == Task::ordering) put_ordering(body, protocol);
+  if (protocol.task == Task::adjustment) put_adjustment(body, protocol);
   body["repetitions"] = protocol.repetitions;
   body["seed"] = protocol.seed;
   body["gain_m_per_n"] = protocol.gain_m_per_n;
@@ -151,6 +192,7 @@ Json protocol_body(const Protocol& protocol) {
   body["texts"] = Json::object();
   for (const auto& [name, member] : kShownTexts) body["texts"][name] = protocol.texts.*member;
   put_text(body["texts"], "place", protocol.texts.place);
+  put_text(body["texts"], "left", protocol.texts.left);
   put_text(body, "notes", protocol.notes);
   return body;
 }
@@ -161,6 +203,9 @@ Result<void> malformed_at(const std::string& path, const char* member, const std
 }
 
 Result<void> check_levels(const Protocol& protocol, const std::string& path) {
+  if (protocol.method == LevelMethod::staircase && protocol.levels.front() < 0 && protocol.levels.back() > 0)
+    return malformed_at(path, "levels", "a staircase has longer and shorter periods",
+                        "give only longer ones, or only shorter ones");
   for (std::size_t i = 0; i < protocol.levels.size(); ++i) {
     const std::string place = fmt::format("levels/{}", i);
     if (protocol.levels[i] == 0)
@@ -169,6 +214,13 @@ Result<void> check_levels(const Protocol& protocol, const std::string& path) {
       return malformed_at(path, place.c_str(), "the levels do not rise", "sort them; each occurs once");
   }
   return {};
+}
+
+std::size_t answers_of(const Protocol& protocol) {
+  if (protocol.task == Task::two_interval) return 2;
+  if (protocol.task == Task::amplitude) return 2 * kLargestRating + 1;
+  if (protocol.task == Task::adjustment) return static_cast<std::size_t>(Turn::accept);
+  return protocol.standards.size();
 }
 
 Result<void> check_answers(const Protocol& protocol, const std::string& path) {
@@ -181,13 +233,12 @@ Result<void> check_answers(const Protocol& protocol, const std::string& path) {
       return malformed_at(path, fmt::format("answers/choices/{}/word", words.size()).c_str(),
                           "two answers have the same word", "give them different words");
   }
-  const std::size_t expected = protocol.task == Task::two_interval ? 2
-                               : protocol.task == Task::amplitude  ? 2 * kLargestRating + 1
-                                                                   : protocol.standards.size();
+  const std::size_t expected = answers_of(protocol);
   if (protocol.choices.size() == expected) return {};
   return malformed_at(path, "answers/choices",
                       fmt::format("has {} answers, the task {}", protocol.choices.size(), expected),
-                      "give one for each interval, for each standard, or for each rating from -3 to 3");
+                      "give one for each interval, for each standard, for each rating from -3 to 3, or for "
+                      "weaker, stronger and accepted");
 }
 
 // A line of a file of answers is a word, a key or a label (K3): each has one meaning.
@@ -212,10 +263,17 @@ Result<void> check_words(const Protocol& protocol, const std::string& path) {
 }
 
 Result<void> check_names(const Protocol& protocol, const std::string& path) {
-  if (protocol.task != Task::two_interval &&
-      (protocol.task == Task::amplitude) != (protocol.standards.size() == 1))
-    return malformed_at(path, "standards", fmt::format("has {} names", protocol.standards.size()),
-                        "give one in the task amplitude, two or more in an identification");
+  const std::size_t names = protocol.standards.size();
+  const bool matches = protocol.task == Task::adjustment && protocol.goal == Goal::match;
+  const bool one = protocol.task == Task::amplitude || protocol.task == Task::adjustment;
+  if (protocol.task != Task::two_interval && (one != (names == 1)) && !(matches && names == 2))
+    return malformed_at(path, "standards", fmt::format("has {} names", names),
+                        "give two or more in an identification or ordering, else one; to match them, one or "
+                        "two");
+  if (!protocol.intended.empty() && protocol.intended.size() != names)
+    return malformed_at(path, "intended",
+                        fmt::format("has {} numbers for {} standards", protocol.intended.size(), names),
+                        "give one for each standard, in their order, or leave it out");
   std::set<std::string> standards;
   for (const std::string& name : protocol.standards)
     if (!standards.insert(name).second)
@@ -239,6 +297,11 @@ Result<void> check_members_of_task(const Json& body, const std::string& path) {
                                       expected ? "needs this member" : "does not have this member"),
                           expected ? "add it" : "remove it");
     }
+  for (const auto& [name, task] : kOptionalMembers)
+    if (body.contains(name) && task_of(body) != task)
+      return malformed_at(path, name.c_str(),
+                          fmt::format("only a protocol of the task {} may have this member", word_of(task)),
+                          "remove it");
   return {};
 }
 
@@ -283,6 +346,20 @@ Result<Document> open_known(const std::string& path, std::string_view kind) {
 
 const char* word_of(Task task) {
   return kTaskWords[static_cast<int>(task)];
+}
+
+const char* word_of(LevelMethod method) {
+  return kMethodWords[static_cast<int>(method)];
+}
+
+const char* word_of(Goal goal) {
+  return kGoalWords[static_cast<int>(goal)];
+}
+
+std::optional<Goal> goal_of(std::string_view word) {
+  const auto* const found = std::ranges::find(kGoalWords, word);
+  if (found == std::end(kGoalWords)) return std::nullopt;
+  return static_cast<Goal>(found - std::begin(kGoalWords));
 }
 
 bool is_label(std::string_view line) {

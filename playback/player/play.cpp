@@ -85,12 +85,20 @@ Result<void> follow_script(Player& player, double played_s, std::span<const Time
   return {};
 }
 
+using Steer = std::function<Result<bool>(Player& player, double played_s)>;
+
 Result<void> run_until(Player& player, const PlayTime& time, std::span<const TimedSceneCommand> script,
-                       const std::function<bool()>& stop_asked, const std::function<void(double)>& progress) {
+                       const Steer& steer, const std::function<bool()>& stop_asked,
+                       const std::function<void(double)>& progress) {
   while (player.armed_s() < time.to_s && !stop_asked()) {
     TACTO_TRY(follow_script(player, player.armed_s() - time.from_s, script));
     if (const auto done = player.step(kPlayStepS); !done) return done;
     if (player.state() == PlayerState::fault) break;
+    if (steer) {
+      const auto goes_on = steer(player, player.armed_s() - time.from_s);
+      TACTO_TRY(goes_on);
+      if (!*goes_on) break;
+    }
     if (progress) progress(std::max(0.0, (player.armed_s() - time.from_s) / (time.to_s - time.from_s)));
   }
   return {};
@@ -140,6 +148,7 @@ struct Playing {
   Player& player;
   std::span<const TimedSceneCommand> script = {};
   std::optional<SteadyClock::time_point> begins_at = std::nullopt;
+  Steer steer = {};
 };
 
 double seconds_to(SteadyClock::time_point when) {
@@ -172,7 +181,7 @@ Result<void> play_through(const Playing& playing, const std::string& session,
   TACTO_TRY(player.play());
   const PlayTime time =
       begin_path(player, playing.device, playing.here, outcome.asked_s, playing.begins_at.has_value());
-  TACTO_TRY(run_until(player, time, playing.script, stop_asked, progress));
+  TACTO_TRY(run_until(player, time, playing.script, playing.steer, stop_asked, progress));
   outcome.status = player.status();
   if (player.state() != PlayerState::fault) TACTO_TRY(ramp_down(player));
   TACTO_TRY(player.disarm());
@@ -234,7 +243,8 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   // The emulated finger moves from the stream's beginning on. With this computer's loop that is before the
   // loop's delay is measured, so the finger waits; as it does for a beginning at a certain time.
   if (options.finger_path)
-    script = FingerScript{*options.finger_path, false, options.loop_here || options.begins_at.has_value()};
+    script = FingerScript{*options.finger_path, options.path_repeated,
+                          options.loop_here || options.begins_at.has_value()};
   auto device = open_player_device(options.device_uri, script);
   TACTO_TRY(device);
   PlayerOptions player_options;
@@ -249,12 +259,12 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   PlayOutcome outcome = outcome_of(*program);
   const PlayableRange what = playable_range(*program);
   outcome.asked_s = time_of(options);
-  if (options.finger_path)
+  if (options.finger_path && !options.path_repeated)
     outcome.rests_from_s = rest_from(options.finger_path->duration_s(), outcome.asked_s);
   TACTO_TRY((*player)->load(std::move(*program)));
   TACTO_TRY((*player)->gain(options.gain));
   if (*here) lock_memory();
-  const Playing playing{*device, *here, **player, {}, options.begins_at};
+  const Playing playing{*device, *here, **player, {}, options.begins_at, options.steer};
   TACTO_TRY(play_through(playing, options.session, stop_asked, progress, outcome));
   if (*here) outcome.looped = looped_by(*here->loop);
   tell_limits(options.session, outcome);
@@ -294,7 +304,7 @@ Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std:
   TACTO_TRY(script);
   note_moves(*script, outcome.notes);
   TACTO_TRY((*player)->load(std::move(*program)));
-  const Playing playing{device->player, {}, **player, *script, {}};
+  const Playing playing{device->player, {}, **player, *script, {}, {}};
   TACTO_TRY(play_through(playing, options.session, stop_asked, progress, outcome));
   return outcome;
 }

@@ -27,6 +27,10 @@ struct PlayOptions {
   /// On a device that keeps time, play begins at this time, or as soon as the texture is on the device. An
   /// emulated finger begins its path with it.
   std::optional<std::chrono::steady_clock::time_point> begins_at = std::nullopt;
+  bool path_repeated = false;  ///< an emulated finger repeats its path to the end (FingerScript::repeated)
+  /// Called between the messages of ticks, with the seconds since the beginning; it may change the gain and
+  /// set marks. False ends the playback, by a ramp.
+  std::function<schema::Result<bool>(Player& player, double played_s)> steer = {};
 };
 
 /// Figures of a loop on this computer.

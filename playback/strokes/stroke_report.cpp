@@ -113,6 +113,8 @@ StrokeReport begun_report(const SessionOverview& overview) {
   StrokeReport report;
   report.low_hz = overview.header.low_hz, report.high_hz = overview.header.high_hz;
   report.damaged = overview.damaged_at.has_value();
+  report.last_gain = overview.header.initial_gain;
+  for (const SteeringStep& step : overview.steps) report.last_gain = step.gain.value_or(report.last_gain);
   if (!overview.closed && !report.damaged)
     report.notes.emplace_back("the session was never closed: the figures are of the part that was stored");
   if (report.damaged)

@@ -50,6 +50,7 @@ struct StrokeReport {
   std::uint64_t stroke_count = 0;     ///< of all
   std::optional<LimitTally> limits;   ///< of the whole session; none: unknown
   double low_hz = 0, high_hz = 0;     ///< the band of all displacements
+  double last_gain = 1;               ///< at the end, as a factor of the textures' own gains
   StrokeSpeed speed;
   std::vector<std::string> notes;  ///< what could not be judged, and why
   bool damaged = false;            ///< the file is damaged, and the rest of it is not in the report

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The run of an experiment without a device: order, journal cut at each byte, decisions, observer, period.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,12 +10,16 @@
 #include <numbers>
 #include <set>
 
+#include "analysis/experiment/adaptive_levels.hpp"
 #include "analysis/experiment/interval_facts.hpp"
+#include "analysis/experiment/live_setting.hpp"
 #include "analysis/experiment/observer.hpp"
 #include "analysis/experiment/spatial_period.hpp"
 #include "analysis/experiment/study.hpp"
+#include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/template_observer.hpp"
 #include "analysis/experiment/trial_runner.hpp"
+#include "analysis/psychometrics/staircase.hpp"
 #include "data-schema/files/files.hpp"
 
 namespace tacto::analysis {
@@ -43,6 +49,16 @@ schema::Protocol ten_trials() {
   protocol.standards = {"A", "B", "C", "D", "E"}, protocol.comparisons = {"C", "D", "E"};
   protocol.conditions = {"real", "virtual"};
   protocol.most_trials = 5, protocol.longest_s = 900;
+  return protocol;
+}
+
+// Three orders of four names.
+schema::Protocol three_orders() {
+  schema::Protocol protocol = twenty_trials();
+  protocol.task = schema::Task::ordering;
+  protocol.levels.clear();
+  protocol.standards = {"A", "B", "C", "D"};
+  protocol.repetitions = 3;
   return protocol;
 }
 
@@ -84,6 +100,7 @@ class TextRun {
     TrialSteps steps;
     steps.keep = [this](const schema::JournalEntry& entry) { return keep(entry); };
     steps.begin = [](const StudyTrial& trial, int attempt) {
+      if (!trial.arranged.empty()) return schema::AttemptBegun{attempt, trial.name(), {}, {}, trial.block, 0};
       return schema::AttemptBegun{attempt, trial.name(), {"K1", trial.code}, {"a", "b"}, trial.block, 0};
     };
     steps.is_over = [this](const StudyTrial& trial) {
@@ -92,10 +109,17 @@ class TextRun {
     steps.present = [this](const Attempt& attempt) -> Result<std::optional<schema::JournalEntry>> {
       if (attempt.begun.attempt < first_presented) return std::nullopt;
       if (attempt.trial.real) return schema::SamplePlaced{attempt.begun.attempt, attempt.trial.code};
+      for (const std::string& code : attempt.trial.arranged) {
+        const schema::StimulusExplored explored{attempt.begun.attempt, code, "a"};
+        if (const auto kept = keep(explored); !kept) return schema::forward_error(kept);
+        if (const auto taken = queue_.take(explored); !taken) return schema::forward_error(taken);
+      }
       const bool delivered = attempt.begun.attempt % 7 != 0;
       return schema::DeliveryJudged{attempt.begun.attempt, delivered, {}, {}};
     };
     steps.answer = [](const Attempt& attempt) -> Result<std::optional<schema::AttemptAnswered>> {
+      if (const auto& codes = attempt.trial.arranged; !codes.empty())
+        return schema::AttemptAnswered{attempt.begun.attempt, 0, fmt::format("{}", fmt::join(codes, " ")), 0};
       return schema::AttemptAnswered{attempt.begun.attempt, 1 + attempt.begun.attempt % 2, "word", 0};
     };
     return run_trials(queue_, steps);
@@ -103,7 +127,7 @@ class TextRun {
 
   const schema::Protocol protocol_;
   const schema::ProtocolKey key_ = key_of(protocol_);
-  TrialQueue queue_{ordered_trials(protocol_, key_, "P01", 1), protocol_.most_attempts};
+  TrialQueue queue_ = queue_of_run(protocol_, key_, "P01", 1);
   std::string text_;
   std::size_t lines_ = 0;
 };
@@ -265,6 +289,190 @@ TEST(ExperimentRun, BandLevelsAreThoseOfASinusoidAtUnevenSpeed) {
   }
 }
 
+// An ordering explores its stimuli one by one: each is a line. The journal is cut at each byte.
+TEST(ExperimentRun, AJournalOfOrdersCutAtEachByteIsResumed) {
+  TextRun whole(three_orders());
+  ASSERT_TRUE(whole.go_on(""));
+  const std::string& text = whole.text();
+  ASSERT_EQ(whole.queue().attempts().size(), 3U);
+  for (const Attempt& attempt : whole.queue().attempts()) {
+    EXPECT_EQ(attempt.begun.stimuli, attempt.trial.arranged);
+    EXPECT_EQ(std::set<std::string>(attempt.trial.arranged.begin(), attempt.trial.arranged.end()).size(), 4U);
+  }
+  for (std::size_t bytes = text.find('\n') + 1; bytes <= text.size(); ++bytes) {
+    TextRun resumed(three_orders());
+    const auto went_on = resumed.go_on(text.substr(0, bytes));
+    ASSERT_TRUE(went_on) << bytes << ": " << schema::message(went_on.error());
+    ASSERT_TRUE(resumed.queue().has_ended()) << bytes;
+    const auto counted = counted_trials(resumed.queue());
+    ASSERT_EQ(counted.size(), 3U) << bytes;
+    for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
+  }
+}
+
+schema::Protocol adaptive(schema::LevelMethod method) {
+  schema::Protocol protocol = stretch_protocol("7", method);
+  protocol.repetitions = 20;
+  protocol.most_attempts = 100;
+  return protocol;
+}
+
+std::vector<double> stretches_of(const TrialQueue& queue, const schema::ProtocolKey& key, bool counted) {
+  std::vector<double> stretches;
+  for (const Attempt& attempt : queue.attempts())
+    if (!counted || attempt.counts()) stretches.push_back(stimulus_of(key, attempt.trial.code).stretch);
+  return stretches;
+}
+
+// An adaptive run is resumed with the same levels: they follow from the answers of the journal. (Interrupted
+// attempts are numbered, and every seventh fails, so only the levels that count are compared until the cut.)
+TEST(ExperimentRun, AnAdaptiveJournalCutAtEachLineGoesOnWithTheSameLevels) {
+  for (const auto method : {schema::LevelMethod::staircase, schema::LevelMethod::quest_plus}) {
+    const schema::Protocol protocol = adaptive(method);
+    TextRun whole(protocol);
+    ASSERT_TRUE(whole.go_on(""));
+    ASSERT_EQ(whole.queue().counted(), 20U);
+    ASSERT_EQ(whole.queue().attempts().size(), 23U);
+    const std::string& text = whole.text();
+    for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', end + 1)) {
+      TextRun resumed(protocol);
+      const auto went_on = resumed.go_on(text.substr(0, end + 1));
+      ASSERT_TRUE(went_on) << end << ": " << schema::message(went_on.error());
+      ASSERT_EQ(resumed.text().substr(0, end + 1), text.substr(0, end + 1)) << end;
+      ASSERT_TRUE(resumed.queue().has_ended()) << end;
+      ASSERT_EQ(resumed.queue().counted(), 20U) << end;
+      std::set<int> repetitions;
+      for (const Attempt& attempt : resumed.queue().attempts())
+        if (attempt.counts()) repetitions.insert(attempt.trial.repetition);
+      ASSERT_EQ(repetitions.size(), 20U) << end;
+    }
+  }
+}
+
+// Against the staircase and QUEST+ themselves, which are told the counted answers only: attempts 7, 14 and 21
+// fail.
+TEST(ExperimentRun, AdaptiveLevelsFollowFromTheAnswersThatCount) {
+  const schema::Protocol protocol = adaptive(schema::LevelMethod::staircase);
+  const schema::ProtocolKey key = key_of(protocol);
+  TextRun run(protocol);
+  ASSERT_TRUE(run.go_on(""));
+  Staircase staircase({2, 1, 0.05, 0.05, 0.05, 0.7}, 0.7);
+  std::size_t failed = 0;
+  for (const Attempt& attempt : run.queue().attempts()) {
+    EXPECT_NEAR(stimulus_of(key, attempt.trial.code).stretch, staircase.level(), 1e-9)
+        << attempt.begun.attempt;
+    if (attempt.counts()) staircase.take_answer(seemed_longer(attempt));
+    failed += !attempt.counts();
+  }
+  EXPECT_EQ(failed, 3U);
+  EXPECT_GT(staircase.reversals().size(), 0U);
+  const auto reversals = reversals_of(protocol, key, run.queue().attempts());
+  ASSERT_EQ(reversals.size(), staircase.reversals().size());
+  for (std::size_t i = 0; i < reversals.size(); ++i)
+    EXPECT_NEAR(reversals[i], staircase.reversals()[i], 1e-9);
+}
+
+// An observer with a JND of 25 %: QUEST+ asks near its steep part, not at the smallest and largest stretches
+// only.
+TEST(ExperimentRun, QuestPlusAsksWhereTheAnswersSayMost) {
+  const schema::Protocol protocol = adaptive(schema::LevelMethod::quest_plus);
+  const schema::ProtocolKey key = key_of(protocol);
+  TrialQueue queue = queue_of_run(protocol, key, "P01", 1);
+  const auto observer = parse_observer("weber=25%,seed=3");
+  ASSERT_TRUE(observer);
+  double squares = 0;
+  for (int number = 1; number <= 20; ++number) {
+    const StudyTrial trial = queue.next().value();
+    ASSERT_TRUE(queue.take(schema::AttemptBegun{number, trial.name(), {}, {}, 1, 0}));
+    ASSERT_TRUE(queue.take(schema::DeliveryJudged{number, true, {}, {}}));
+    const double standard = 2e-3, stretched = standard * (1 + stimulus_of(key, trial.code).stretch);
+    const bool first = trial.standard_comes_first();
+    const int choice = smaller_period(*observer, "P/" + std::to_string(number),
+                                      {first ? standard : stretched, first ? stretched : standard}, standard);
+    ASSERT_TRUE(queue.take(schema::AttemptAnswered{number, choice, "word", 0}));
+  }
+  const auto stretches = stretches_of(queue, key, true);
+  for (const double stretch : stretches) squares += stretch * stretch / 20;
+  EXPECT_TRUE(0.15 < std::sqrt(squares) && std::sqrt(squares) < 0.6) << std::sqrt(squares);
+  EXPECT_TRUE(std::ranges::min(stretches) < 0 && std::ranges::max(stretches) > 0);
+}
+
+// A trial that is never delivered is abandoned, also if its level changes in between.
+TEST(ExperimentRun, AnAdaptiveTrialIsAbandonedByItsNumber) {
+  schema::Protocol protocol = adaptive(schema::LevelMethod::quest_plus);
+  protocol.most_attempts = 1;
+  TextRun run(protocol);
+  ASSERT_TRUE(run.go_on(""));
+  EXPECT_EQ(run.queue().attempts().size(), 20U);
+  EXPECT_EQ(run.queue().abandoned(), 2U);
+  EXPECT_EQ(run.queue().counted(), 18U);
+}
+
+TEST(ExperimentRun, AnOrderThatIsNoneIsRefused) {
+  const schema::Protocol protocol = three_orders();
+  const StudyTrial trial = ordered_trials(protocol, key_of(protocol), "P01", 1).front();
+  for (const auto& [word, is_order] : {std::pair{"K1 K2 K3 K4", true},
+                                       {"K4 K2 K3 K1", true},
+                                       {"K1 K2 K3", false},
+                                       {"K1 K2 K3 K3", false},
+                                       {"K1 K2 K3 K5", false},
+                                       {"", false}}) {
+    TrialQueue queue({trial}, 3);
+    ASSERT_TRUE(queue.take(schema::AttemptBegun{1, trial.name(), {}, {}, 1, 0}));
+    EXPECT_FALSE(queue.take(schema::StimulusExplored{1, "K5", "s"}));
+    EXPECT_FALSE(queue.take(schema::StimulusExplored{2, "K1", "s"}));
+    ASSERT_TRUE(queue.take(schema::StimulusExplored{1, "K1", "s"}));
+    ASSERT_TRUE(queue.take(schema::DeliveryJudged{1, true, {}, {}}));
+    EXPECT_FALSE(queue.take(schema::StimulusExplored{1, "K1", "s"}));
+    EXPECT_EQ(queue.take(schema::AttemptAnswered{1, 0, word, 0}).has_value(), is_order) << word;
+  }
+}
+
+// The start of a series is in the outer quarter of the range; a step leads to the nearest setting in the
+// range.
+TEST(ExperimentRun, SettingsStartAtTheEndsAndStayInTheRange) {
+  schema::Protocol protocol = three_orders();
+  protocol.task = schema::Task::adjustment;
+  protocol.standards = {"A"};
+  protocol.repetitions = 50;
+  protocol.smallest_ratio = 0.05, protocol.largest_ratio = 4, protocol.step_db = 2;
+  const double quarter = std::pow(80, 0.25);
+  for (const StudyTrial& trial : ordered_trials(protocol, key_of(protocol), "P01", 1)) {
+    EXPECT_EQ(trial.is_ascending(), trial.repetition % 2 == 1);
+    EXPECT_GE(trial.ratio, trial.is_ascending() ? 0.05 : 4 / quarter);
+    EXPECT_LE(trial.ratio, trial.is_ascending() ? 0.05 * quarter : 4);
+    for (const double wanted : {0.01, 0.3, 20.0}) {
+      double ratio = trial.ratio;
+      int steps = 0;
+      for (; steps < 100; ++steps) {
+        const schema::Turn turn = turn_towards(protocol, ratio, ratio, wanted);
+        if (turn == schema::Turn::accept) break;
+        ratio = stepped(protocol, ratio, turn);
+      }
+      EXPECT_LT(steps, 40);
+      EXPECT_TRUE(0.05 <= ratio && ratio <= 4) << ratio;
+      const double nearest = std::clamp(wanted, 0.05, 4.0);
+      EXPECT_LE(std::abs(20 * std::log10(ratio / nearest)), wanted == 0.3 ? 1.001 : 2) << wanted;
+    }
+  }
+}
+
+// Means of 4000 draws: the tolerance is four standard errors of 10 %.
+TEST(ExperimentRun, TheCriterionOfAnAdjustmentHasItsSpreadAndHysteresis) {
+  const auto observer = parse_observer("threshold=20%,sd=10%,hysteresis=21%,seed=2");
+  ASSERT_TRUE(observer);
+  double sums[2] = {0, 0}, squares = 0;
+  for (int i = 0; i < 4000; ++i)
+    for (const bool ascending : {false, true}) {
+      const double level = std::log(criterion_of(*observer, "P/" + std::to_string(i), ascending) / 0.2);
+      sums[ascending] += level / 4000;
+      if (ascending) squares += std::pow(level + std::log(1.21) / 2, 2) / 4000;
+    }
+  EXPECT_NEAR(sums[false], std::log(1.21) / 2, 0.0064);
+  EXPECT_NEAR(sums[true], -std::log(1.21) / 2, 0.0064);
+  EXPECT_NEAR(std::sqrt(squares), 0.1, 0.0046);
+}
+
 TEST(ExperimentRun, AChangedLineInTheMiddleIsRefusedWithItsNumber) {
   TextRun whole;
   ASSERT_TRUE(whole.go_on(""));
@@ -347,6 +555,23 @@ TEST(ExperimentRun, EachLimitDecides) {
       judged_delivery(1, {good_facts(), good_facts()}, {"sum", "sum"}, protocol, {"late"}).delivered);
 }
 
+// Of an ordering a stimulus counts if one of its intervals was delivered.
+TEST(ExperimentRun, AStimulusThatWasFeltOnceIsDelivered) {
+  schema::IntervalFacts other = good_facts(), late = good_facts(), other_late = good_facts();
+  other.stimulus_sha256 = other_late.stimulus_sha256 = "other";
+  late.late_ticks = other_late.late_ticks = 11;
+  const auto delivered = [](const schema::Protocol& protocol, std::vector<schema::IntervalFacts> facts) {
+    std::vector<std::string> sums;
+    for (const schema::IntervalFacts& each : facts) sums.push_back(each.stimulus_sha256);
+    return judged_delivery(1, std::move(facts), sums, protocol, {}).delivered;
+  };
+  const schema::Protocol ordering = three_orders(), pair = twenty_trials();
+  EXPECT_TRUE(delivered(ordering, {late, other, good_facts()}));
+  EXPECT_TRUE(delivered(ordering, {good_facts(), other, late, other_late}));
+  EXPECT_FALSE(delivered(ordering, {late, other, late}));
+  EXPECT_FALSE(delivered(pair, {late, other, good_facts()}));
+}
+
 // 75 % at a difference of one Weber fraction, 50 % without a difference, half of the lapses wrong far away.
 // The standard deviation of a share of 4000 is 0.8 % at most; the tolerance is four of it.
 TEST(ExperimentRun, TheObserverHasItsWeberFractionAndLapses) {
@@ -367,9 +592,31 @@ TEST(ExperimentRun, TheObserverHasItsWeberFractionAndLapses) {
 }
 
 TEST(ExperimentRun, AnObserverThatIsNoneIsRefused) {
-  for (const char* text : {"", "weber", "weber=25", "weber=0%", "lapse=2%", "weber=25%,lapse=200%",
-                           "webber=25%", "template,weber=25%", "template,noise=-1dB", "template,noise=3",
-                           "weber=25%,template", "weber=25%,noise=3dB", "templates"}) {
+  for (const char* text : {"",
+                           "weber",
+                           "weber=25",
+                           "weber=0%",
+                           "lapse=2%",
+                           "weber=25%,lapse=200%",
+                           "webber=25%",
+                           "template,weber=25%",
+                           "template,noise=-1dB",
+                           "template,noise=3",
+                           "weber=25%,template",
+                           "weber=25%,noise=3dB",
+                           "templates",
+                           "order,weber=25%",
+                           "order,noise=-1dB",
+                           "order,sd=3%",
+                           "threshold=0%",
+                           "threshold=20%,weber=10%",
+                           "threshold=20%,noise=1dB",
+                           "sd=10%",
+                           "threshold=20%,sd=200%",
+                           "match=0%,weber=10%",
+                           "orders",
+                           "weber=25%,order",
+                           "weber=25%,seed="}) {
     const auto refused = parse_observer(text);
     ASSERT_FALSE(refused) << text;
     EXPECT_EQ(refused.error().kind, ErrorKind::usage) << text;

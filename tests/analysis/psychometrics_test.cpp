@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "analysis/psychometrics/adjustment.hpp"
 #include "analysis/psychometrics/alternatives.hpp"
 #include "analysis/psychometrics/concordance.hpp"
 #include "analysis/psychometrics/confusion.hpp"
@@ -180,6 +181,48 @@ TEST(Concordance, IsFriedmansTest) {
   EXPECT_EQ(found.freedom, 4U);
   EXPECT_NEAR(concordance_of({{1, 2, 3}, {10, 20, 30}}).w, 1, 1e-12);
   EXPECT_EQ(concordance_of({{1, 1, 1}, {2, 2, 2}}).w, 0);
+}
+
+// SciPy: spearmanr, kendalltau (tau-b).
+TEST(Concordance, TwoOrdersAreCorrelated) {
+  const std::vector<double> a = {1, 2, 3, 4, 5, 6}, b = {1.5, 1.5, 4, 3, 6, 5}, same(6, 2);
+  EXPECT_NEAR(spearman_rho(a, b).value(), 0.8696565534786727, 1e-12);
+  EXPECT_NEAR(kendall_tau(a, b).value(), 0.6900655593423543, 1e-12);
+  EXPECT_NEAR(spearman_rho(a, {{6, 5, 4, 3, 2, 1}}).value(), -1, 1e-12);
+  EXPECT_NEAR(kendall_tau(a, {{6, 5, 4, 3, 2, 1}}).value(), -1, 1e-12);
+  EXPECT_FALSE(spearman_rho(a, same));
+  EXPECT_FALSE(kendall_tau(same, b));
+  EXPECT_EQ(ranks_of(b), (std::vector<double>{1.5, 1.5, 4, 3, 6, 5}));
+}
+
+// NumPy and SciPy: means and deviations of 20 log10, t.ppf(0.975), and Welch's degrees of freedom, 4.868.
+TEST(Adjustment, SeriesHaveMeansAndADifference) {
+  const std::vector<double> up = {0.2, 0.22, 0.25, 0.19}, down = {0.26, 0.3, 0.28};
+  const AdjustmentMeans means = adjustment_means(up, down);
+  const auto expect = [](const Estimate& found, double value, double low, double high) {
+    EXPECT_NEAR(found.value, value, 1e-12);
+    EXPECT_NEAR(found.low, low, 1e-12);
+    EXPECT_NEAR(found.high, high, 1e-12);
+  };
+  EXPECT_EQ(means.ascending->settings, 4U);
+  expect(means.ascending->ratio, 0.21381421328492134, 0.1764675659654232, 0.2590647043412355);
+  EXPECT_NEAR(means.ascending->deviation_db.value(), 1.0478942054610423, 1e-12);
+  expect(means.descending->ratio, 0.279522997372737, 0.23399637480730515, 0.3339073356353548);
+  expect(means.hysteresis_db.value(), 2.3276194629960614, 0.6817081006621684, 3.9735308253299544);
+  expect(means.middle.value(), 0.24447083625310995, 0.22237157600812815, 0.2687663183000975);
+}
+
+TEST(Adjustment, WhatOneSettingCannotSayIsUnlimited) {
+  const AdjustmentMeans one = adjustment_means({{0.2}}, {{0.4, 0.4}});
+  EXPECT_FALSE(one.ascending->deviation_db);
+  EXPECT_NEAR(one.hysteresis_db->value, 20 * std::log10(2), 1e-12);
+  EXPECT_EQ(one.hysteresis_db->high, INFINITY);
+  const AdjustmentMeans none = adjustment_means({}, {{0.4, 0.5}});
+  EXPECT_FALSE(none.ascending || none.middle || none.hysteresis_db);
+  EXPECT_TRUE(none.descending);
+  const AdjustmentMeans equal = adjustment_means({{0.2, 0.2}}, {{0.2, 0.2}});
+  EXPECT_NEAR(equal.middle->high, 0.2, 1e-12);
+  EXPECT_NEAR(equal.hysteresis_db->low, 0, 1e-12);
 }
 
 TEST(PreferenceScale, TwoItemsHaveTheLogarithmOfTheirOdds) {

@@ -55,7 +55,7 @@ TEST_F(ProtocolFile, ReadsBack) {
 }
 
 TEST_F(ProtocolFile, EachFaultHasItsPlace) {
-  expect_fault("/task", "adjustment", "/task");
+  expect_fault("/task", "ranking", "/task");
   expect_fault("/levels", {0.5, 0.5}, "/levels/1");
   expect_fault("/levels", {-0.5, 0.0, 0.5}, "/levels/1");
   expect_fault("/levels", {0.5}, "/levels");
@@ -76,6 +76,20 @@ TEST_F(ProtocolFile, EachFaultHasItsPlace) {
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().kind, ErrorKind::malformed);
   EXPECT_NE(unknown.error().remedy.find("repetitions"), std::string::npos) << unknown.error().remedy;
+  for (const char* method : {"staircase", "quest_plus"}) {
+    nlohmann::json body = body_;
+    body["levels"] = {0.5, 0.7}, body["method"] = method;
+    PendingFiles pending;
+    ASSERT_TRUE(pending.write(folder_ / "adaptive.protocol.json", body.dump()));
+    ASSERT_TRUE(pending.commit());
+    const auto protocol = read_protocol(folder_ / "adaptive");
+    ASSERT_TRUE(protocol) << message(protocol.error());
+    EXPECT_EQ(word_of(protocol->method), std::string(method));
+    EXPECT_EQ(nlohmann::json::parse(protocol_text(*protocol).value()), body);
+  }
+  EXPECT_TRUE(read_with("/method", "quest_plus"));
+  expect_fault("/method", "staircase", "/levels");  // of both signs
+  expect_fault("/method", "quest", "/method");
   EXPECT_TRUE(read_with("/x_lab", 3));
   const auto newer = read_with("/version", "2.0");
   ASSERT_FALSE(newer);
@@ -123,6 +137,63 @@ TEST_F(ProtocolFile, AnAmplitudeReadsBackAndEachFaultHasItsPlace) {
         {{{"answers", {{"choices", {choices[0], choices[1]}}}}}, "/answers/choices"},
         {{{"answers", {{"choices", key_is_a_word}}}}, "/answers/choices/4/word"}}) {
     const auto refused = read(change);
+    ASSERT_FALSE(refused) << change;
+    EXPECT_EQ(refused.error().kind, ErrorKind::malformed) << change;
+    EXPECT_TRUE(refused.error().where.ends_with(std::string("odd.protocol.json#") + place))
+        << refused.error().where;
+  }
+}
+
+TEST_F(ProtocolFile, AnOrderingAndAnAdjustmentReadBackAndEachFaultHasItsPlace) {
+  nlohmann::json ordering = body_, adjustment;
+  for (const char* member : {"standard", "keep", "levels"}) ordering.erase(member);
+  ordering.merge_patch({{"task", "ordering"}, {"standards", {"A", "B", "C"}}, {"intended", {0.5, 2.0, 1.0}}});
+  ordering["texts"]["left"] = "l";
+  const auto choices = [](const std::vector<std::string>& words) {
+    nlohmann::json all = nlohmann::json::array();
+    for (std::size_t i = 0; i < words.size(); ++i)
+      all.push_back({{"key", std::string(1, "123456789"[i])}, {"word", words[i]}});
+    return all;
+  };
+  adjustment = ordering;
+  adjustment.erase("intended"), adjustment["texts"].erase("left");
+  ordering["answers"]["choices"] = choices({"1", "2", "3"});
+  adjustment.merge_patch({{"task", "adjustment"}, {"standards", {"A"}}, {"goal", "match"}});
+  adjustment.merge_patch({{"smallest_ratio", 0.05}, {"largest_ratio", 4.0}, {"step_db", 1.0}});
+  adjustment["answers"]["choices"] = choices({"weaker", "stronger", "accepted"});
+  const auto read = [&](nlohmann::json body, const nlohmann::json& change) {
+    body.merge_patch(change);
+    PendingFiles pending;
+    EXPECT_TRUE(pending.write(folder_ / "odd.protocol.json", body.dump()));
+    EXPECT_TRUE(pending.commit());
+    return read_protocol(folder_ / "odd");
+  };
+  for (const nlohmann::json& body : {ordering, adjustment}) {
+    const auto protocol = read(body, nlohmann::json::object());
+    ASSERT_TRUE(protocol) << message(protocol.error());
+    EXPECT_EQ(nlohmann::json::parse(protocol_text(*protocol).value()), body);
+  }
+  EXPECT_TRUE(read(ordering, {{"intended", nullptr}}));
+  EXPECT_TRUE(read(adjustment, {{"standards", {"A", "B"}}}));
+  using Fault = std::tuple<const nlohmann::json*, nlohmann::json, const char*>;
+  for (const auto& [body, change, place] :
+       {Fault{&ordering, {{"standards", {"A"}}}, "/standards"},
+        {&ordering, {{"intended", {1.0, 2.0}}}, "/intended"},
+        {&ordering, {{"goal", "least"}}, "/goal"},
+        {&ordering, {{"standards", nullptr}}, "/standards"},
+        {&ordering, {{"standards", {"A", "B"}}, {"intended", nullptr}}, "/answers/choices"},
+        {&adjustment, {{"standards", {"A", "B", "C"}}}, "/standards"},
+        {&adjustment, {{"standards", {"A", "B"}}, {"goal", "least"}}, "/standards"},
+        {&adjustment, {{"intended", {1.0, 2.0}}}, "/intended"},
+        {&adjustment, {{"goal", "most"}}, "/goal"},
+        {&adjustment, {{"goal", nullptr}}, "/goal"},
+        {&adjustment, {{"smallest_ratio", 1.0}}, "/smallest_ratio"},
+        {&adjustment, {{"smallest_ratio", nullptr}}, "/smallest_ratio"},
+        {&adjustment, {{"largest_ratio", 1.0}}, "/largest_ratio"},
+        {&adjustment, {{"step_db", 0.0}}, "/step_db"},
+        {&adjustment, {{"step_db", "1dB"}}, "/step_db"},
+        {&adjustment, {{"answers", {{"choices", choices({"a", "b"})}}}}, "/answers/choices"}}) {
+    const auto refused = read(*body, change);
     ASSERT_FALSE(refused) << change;
     EXPECT_EQ(refused.error().kind, ErrorKind::malformed) << change;
     EXPECT_TRUE(refused.error().where.ends_with(std::string("odd.protocol.json#") + place))
