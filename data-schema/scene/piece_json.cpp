@@ -9,7 +9,7 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 4> kShapeWords = {"plane", "sphere", "cylinder", "quadric"};
+constexpr std::array<std::string_view, 5> kShapeWords = {"plane", "sphere", "cylinder", "quadric", "mesh"};
 
 // The numbers with a default of 0: they are written if they are something else.
 struct PieceNumber {
@@ -46,6 +46,7 @@ Piece piece_from(const Json& body) {
     for (std::size_t i = 0; i < piece.direction.size(); ++i) piece.direction[i] = body["direction"][i];
   if (body.contains("coefficients"))
     for (std::size_t i = 0; i < kQuadricTerms; ++i) piece.coefficients[i] = body["coefficients"][i];
+  piece.mesh = text_or(body, "mesh");
   piece.stiffness_n_per_m = body["stiffness_n_per_m"];
   for (const auto& [name, value] : kPieceNumbers) piece.*value = number_or(body, name, 0);
   return piece;
@@ -57,6 +58,7 @@ Json piece_body(const Piece& piece) {
   if (piece.shape == PieceShape::plane || piece.shape == PieceShape::cylinder)
     body["direction"] = piece.direction;
   if (piece.shape == PieceShape::quadric) body["coefficients"] = piece.coefficients;
+  if (piece.shape == PieceShape::mesh) body["mesh"] = piece.mesh;
   body["stiffness_n_per_m"] = piece.stiffness_n_per_m;
   for (const auto& [name, value] : kPieceNumbers)
     if (piece.*value != 0) body[name] = piece.*value;
