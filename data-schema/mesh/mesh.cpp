@@ -91,7 +91,7 @@ double volume_of(const Mesh& mesh, const MeshVertex& middle, const MeshTriangle&
 }
 
 // Which triangles have to be turned so that all that are connected by edges of two go the same way: of each
-// connected part the fewer ones; of a closed part that had some, those that make its volume positive.
+// connected part the fewer ones.
 struct Turns {
   std::vector<bool> turned;
   std::size_t flipped = 0;
@@ -113,17 +113,14 @@ Turns turns_of(const Mesh& mesh) {
   });
   Turns turns{std::vector<bool>(count), 0, false};
   std::vector<bool> seen(count);
-  const MeshVertex middle = mesh.vertices_m.empty() ? MeshVertex{} : mesh.vertices_m[0];
   for (std::uint32_t start = 0; start < count; ++start) {
     if (seen[start]) continue;
     std::vector<std::uint32_t> part{start};
     seen[start] = true;
     std::size_t flipped = 0;
-    double volume_m3 = 0;
     for (std::size_t i = 0; i < part.size(); ++i) {
       const std::uint32_t own = part[i];
       flipped += turns.turned[own] ? 1 : 0;
-      volume_m3 += (turns.turned[own] ? -1 : 1) * volume_of(mesh, middle, mesh.triangles[own]);
       for (const auto& [other, same] : neighbours[own]) {
         const bool turned = same == turns.turned[own];
         if (seen[other]) {
@@ -135,9 +132,8 @@ Turns turns_of(const Mesh& mesh) {
         part.push_back(other);
       }
     }
-    if (flipped == 0) continue;
     turns.flipped += std::min(flipped, part.size() - flipped);
-    if (volume_m3 < 0)
+    if (2 * flipped > part.size())
       for (const std::uint32_t own : part) turns.turned[own] = !turns.turned[own];
   }
   return turns;
