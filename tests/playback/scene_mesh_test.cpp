@@ -160,8 +160,7 @@ TEST(SceneMeshTest, ForceOnAFineBallIsThatOfTheBall) {
     worst_angle = std::max(worst_angle, std::asin(size_of_point(cross_of(force, way)) / size));
     worst_off_m = std::max(worst_off_m, std::abs(size_of_point(arm.ghost_m()) - kRadius_m));
   }
-  // The ghost passes an edge late, by the depth: 1 / (1 - depth / radius) of the angle.
-  EXPECT_LT(worst_angle, half_angle / (1 - kDepth_m / kRadius_m) + 2e-3);
+  EXPECT_LT(worst_angle, half_angle + 2e-3);
   EXPECT_LT(worst_off_m, sag_m + 1e-6);
   RecordProperty("worst_angle", std::to_string(worst_angle));
 }
@@ -279,24 +278,20 @@ TEST(SceneMeshTest, SinglePrecisionIsNearDoublePrecision) {
   core::SceneKernel kernel;
   kernel.set(arm.view, arm.setup, arm.live.data());
   ExactScene exact(arm.scene, arm.device, 1000);
-  double most_n = 0;
-  int apart = 0;
+  double most_n = 0, worst_n = 0;
   for (int i = 0; i < 3000; ++i) {
     const double t = i * 1e-3, r_m = i < 20 ? 0.032 : 0.029 + 2e-3 * std::sin(3 * t);
     const auto counts = arm.counts_at({0.01 + r_m * std::cos(2 * t), r_m * std::sin(2 * t) * std::cos(t),
                                        -0.005 + r_m * std::sin(2 * t) * std::sin(t)});
     const core::ForceOutput output = kernel.tick(counts.data(), true);
     const auto reference = exact.tick(counts);
-    double off_n = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      off_n = std::max(off_n, std::abs(double{output.unlimited_n[k]} - reference.unlimited_n[k]));
+      worst_n = std::max(worst_n, std::abs(double{output.unlimited_n[k]} - reference.unlimited_n[k]));
       most_n = std::max(most_n, std::abs(reference.unlimited_n[k]));
     }
-    apart += off_n > 1e-3 ? 1 : 0;
   }
   EXPECT_GT(most_n, 2);
-  EXPECT_LE(apart, 6);
-  RecordProperty("ticks_apart", apart);
+  EXPECT_LT(worst_n, 1e-5 * most_n);  // as of the other pieces
 }
 
 TEST(SceneMeshTest, ABlockWithAWrongTreeIsRefused) {

@@ -194,9 +194,10 @@ SpaceVector shortened(const SceneView& scene, const Planes& planes, const Goal& 
 }
 
 // Of the triangles that the ghost met those that still hold it: by their plane; beside a triangle, by the
-// plane across the way from its edge or corner.
+// plane across the way from its edge or corner, unless another plane is nearly the same.
 void add_triangles(const SceneView& scene, const SpacePlace& ghost, const float (&step_m)[3],
                    GhostPoint::TouchedTriangles& touched, Planes& planes) noexcept {
+  Planes beside;
   uint32_t kept = 0;
   for (uint32_t i = 0; i < touched.count; ++i) {
     const uint32_t piece = touched.piece[i], triangle = touched.triangle[i];
@@ -205,15 +206,17 @@ void add_triangles(const SceneView& scene, const SpacePlace& ghost, const float 
     const TriangleSide side = side_of(mesh, triangle, from);
     if (!is_held_by(mesh, side)) continue;
     touched.piece[kept] = piece, touched.triangle[kept++] = triangle;
-    const Plane plane{piece,       (side.beside ? side.distance_m : side.above_m) - mesh.skin_m,
-                      side.away,   from,
-                      mesh.skin_m, triangle};
-    bool known = false;  // triangles at one edge or corner
-    for (uint32_t j = 0; j < planes.count && side.beside; ++j)
-      known = known || (planes.at[j].piece == piece && dot(planes.at[j].normal, side.away) > kSameAway);
-    if (!known) planes.add(plane);
+    const float above_m = side.beside ? side.distance_m : side.above_m;
+    (side.beside ? beside : planes)
+        .add({piece, above_m - mesh.skin_m, side.away, from, mesh.skin_m, triangle});
   }
   touched.count = kept;
+  for (uint32_t i = 0; i < beside.count; ++i) {
+    bool known = false;
+    for (uint32_t j = 0; j < planes.count; ++j)
+      known = known || (planes.at[j].skin_m > 0 && dot(planes.at[j].normal, beside.at[i].normal) > kSameAway);
+    if (!known) planes.add(beside.at[i]);
+  }
 }
 
 // Nearer to a triangle than three quarters of its skin: it goes out first, and along the surface afterwards.

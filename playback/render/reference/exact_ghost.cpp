@@ -94,18 +94,23 @@ double ExactGhost::entry_of(const Piece& piece, const SpaceMetres& from_m, const
   return 2;
 }
 
-// As core::is_held_by. Triangles at one edge or corner count once.
+// As core::is_held_by; one beside a triangle not where another plane is nearly the same.
 void ExactGhost::add_triangles(std::vector<Touch>& touches) {
+  std::vector<Touch> beside;
   std::erase_if(triangles_, [&](const TouchedTriangle& touched) {
     const auto side = meshes_[touched.piece]->side_of(touched.triangle, ghost_m_);
     if (side.distance_m > (side.beside ? 1.125 : 1.5) * kExactSkin_m ||
         side.above_m < -0.05 * side.distance_m)
       return true;
-    for (const Touch& other : touches)
-      if (side.beside && other.skin_m > 0 && inner(other.surface.normal, side.away) > 0.97) return false;
-    touches.push_back({touched.piece, {side.distance_m - kExactSkin_m, side.away}, kExactSkin_m, 0});
+    (side.beside ? beside : touches)
+        .push_back({touched.piece, {side.distance_m - kExactSkin_m, side.away}, kExactSkin_m, 0});
     return false;
   });
+  for (const Touch& each : beside)
+    if (std::ranges::none_of(touches, [&](const Touch& other) {
+          return other.skin_m > 0 && inner(other.surface.normal, each.surface.normal) > 0.97;
+        }))
+      touches.push_back(each);
 }
 
 // Hildreth 1957: min |way - straight|^2, normal way >= -distance, one plane after the other.
