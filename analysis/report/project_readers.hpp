@@ -24,6 +24,7 @@ schema::Result<void> add_scene(const std::string& path, ProjectFile& file);
 schema::Result<void> add_session(const std::string& path, ProjectFile& file, const Progress& progress);
 schema::Result<void> add_session_table(const std::string& path, ProjectFile& file);
 schema::Result<void> add_height_map(const std::string& path, ProjectFile& file);
+schema::Result<void> add_mesh(const std::string& path, ProjectFile& file);
 schema::Result<void> add_results(const std::string& path, ProjectFile& file);
 schema::Result<void> add_trade_table(const std::string& path, ProjectFile& file);
 schema::Result<void> add_corpus_plan(const std::string& path, ProjectFile& file);

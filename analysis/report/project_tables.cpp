@@ -13,6 +13,7 @@
 #include "data-schema/corpus/corpus_plan.hpp"
 #include "data-schema/experiment/protocol.hpp"
 #include "data-schema/height/height_map.hpp"
+#include "data-schema/mesh/mesh.hpp"
 #include "data-schema/results/trade_table.hpp"
 #include "data-schema/session/session_netcdf.hpp"
 #include "data-schema/texture/description.hpp"
@@ -207,6 +208,21 @@ Result<void> add_height_map(const std::string& path, ProjectFile& file) {
                               for_people(map->pitch_m, Dimension::length))},
       {"from lowest to highest", for_people(figures.highest_m - figures.lowest_m, Dimension::length)},
       {"RMS slope", fmt::format("{:.3g}", figures.rms_slope)}};
+  return {};
+}
+
+Result<void> add_mesh(const std::string& path, ProjectFile& file) {
+  const auto mesh = schema::read_mesh(path);
+  TACTO_TRY(mesh);
+  file.date = mesh->created;
+  file.origin = mesh->source;
+  const schema::MeshFigures figures = figures_of(*mesh);
+  const auto size = [&](std::size_t i) {
+    return for_people(figures.most_m[i] - figures.least_m[i], Dimension::length);
+  };
+  file.figures = {{"triangles", fmt::format("{}", mesh->triangles.size())},
+                  {"size", fmt::format("{}, {}, {}", size(0), size(1), size(2))},
+                  {"longest edge", for_people(figures.longest_edge_m, Dimension::length)}};
   return {};
 }
 

@@ -14,6 +14,8 @@
 #include "capture/import/height_map_import.hpp"
 #include "capture/import/height_profile.hpp"
 #include "capture/import/import_plan.hpp"
+#include "capture/import/mesh_import.hpp"
+#include "data-schema/cli/describe.hpp"
 #include "data-schema/height/height_map.hpp"
 #include "data-schema/report/progress.hpp"
 #include "data-schema/report/report.hpp"
@@ -39,13 +41,13 @@ void declare_data(CLI::App& app, ImportRequest& request) {
                  "CSV table, MATLAB file (version 5 or 7.3) or XDF file of the Lab Streaming Layer (both: "
                  "without other options lists what it has), sound "
                  "file that libsndfile reads (WAV, FLAC, OGG ...), a measured profile "
-                 "(XML, X3P), or a height "
-                 "map (greyscale PNG with 16 bits)")
+                 "(XML, X3P), a height "
+                 "map (greyscale PNG with 16 bits), or a triangle mesh (STL, OBJ, PLY)")
       ->required();
   app.add_option("-o,--output", request.name,
                  "Name of the recording: NAME.wav and NAME.json; of a height map: NAME.height.nc, also from "
                  "a profile if "
-                 "written in full");
+                 "written in full; of a mesh: NAME.mesh.nc");
   app.add_option("--channel", request.channels,
                  "A channel, QUANTITY=COLUMN*SCALE+OFFSET and a unit (default: that of the column); repeat "
                  "for each. COLUMN: header name or number from 1, of a MATLAB file data.force or 'acc(:,2)'; "
@@ -73,6 +75,21 @@ void declare_data(CLI::App& app, ImportRequest& request) {
                     "Of a PNG: height of white; black is 0");
   app.add_flag("--allow-8bit", request.allow_8bit,
                "Accept a PNG with fewer than 16 bits: its levels are steps");
+  app.add_option_function<std::string>(
+         "--unit",
+         [&request](const std::string& text) {
+           const auto unit = schema::parse_quantity("1" + text, Dimension::length);
+           if (!unit) throw CLI::ValidationError("--unit", schema::message(unit.error()));
+           request.unit_m = *unit;
+         },
+         "Of a mesh: its unit of length, mm, um or m; obligatory")
+      ->type_name("UNIT");
+  app.add_flag(
+      "--repair", request.repair,
+      "Of a mesh: merge vertices within a millionth of its size, drop triangles without an area, turn "
+      "flipped ones; holes stay");
+  app.add_flag("--open", request.open,
+               "Of a mesh with holes: keep them; from its inner side a point passes through the surface");
   cli::add_quantity(app, "--speed", request.speed_mps, Dimension::speed,
                     "Speed of a nominal position, if none was measured");
   app.add_flag_callback(
@@ -212,6 +229,21 @@ schema::Result<cli::Report> run_height_map(const ImportRequest& request) {
   return report.add("next", fmt::format("tactograph info {}", cli::shell_word(path)));
 }
 
+schema::Result<cli::Report> run_mesh(const ImportRequest& request) {
+  const auto imported = import_mesh(request);
+  TACTO_TRY(imported);
+  cli::Report report;
+  report.add("source", request.file);
+  schema::add_mesh(report, imported->mesh);
+  if (request.repair) {
+    const schema::MeshRepair& repair = imported->repair;
+    report.add("merged_vertices", repair.merged).add("merged_within_m", imported->merged_within_m);
+    report.add("dropped_triangles", repair.dropped).add("turned_triangles", repair.turned);
+  }
+  report.add("files", std::vector{imported->path});
+  return report.add("next", fmt::format("tactograph info {}", cli::shell_word(imported->path)));
+}
+
 // What an XDF file has, and a command for its first stream of numbers.
 schema::Result<cli::Report> list_streams(const Source& source) {
   std::vector<cli::Report> rows;
@@ -265,6 +297,10 @@ schema::Result<cli::Report> list_contents(const ImportRequest& request) {
 
 schema::Result<cli::Report> run_import(const ImportRequest& request) {
   if (request.name.empty()) return list_contents(request);
+  if (is_mesh_request(request)) return run_mesh(request);
+  if (request.unit_m || request.repair || request.open)
+    return schema::fail(schema::ErrorKind::usage,
+                        "--unit, --repair and --open are for an STL, OBJ or PLY file", request.file);
   if (is_height_map_request(request)) return run_height_map(request);
   if (request.full_height_m || request.allow_8bit)
     return schema::fail(schema::ErrorKind::usage, "--height and --allow-8bit are for a PNG", request.file);
@@ -292,7 +328,8 @@ cli::Action declare_import(CLI::App& app) {
 
 const cli::Verb kImportVerb{
     "import",
-    "Convert a file of another program to a recording, a height profile to a texture, a PNG to a height map",
+    "Convert a file of another program to a recording, a height profile to a texture, a PNG to a height map, "
+    "STL, OBJ or PLY to a mesh",
     "tactograph import trial.csv -o trial --rate 10kHz --channel tangential_force=lateral_V*0.444444N"
     " --channel position=encoder_count*0.5um\n"
     "  tactograph import trial.csv -o trial --rate 10kHz --channel normal_force=2*-0.31+1.6647N --speed "
@@ -305,7 +342,8 @@ const cli::Verb kImportVerb{
     "  tactograph import edm.xml -o edm\n"
     "  tactograph import profile.csv -o profile --channel position=x*1mm --channel height=z*1um\n"
     "  tactograph import surface.x3p --row 120 -o surface\n"
-    "  tactograph import plate.png --pitch 50um --height 200um -o plate",
+    "  tactograph import plate.png --pitch 50um --height 200um -o plate\n"
+    "  tactograph import part.stl --unit mm -o part",
     declare_import};
 
 }  // namespace tacto::capture

@@ -28,7 +28,10 @@ struct ImportRequest {
   std::optional<double> pitch_m;                       ///< of a height profile or map, see height_profile.hpp
   std::optional<double> full_height_m = std::nullopt;  ///< of a PNG: the height of white; black is 0
   bool allow_8bit = false;                             ///< of a PNG: also fewer than 16 bits
-  std::optional<double> speed_mps;                     ///< results in a nominal position
+  std::optional<double> unit_m = std::nullopt;         ///< of a mesh
+  bool repair = false;  ///< of a mesh: drop triangles without an area, merge vertices, turn flipped ones
+  bool open = false;    ///< of a mesh: keep its holes
+  std::optional<double> speed_mps;   ///< results in a nominal position
   bool integrate_speed = true;       ///< compute a position from a speed channel if none was measured
   bool mask_outliers = false;        ///< rows with outliers are left out and become gaps
   std::string recorded, calibrated;  ///< ISO dates, "2026-03-14"

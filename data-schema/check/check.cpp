@@ -9,6 +9,7 @@
 #include "data-schema/device/hand.hpp"
 #include "data-schema/experiment/protocol.hpp"
 #include "data-schema/height/height_map.hpp"
+#include "data-schema/mesh/mesh.hpp"
 #include "data-schema/results/results.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/session/session_netcdf.hpp"
@@ -108,6 +109,10 @@ Result<Checked> check_file(const StoredFile& file, const Progress& progress) {
   if (file.kind == FileKind::height_map) {
     const auto map = read_height_map(file.path);
     return map ? Checked{{}, map->newer_version, {}} : judged(map.error());
+  }
+  if (file.kind == FileKind::mesh) {
+    const auto mesh = read_mesh(file.path);
+    return mesh ? Checked{{}, mesh->newer_version, {}} : judged(mesh.error());
   }
   if (file.kind != FileKind::spectrogram) return check_document(file, progress);
   auto checked = check_spectrogram(file.path);

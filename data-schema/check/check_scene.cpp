@@ -4,6 +4,7 @@
 #include "data-schema/check/check_parts.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/height/height_map.hpp"
+#include "data-schema/mesh/mesh.hpp"
 #include "data-schema/scene/atoms.hpp"
 #include "data-schema/scene/force_grid.hpp"
 #include "data-schema/scene/scene.hpp"
@@ -74,6 +75,11 @@ std::vector<Finding> check_scene(const std::string& path, const Document& docume
   for (std::size_t i = 0; i < scene->layers.size(); ++i)
     scene->layers[i].visit([&](const TextureLayer& layer) { check_layer(path, i, layer, findings); });
   for (std::size_t i = 0; i < scene->patches.size(); ++i) check_patch(path, i, scene->patches[i], findings);
+  for (std::size_t i = 0; i < scene->pieces.size(); ++i) {
+    if (scene->pieces[i].shape != PieceShape::mesh) continue;
+    const auto mesh = read_mesh(texture_in_scene(path, scene->pieces[i].mesh));
+    if (!mesh) findings.push_back({fmt::format("{}#/pieces/{}/mesh", path, i), message(mesh.error())});
+  }
   return findings;
 }
 

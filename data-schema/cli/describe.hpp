@@ -7,6 +7,7 @@
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/verb.hpp"
 #include "data-schema/kinds/file_kind.hpp"
+#include "data-schema/mesh/mesh.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/report/report.hpp"
 #include "data-schema/texture/transform.hpp"
@@ -26,6 +27,7 @@ Result<cli::Report> describe_scene(const std::string& path);
 Result<cli::Report> describe_session(const std::string& path);
 Result<cli::Report> describe_session_table(const std::string& path);
 Result<cli::Report> describe_height_map(const std::string& path);
+Result<cli::Report> describe_mesh(const std::string& path);
 Result<cli::Report> describe_results(const std::string& path);
 Result<cli::Report> describe_trade(const std::string& path);
 Result<cli::Report> describe_device(const std::string& path);
@@ -43,6 +45,9 @@ void add_strokes(cli::Report& report, const RecordingHeader& header);
 
 /// Tables of the textures that it was made from and of the operations.
 void add_transform(cli::Report& report, const TextureTransform& transform);
+
+/// Triangles, vertices, size, longest edge; the volume if it is closed, otherwise the edges of its holes.
+void add_mesh(cli::Report& report, const Mesh& mesh);
 
 /// Adds the text if there is one.
 void add_text(cli::Report& report, const char* key, const std::string& text);

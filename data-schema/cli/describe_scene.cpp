@@ -93,6 +93,7 @@ cli::Report row_of(const Piece& piece) {
   const auto add_above_0 = [&](const char* key, double value) {
     if (value > 0) row.add(key, value);
   };
+  if (!piece.mesh.empty()) row.add("mesh", piece.mesh);
   add_above_0("radius_m", piece.radius_m);
   add_above_0("thickness_m", piece.thickness_m);
   row.add("stiffness_n_per_m", piece.stiffness_n_per_m);

@@ -41,6 +41,8 @@ Result<cli::Report> describe(const StoredFile& file) {
       return describe_session_table(file.path);
     case FileKind::height_map:
       return describe_height_map(file.path);
+    case FileKind::mesh:
+      return describe_mesh(file.path);
     case FileKind::corpus:
       return describe_corpus(file.path);
     case FileKind::protocol:

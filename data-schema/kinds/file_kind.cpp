@@ -11,15 +11,16 @@
 #include "data-schema/height/height_map.hpp"
 #include "data-schema/json/json_document.hpp"
 #include "data-schema/json/named_document.hpp"
+#include "data-schema/mesh/mesh.hpp"
 #include "data-schema/session/session_netcdf.hpp"
 
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 19> kNames = {
+constexpr std::array<std::string_view, 20> kNames = {
     "recording",  "texture", "transducer", "spectrogram",  "formants", "descriptions", "calibration",
     "scene",      "session", "results",    "trade",        "device",   "hand",         "session_table",
-    "height_map", "corpus",  "protocol",   "protocol_key", "wiring"};
+    "height_map", "corpus",  "protocol",   "protocol_key", "wiring",   "mesh"};
 
 struct Ending {
   FileKind kind;
@@ -32,6 +33,7 @@ constexpr Ending kEndings[] = {
     {FileKind::transducer, ".transducer.json"},
     {FileKind::spectrogram, ".nc"},
     {FileKind::height_map, ".height.nc"},
+    {FileKind::mesh, ".mesh.nc"},
     {FileKind::formants, ".formants.json"},
     {FileKind::descriptions, ".descriptions.json"},
     {FileKind::calibration, ".calibration.json"},
@@ -64,6 +66,7 @@ Result<StoredFile> by_content(const std::string& path) {
 // A file that cannot be read is treated as a spectrogram: reading it reports the error.
 FileKind netcdf_kind(const std::string& path) {
   if (is_height_map(path)) return FileKind::height_map;
+  if (is_mesh(path)) return FileKind::mesh;
   return is_session_netcdf(path) ? FileKind::session_table : FileKind::spectrogram;
 }
 

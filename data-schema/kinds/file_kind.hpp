@@ -29,7 +29,8 @@ enum class FileKind {
   corpus,  ///< the plan of a corpus
   protocol,
   protocol_key,  ///< which stimulus has which code
-  wiring         ///< which sensor is wired to which input of a card
+  wiring,        ///< which sensor is wired to which input of a card
+  mesh
 };
 
 /// "recording", "texture", ... as in the files' own member `kind`.

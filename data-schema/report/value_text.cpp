@@ -36,6 +36,7 @@ constexpr Suffix kSuffixes[] = {
     {"_m_per_v", "m/V"},
     {"_mb_per_s", "MB/s"},
     {"_percent", "%"},
+    {"_m3", "m^3"},
     {"_per_s", "1/s"},
     {"_ppm", "ppm"},
     {"_ohm", "ohm"},

@@ -65,6 +65,7 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
   if (!directed && piece.direction != Piece().direction) return refused("direction", "plane, cylinder");
   if (piece.coefficients != Piece().coefficients && piece.shape != PieceShape::quadric)
     return refused("coefficients", "quadric");
+  if (!piece.mesh.empty() && piece.shape != PieceShape::mesh) return refused("mesh", "mesh");
   const auto& d = piece.direction;
   if (!(std::hypot(d[0], d[1], d[2]) > 1e-9))
     return fail(ErrorKind::unsuitable, "a direction of length 0", where + "/direction",
@@ -109,11 +110,14 @@ Result<void> check_pieces(const Scene& scene, const std::string& where) {
       return fail(ErrorKind::unsuitable, fmt::format("two pieces are named '{}'", piece.name), at + "/name",
                   "give each piece its own name");
     TACTO_TRY(check_members(piece, at));
-    if (scene.point_radius_m > 0 && piece.shape == PieceShape::quadric)
-      return fail(ErrorKind::unsuitable, "a point with a radius does not touch quadrics yet",
+    if (scene.point_radius_m > 0 && (piece.shape == PieceShape::quadric || piece.shape == PieceShape::mesh))
+      return fail(ErrorKind::unsuitable, "a point with a radius does not touch quadrics and meshes yet",
                   where + "#/radius_m",
-                  "leave radius_m out, or make the quadric larger by the radius; planes, spheres and "
+                  "leave radius_m out, or make the piece larger by the radius; planes, spheres and "
                   "cylinders are exact");
+    if (scene.contact == PieceContact::add && piece.shape == PieceShape::mesh)
+      return fail(ErrorKind::unsuitable, "a mesh does not push to its nearest face", where + "#/contact",
+                  "leave contact out: a ghost point touches meshes");
   }
   return {};
 }

@@ -14,7 +14,7 @@
 
 namespace tacto::schema {
 
-enum class PieceShape { plane, sphere, cylinder, quadric };
+enum class PieceShape { plane, sphere, cylinder, quadric, mesh };
 
 /// How pieces act: a ghost point stays on their surfaces (Zilles and Salisbury 1995), or each piece pushes to
 /// its nearest face, and the forces add up.
@@ -53,12 +53,13 @@ inline constexpr HandSurfaceNumber kHandSurfaceNumbers[] = {
 struct Piece {
   std::string name;  ///< different for each piece of a scene
   PieceShape shape = PieceShape::plane;
-  double x_m = 0, y_m = 0, z_m = 0;             ///< a point of a plane, a point of an axis, a centre
+  double x_m = 0, y_m = 0, z_m = 0;             ///< a point of a plane or an axis, a centre, a mesh's origin
   std::array<double, 3> direction = {0, 0, 1};  ///< plane: out of the solid; cylinder: its axis
   double thickness_m = 0;                       ///< plane: of the plate below it; 0: without an end
   double radius_m = 0;                          ///< sphere, cylinder
   /// Quadric: solid where the sum of coefficient x term is below 0; terms in m, from the place.
   std::array<double, kQuadricTerms> coefficients = {};
+  std::string mesh;  ///< mesh: the stem of its file, or the file
   double stiffness_n_per_m = 0;
   double damping_n_s_per_m = 0;
   /// Coefficients of the force along the normal: a spring of stiffness_n_per_m holds the hand along the
@@ -97,7 +98,7 @@ NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number);
 /// lower ones.
 std::vector<Piece> slider_ends(const Piece& piece);
 
-/// "plane", "sphere", "cylinder", "quadric".
+/// "plane", "sphere", "cylinder", "quadric", "mesh".
 std::string_view to_string(PieceShape shape);
 
 /// "ghost", "add".

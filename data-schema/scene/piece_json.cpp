@@ -9,7 +9,7 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 4> kShapeWords = {"plane", "sphere", "cylinder", "quadric"};
+constexpr std::array<std::string_view, 5> kShapeWords = {"plane", "sphere", "cylinder", "quadric", "mesh"};
 
 // Before the numbers of the wall; each is written if it is not 0.
 constexpr PieceNumber kShapeNumbers[] = {{"thickness_m", &Piece::thickness_m},
@@ -77,6 +77,7 @@ Piece piece_from(const Json& body) {
     for (std::size_t i = 0; i < piece.direction.size(); ++i) piece.direction[i] = body["direction"][i];
   if (body.contains("coefficients"))
     for (std::size_t i = 0; i < kQuadricTerms; ++i) piece.coefficients[i] = body["coefficients"][i];
+  piece.mesh = text_or(body, "mesh");
   for (const auto& [name, value, changes] : kShapeNumbers) piece.*value = number_or(body, name, 0);
   read_wall(piece, body);
   if (body.contains("transient")) {
@@ -97,6 +98,7 @@ Json piece_body(const Piece& piece) {
   if (piece.shape == PieceShape::plane || piece.shape == PieceShape::cylinder)
     body["direction"] = piece.direction;
   if (piece.shape == PieceShape::quadric) body["coefficients"] = piece.coefficients;
+  if (piece.shape == PieceShape::mesh) body["mesh"] = piece.mesh;
   for (const auto& [name, value, changes] : kShapeNumbers)
     if (piece.*value != 0) body[name] = piece.*value;
   write_wall(piece, body);

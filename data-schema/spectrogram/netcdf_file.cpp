@@ -118,6 +118,12 @@ int NetcdfWriter::cells(const char* name, const Blocks& blocks, bool deflated, c
   return id;
 }
 
+int NetcdfWriter::indices(const char* name, const Blocks& blocks, const std::string& long_name) {
+  const int id = define(name, NC_INT, blocks, true);
+  describe(id, "", long_name);
+  return id;
+}
+
 int NetcdfWriter::flags(const char* name, const Blocks& blocks, const std::string& meanings,
                         const std::string& long_name) {
   constexpr signed char kValues[] = {0, 1};

@@ -41,6 +41,8 @@ class NetcdfWriter {
   /// Single precision, absent cells NaN.
   int cells(const char* name, const Blocks& blocks, bool deflated, const std::string& units,
             const std::string& long_name);
+  /// Whole numbers of 32 bits, deflated; put as doubles.
+  int indices(const char* name, const Blocks& blocks, const std::string& long_name);
   /// Bytes that are 0 or 1, deflated, with the names of both values ("unknown known").
   int flags(const char* name, const Blocks& blocks, const std::string& meanings,
             const std::string& long_name);

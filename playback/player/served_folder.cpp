@@ -7,6 +7,7 @@
 
 #include "data-schema/files/files.hpp"
 #include "data-schema/height/height_map.hpp"
+#include "data-schema/mesh/mesh.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture_wav.hpp"
 #include "playback/player/placed_textures.hpp"
@@ -59,6 +60,10 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
   };
   for (const schema::Patch& patch : scene->patches)
     if (!std::ranges::all_of(patch.layers, in_folder)) return false;
+  for (const schema::Piece& piece : scene->pieces)
+    if (!piece.mesh.empty() &&
+        !is_within(folder, schema::mesh_path(schema::texture_in_scene(path, piece.mesh))))
+      return false;
   return std::ranges::all_of(scene->layers, [&](const schema::Layer& layer) {
     return layer.visit([&](const schema::TextureLayer& texture) {
       return serves_texture(folder, schema::texture_in_scene(path, texture.texture));

@@ -36,8 +36,12 @@ def a_module_of_another_build_is_refused():
             "tactograph-pictures.so": ["spectrogram", "E.texture.json", "-o", "E.png"],
             "tactograph-matio.so": ["export", "E.json", "-o", "E.mat"],
             "tactograph-web.so": ["live", "."],
-            "tactograph-zip.so": ["import", "E.x3p", "-o", "profile"]}
+            "tactograph-zip.so": ["import", "E.x3p", "-o", "profile"],
+            "tactograph-assimp.so": ["import", "E.stl", "--unit", "mm", "-o", "part"]}
     pathlib.Path("E.x3p").write_bytes(b"PK\x03\x04")
+    pathlib.Path("E.stl").write_text("solid E\n" + "".join(
+        "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {corner}\n" for corner in facet) + "endloop\nendfacet\n"
+        for facet in (("0 0 0", "0 1 0", "1 0 0"), ("0 0 0", "1 0 0", "0 0 1"), ("0 0 0", "0 0 1", "0 1 0"), ("1 0 0", "0 1 0", "0 0 1"))) + "endsolid E\n")
     present = {path.name for path in MODULES.glob("*.so")}  # without libwebsockets there is no page
     assert present <= set(uses) and len(present) >= 3, present
     for module in sorted(present):

@@ -33,6 +33,7 @@ WALLS = {
     r"H5": ["data-schema/netcdf", "data-schema/exchange"],
     r"matio|zlib": ["data-schema/exchange"],
     r"zip\.h": ["data-schema/exchange/zip"],
+    r"assimp/": ["data-schema/exchange/assimp"],
     r"nettle/": ["data-schema/base"],
     r"opencv2/|cairo|pango": ["spatial/picture/engine"],
     r"png\.h": ["spatial/picture/engine", "capture/import"],

@@ -7,23 +7,25 @@ MAY_INCLUDE = {
     "data-schema/base": "",
     "data-schema/calibration": "data-schema/{base files json}",
     "data-schema/check":
-        "data-schema/{base corpus device experiment files height json kinds recording results scene session spectrogram texture transducer "
+        "data-schema/{base corpus device experiment files height json kinds mesh recording results scene session spectrogram texture transducer "
         "wav wiring}",
     "data-schema/cli":
-        "data-schema/{base calibration check command corpus device exchange experiment files height kinds recording report results scene session spectrogram "
+        "data-schema/{base calibration check command corpus device exchange experiment files height kinds mesh recording report results scene session spectrogram "
         "texture transducer wiring}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
     "data-schema/corpus": "data-schema/{base json}",
     "data-schema/device": "data-schema/{base json}",
     "data-schema/experiment": "data-schema/{base files json}",
-    "data-schema/exchange": "data-schema/{base exchange/matio exchange/zip files texture}",
+    "data-schema/exchange": "data-schema/{base exchange/assimp exchange/matio exchange/zip files mesh texture}",
+    "data-schema/exchange/assimp": "",
     "data-schema/exchange/matio": "",
     "data-schema/exchange/zip": "",
     "data-schema/files": "data-schema/base",
     "data-schema/height": "data-schema/{base files spectrogram}",
     "data-schema/json": "data-schema/{base files}",
-    "data-schema/kinds": "data-schema/{base files height json session}",
+    "data-schema/kinds": "data-schema/{base files height json mesh session}",
+    "data-schema/mesh": "data-schema/{base files spectrogram}",
     "data-schema/netcdf": "",
     "data-schema/recording": "data-schema/{base files json transducer wav}",
     "data-schema/report": "data-schema/{base scene}",
@@ -63,7 +65,7 @@ MAY_INCLUDE = {
         "capture/{calibrate doctor import record table} data-schema/{base cli command files height kinds recording report} "
         "firmware-host/{. sim/device}",
     "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. core/wire link}",
-    "capture/import": "capture/{calibrate record table} data-schema/{base calibration exchange files height recording texture}",
+    "capture/import": "capture/{calibrate record table} data-schema/{base calibration exchange files height mesh recording texture}",
     "capture/record":
         "capture/table data-schema/{base calibration files recording} firmware-host/link spatial/strokes",
     "capture/table": "data-schema/{base exchange files recording wav}",
@@ -107,7 +109,7 @@ MAY_INCLUDE = {
         "data-schema/{base files transducer wav} firmware-host/{core/kernel core/wire} spatial/{dsp/filter "
         "dsp/fourier dsp/resample}",
     "playback/player":
-        "data-schema/{base device files height scene session texture} firmware-host/{. core/firmware core/kernel core/wire "
+        "data-schema/{base device files height mesh scene session texture} firmware-host/{. core/firmware core/kernel core/wire "
         "link sim/device sim/planar} playback/{choose host-loop model prepare prepare/scene render session} "
         "spatial/dsp/resample",
     "playback/prepare":
@@ -115,13 +117,13 @@ MAY_INCLUDE = {
         "spatial/{dsp/filter dsp/fourier}",
     "playback/prepare/relief": "data-schema/{base height scene} firmware-host/core/scene spatial/dsp/fourier",
     "playback/prepare/scene":
-        "data-schema/{device height scene texture} firmware-host/core/scene playback/{model prepare prepare/relief "
+        "data-schema/{device height mesh scene texture} firmware-host/core/scene playback/{model prepare prepare/relief "
         "stability}",
     "playback/render":
         "data-schema/{base device files recording scene texture transducer} firmware-host/{core/kernel core/scene sim/planar} "
         "playback/{choose model prepare prepare/scene render/reference} spatial/{dsp/filter features}",
     "playback/render/reference":
-        "data-schema/{base device} firmware-host/core/{kernel scene} playback/{model prepare prepare/relief prepare/scene} "
+        "data-schema/{base device mesh} firmware-host/core/{kernel scene} playback/{model prepare prepare/relief prepare/scene} "
         "spatial/{dsp/filter dsp/fourier}",
     "playback/session":
         "data-schema/{base files session wav} firmware-host/{core/firmware core/kernel core/wire link} playback/model",
@@ -166,7 +168,7 @@ MAY_INCLUDE = {
     "analysis/page": "data-schema/{base results} spatial/picture",
     "analysis/psychometrics": "data-schema/base",
     "analysis/report":
-        "analysis/{identify/measure page} data-schema/{base calibration check corpus device experiment files height kinds recording results "
+        "analysis/{identify/measure page} data-schema/{base calibration check corpus device experiment files height kinds mesh recording results "
         "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
         "texture}",
     "analysis/scene":

@@ -11,6 +11,7 @@ constexpr float kInside_m = 1e-6F;    // deeper is not rounding
 constexpr float kSettled_m = 1e-9F;   // a shorter way is none
 constexpr float kRounding_m = 2e-8F;  // of a plane's place: 24 bits of 0.3 m
 constexpr float kSameSide = 0.8F;     // cosine of the largest turn of the normal in one step
+constexpr float kSameAway = 0.97F;    // cosine: ways from one edge differ by rounding
 constexpr float kLeaves_m = 1e-6F;    // over a surface, beyond what rounding is
 constexpr int kPassesOut = 3;     // at the end of a tick: Newton's steps out of a surface, no way along it
 constexpr float kDeepest = 0.1F;  // of a step along a surface that bends towards it
@@ -23,6 +24,14 @@ const PieceTable& piece_of(const SceneView& scene, uint32_t piece) noexcept {
   return table_of<PieceTable>(scene, scene.layers[piece]);
 }
 
+bool is_mesh(const SceneView& scene, uint32_t piece) noexcept {
+  return kind_of(scene, piece) == SceneLayerKind::mesh;
+}
+
+const MeshTable& mesh_of(const SceneView& scene, uint32_t piece) noexcept {
+  return table_of<MeshTable>(scene, scene.layers[piece]);
+}
+
 SpacePlace origin_of(const PieceTable& table) noexcept {
   return {{table.origin[0], table.origin[1], table.origin[2]},
           {table.rest_m[0], table.rest_m[1], table.rest_m[2]}};
@@ -33,7 +42,9 @@ struct Plane {
   uint32_t piece = 0;
   float distance_m = 0;
   SpaceVector normal;
-  SpaceVector at;  ///< the point, from the origin of the piece
+  SpaceVector at;    ///< the point, from the origin of the piece
+  float skin_m = 0;  ///< of a triangle: the plane is this far above it
+  uint32_t triangle = kNoTriangle;
 };
 
 struct Planes {
@@ -71,7 +82,8 @@ struct Goal {
 bool allowed(const Planes& planes, SpaceVector way) noexcept {
   for (uint32_t i = 0; i < planes.count; ++i) {
     const Plane& plane = planes.at[i];
-    if (dot(plane.normal, way) < -plane.distance_m - kRounding_m) return false;
+    const float rounding_m = plane.skin_m > 0 ? plane.skin_m / 16 : kRounding_m;
+    if (dot(plane.normal, way) < -plane.distance_m - rounding_m) return false;
   }
   return true;
 }
@@ -181,6 +193,101 @@ SpaceVector shortened(const SceneView& scene, const Planes& planes, const Goal& 
   return share * goal.way + (1 - share) * back;
 }
 
+// Of the triangles that the ghost met those that still hold it: by their plane; beside a triangle, by the
+// plane across the way from its edge or corner, unless another plane is nearly the same.
+void add_triangles(const SceneView& scene, const SpacePlace& ghost, const float (&step_m)[3],
+                   GhostPoint::TouchedTriangles& touched, Planes& planes) noexcept {
+  Planes beside;
+  uint32_t kept = 0;
+  for (uint32_t i = 0; i < touched.count; ++i) {
+    const uint32_t piece = touched.piece[i], triangle = touched.triangle[i];
+    const MeshTable& mesh = mesh_of(scene, piece);
+    const SpaceVector from = difference(ghost, origin_of(mesh.piece), step_m);
+    const TriangleSide side = side_of(mesh, triangle, from);
+    if (!is_held_by(mesh, side)) continue;
+    touched.piece[kept] = piece, touched.triangle[kept++] = triangle;
+    const float above_m = side.beside ? side.distance_m : side.above_m;
+    (side.beside ? beside : planes)
+        .add({piece, above_m - mesh.skin_m, side.away, from, mesh.skin_m, triangle});
+  }
+  touched.count = kept;
+  for (uint32_t i = 0; i < beside.count; ++i) {
+    bool known = false;
+    for (uint32_t j = 0; j < planes.count; ++j)
+      known = known || (planes.at[j].skin_m > 0 && dot(planes.at[j].normal, beside.at[i].normal) > kSameAway);
+    if (!known) planes.add(beside.at[i]);
+  }
+}
+
+// Nearer to a triangle than three quarters of its skin: it goes out first, and along the surface afterwards.
+bool is_in_skin(const Planes& planes) noexcept {
+  for (uint32_t i = 0; i < planes.count; ++i)
+    if (planes.at[i].distance_m < -0.25F * planes.at[i].skin_m) return true;
+  return false;
+}
+
+// In a full list it takes the place of one that does not hold the ghost: at most three do.
+void touch(GhostPoint::TouchedTriangles& touched, uint32_t piece, uint32_t triangle, const Planes& planes,
+           const Goal& goal) noexcept {
+  static_assert(kMostHolding < kMostTouched);
+  uint32_t place = touched.count;
+  for (uint32_t i = 0; i < touched.count; ++i)
+    if (touched.piece[i] == piece && touched.triangle[i] == triangle) return;
+  for (uint32_t i = 0; i < touched.count && place == kMostTouched; ++i) {
+    bool holds = false;
+    for (uint32_t j = 0; j < goal.count; ++j) {
+      const Plane& plane = planes.at[goal.plane[j]];
+      holds = holds || (plane.piece == touched.piece[i] && plane.triangle == touched.triangle[i]);
+    }
+    if (!holds) place = i;
+  }
+  touched.piece[place] = piece, touched.triangle[place] = triangle;
+  if (place == touched.count) ++touched.count;
+}
+
+// Of all meshes; `piece` is set if there is one.
+MeshHit first_triangle(const SceneView& scene, const SpacePlace& ghost, SpaceVector way,
+                       const float (&step_m)[3], uint32_t& piece) noexcept {
+  MeshHit first;
+  for (uint32_t i = 0; i < scene.layer_count; ++i) {
+    if (!is_mesh(scene, i)) continue;
+    const MeshTable& mesh = mesh_of(scene, i);
+    const MeshHit hit = first_hit(mesh, difference(ghost, origin_of(mesh.piece), step_m), way);
+    if (hit.part < first.part) first = hit, piece = i;
+  }
+  return first;
+}
+
+// A way below which a ghost on a mesh has come to rest: about what places round by.
+float settled_on_meshes(const SceneView& scene) noexcept {
+  float settled_m = 0;
+  for (uint32_t i = 0; i < scene.layer_count; ++i) {
+    if (!is_mesh(scene, i)) continue;
+    const float own_m = mesh_of(scene, i).skin_m / 16;
+    settled_m = own_m > settled_m ? own_m : settled_m;
+  }
+  return settled_m;
+}
+
+// The pushes of the planes without the skins that triangles have.
+void take_off_skins(Planes planes, Goal& goal, SpaceVector straight) noexcept {
+  bool any = false;
+  for (uint32_t i = 0; i < planes.count; ++i) {
+    planes.at[i].distance_m += planes.at[i].skin_m;
+    any = any || planes.at[i].skin_m > 0;
+  }
+  Goal bare;
+  if (!any || goal.count == 0) return;
+  if (held_by(planes, goal.plane, goal.count, straight, bare)) {
+    goal = bare;
+    return;
+  }
+  for (uint32_t i = 0; i < goal.count; ++i) {
+    const float push_m = goal.push_m[i] - planes.at[goal.plane[i]].skin_m;
+    goal.push_m[i] = push_m > 0 ? push_m : 0;
+  }
+}
+
 bool is_inside(const SceneView& scene, const SpacePlace& place, const float (&step_m)[3]) noexcept {
   for (uint32_t i = 0; i < scene.layer_count; ++i) {
     const PieceTable& table = piece_of(scene, i);
@@ -212,7 +319,7 @@ bool GhostPoint::settle_on(const SceneView& scene, const SpacePlace& hand, const
                            uint32_t touched, Holding& holding) noexcept {
   const uint32_t piece = holding.piece[0];
   const SceneLayerKind kind = kind_of(scene, piece);
-  if (kind == SceneLayerKind::plane) return false;
+  if (kind == SceneLayerKind::plane || kind == SceneLayerKind::mesh) return false;
   const PieceTable& table = piece_of(scene, piece);
   const SpacePlace origin = origin_of(table);
   const SpaceVector at = difference(ghost_, origin, step_m), to = difference(hand, origin, step_m);
@@ -229,6 +336,8 @@ bool GhostPoint::settle_on(const SceneView& scene, const SpacePlace& hand, const
     if (surface_at(kind_of(scene, i), other, from + way).distance_m < -kRounding_m) return false;
     if ((touched >> i & 1) == 0 && entry_of(kind_of(scene, i), other, from, way) <= 1) return false;
   }
+  uint32_t mesh = 0;
+  if (first_triangle(scene, ghost_, way, step_m, mesh).part <= 1) return false;
   move(way, step_m);
   holding.normal[0] = normal;
   holding.depth_m[0] = length(pull);
@@ -242,11 +351,13 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
   bool outside = false;
   uint32_t touched = 0;
   static_assert(kMostPieces <= 32);
+  const float settled_m = settled_on_meshes(scene);
   for (int pass = 0; pass <= kGhostPasses; ++pass) {  // the last one moves no more, and gives the force
     const SpaceVector straight = difference(hand, ghost_, step_m);
     Planes planes;
     float nearest_m = kFarthestInSpace_m;
     for (uint32_t i = 0; i < scene.layer_count; ++i) {
+      if (is_mesh(scene, i)) continue;
       const PieceTable& table = piece_of(scene, i);
       const SpaceVector from = difference(ghost_, origin_of(table), step_m);
       const PieceSurface at = surface_at(kind_of(scene, i), table, from);
@@ -254,19 +365,23 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
       if (at.distance_m <= kTouch_m) touched |= UINT32_C(1) << i;
       if (touched >> i & 1) planes.add({i, at.distance_m, normal_or(at.normal, straight), from});
     }
+    add_triangles(scene, ghost_, step_m, touched_, planes);
     const Goal goal = nearest_allowed(planes, straight);
-    holding.count = goal.count;
-    for (uint32_t i = 0; i < goal.count; ++i) {
-      const Plane& plane = planes.at[goal.plane[i]];
+    Goal felt = goal;
+    take_off_skins(planes, felt, straight);
+    holding.count = felt.count;
+    for (uint32_t i = 0; i < felt.count; ++i) {
+      const Plane& plane = planes.at[felt.plane[i]];
       holding.piece[i] = plane.piece;
       holding.normal[i] = plane.normal;
-      holding.depth_m[i] = goal.push_m[i];
+      holding.depth_m[i] = felt.push_m[i];
     }
     if (nearest_m >= -kInside_m) last = ghost_, of_last = holding, outside = true;
     if (goal.count == 1 && settle_on(scene, hand, step_m, touched, holding)) break;
     if (pass == kGhostPasses) break;
-    const bool out = nearest_m < -kInside_m && pass + kPassesOut >= kGhostPasses;
+    const bool out = (nearest_m < -kInside_m && pass + kPassesOut >= kGhostPasses) || is_in_skin(planes);
     SpaceVector way = out ? nearest_allowed(planes, {}).way : shortened(scene, planes, goal);
+    if (settled_m > 0 && length(way) <= settled_m) break;
     // A surface that bends towards the ghost: a shorter step, so that it stays near.
     for (int halved = 0; halved < 4; ++halved) {
       float deepest_m = 0;
@@ -292,6 +407,11 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
           touches ? return_to(table, from, way, kLeaves_m) : entry_of(kind_of(scene, i), table, from, way);
       if (entry <= part) part = entry, met = i;
     }
+    uint32_t mesh = 0;
+    if (const MeshHit hit = first_triangle(scene, ghost_, way, step_m, mesh); hit.part <= part) {
+      part = hit.part, met = mesh;
+      if (hit.triangle != kNoTriangle) touch(touched_, mesh, hit.triangle, planes, goal);
+    }
     if (met < scene.layer_count) touched |= UINT32_C(1) << met;
     move(part * way, step_m);
     if (met == scene.layer_count && length(way) <= kSettled_m) break;
@@ -299,6 +419,14 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
   if (!outside || !is_inside(scene, ghost_, step_m)) return holding;
   ghost_ = last;
   return of_last;
+}
+
+// Of all triangles of a mesh that hold the ghost.
+SpaceVector GhostPoint::push_of(const Holding& holding, uint32_t piece) noexcept {
+  SpaceVector push;
+  for (uint32_t i = 0; i < holding.count; ++i)
+    if (holding.piece[i] == piece) push = push + holding.depth_m[i] * holding.normal[i];
+  return push;
 }
 
 SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHand& hand,
@@ -310,7 +438,7 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
   bool beyond = false;
   for (uint32_t i = 0; i < scene.layer_count; ++i)
     beyond = beyond || far(place, origin_of(piece_of(scene, i)));
-  if (!placed_ || beyond || far(place, ghost_)) ghost_ = place;
+  if (!placed_ || beyond || far(place, ghost_)) ghost_ = place, touched_.count = 0;
   placed_ = true;
   const bool adds = scene.patches[0].adds != 0;
   Holding holding;
@@ -324,6 +452,14 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
     SpaceVector normal = at.normal;
     for (uint32_t j = 0; j < holding.count; ++j)
       if (holding.piece[j] == i) touch.depth_m = holding.depth_m[j], normal = holding.normal[j];
+    float* const number = live + scene.layers[i].first_number;
+    auto& state = *reinterpret_cast<WallState*>(number + changeable_numbers_of(kind_of(scene, i)));
+    if (is_mesh(scene, i)) {
+      normal = push_of(holding, i);
+      touch.depth_m = length(normal);
+      if (touch.depth_m > 0) normal = (1 / touch.depth_m) * normal;
+      if (state.touched != 0 && !beyond && is_near(mesh_of(scene, i), from, kLetGo_m)) touch.outside_m = 0;
+    }
     if (adds && !beyond && at.distance_m < 0) {
       SpaceVector nearest;
       const SceneLayerKind kind = kind_of(scene, i);
@@ -337,8 +473,6 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
     touch.most_force_n = most_force_n(setup, normal);
     touch.grain_m =
         size_of(normal.x) * step_m[0] + size_of(normal.y) * step_m[1] + size_of(normal.z) * step_m[2];
-    float* const number = live + scene.layers[i].first_number;
-    auto& state = *reinterpret_cast<WallState*>(number + changeable_numbers_of(kind_of(scene, i)));
     const float normal_n = wall_force(number, table.transient, state, touch);
     const SpaceVector on =
         adds ? from + touch.depth_m * normal : difference(ghost_, origin_of(table), step_m);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "firmware-host/core/scene/force_limiter.hpp"
+#include "firmware-host/core/scene/mesh.hpp"
 #include "firmware-host/core/scene/piece.hpp"
 
 namespace tacto::core {
@@ -31,16 +32,25 @@ struct SpaceHand {
 /// on in the next tick. The force is the sum over the holding planes of wall_force() along the normal, the
 /// depth of each its share of the way from hand to ghost (the multiplier of its plane): of equal stiffness K
 /// together K (ghost - hand) once the ghost has come to rest; while it is on its way, the planes where it is
-/// give the force. `contact: add`: each piece by itself, from its nearest face.
+/// give the force. Of a mesh each triangle is a piece of its own: one that the ghost met holds it as long as
+/// it is within one and a half skins (first_hit()); the force is that of a ghost without a skin, along the
+/// sum of the pushes of all its triangles. A hand that begins in a mesh touches nothing until it has left it.
+/// `contact: add`: each piece by itself, from its nearest face.
 class GhostPoint {
  public:
   /// Without a place: the next hand is the ghost.
-  void rest() noexcept { placed_ = false; }
+  void rest() noexcept { placed_ = false, touched_.count = 0; }
   /// Force of the pieces of `scene` (SceneView::in_space) on the hand. `live`: its numbers. Safe in the tick:
   /// at most kGhostPasses times one step per piece.
   SpaceVector force(const SceneView& scene, float* live, const SpaceHand& hand, const float (&step_m)[3],
                     const ForceSetup& setup) noexcept;
   const SpacePlace& place() const noexcept { return ghost_; }
+
+  /// Triangles of meshes that the ghost met and is still near.
+  struct TouchedTriangles {
+    uint32_t count = 0;
+    uint32_t piece[kMostTouched] = {}, triangle[kMostTouched] = {};
+  };
 
  private:
   struct Holding {
@@ -52,9 +62,11 @@ class GhostPoint {
   Holding follow(const SceneView& scene, const SpacePlace& hand, const float (&step_m)[3]) noexcept;
   bool settle_on(const SceneView& scene, const SpacePlace& hand, const float (&step_m)[3], uint32_t touched,
                  Holding& holding) noexcept;
+  static SpaceVector push_of(const Holding& holding, uint32_t piece) noexcept;
   void move(SpaceVector way, const float (&step_m)[3]) noexcept;
 
   SpacePlace ghost_;
+  TouchedTriangles touched_;
   bool placed_ = false;
 };
 

@@ -131,6 +131,7 @@ bool place_of(const float* q, SpaceVector hand, float lambda, SpaceVector& p) no
 }  // namespace
 
 PieceSurface surface_at(SceneLayerKind kind, const PieceTable& table, SpaceVector place) noexcept {
+  if (kind == SceneLayerKind::mesh) return {kNoExit, {}};
   if (kind == SceneLayerKind::plane) {
     const SpaceVector normal = direction_of(table);
     const float above_m = dot(normal, place), thickness_m = table.form[kPieceSize];
@@ -151,6 +152,7 @@ PieceSurface surface_at(SceneLayerKind kind, const PieceTable& table, SpaceVecto
 }
 
 float entry_of(SceneLayerKind kind, const PieceTable& table, SpaceVector place, SpaceVector way) noexcept {
+  if (kind == SceneLayerKind::mesh) return kNoEntry;
   if (kind == SceneLayerKind::plane) {
     const SpaceVector normal = direction_of(table);
     const float above_m = dot(normal, place), rise_m = dot(normal, way), thickness_m = table.form[kPieceSize];

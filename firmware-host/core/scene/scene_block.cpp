@@ -30,6 +30,7 @@ constexpr float kMostPiece_kg = 100, kMostFriction = 10, kMostIntegral = 1e7F, k
 constexpr float kMostTransient_n_s_per_m = 1e6F;
 constexpr float kLeastLoss = 1e-6F;  // of a transient from tick to tick
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
+constexpr float kThinnestSkin_m = 1e-12F, kThickestSkin_m = 1e-3F;
 
 bool is_direction(float cosine, float sine) noexcept {
   return within(cosine * cosine + sine * sine, 1 - kUnitRounding, 1 + kUnitRounding);
@@ -73,6 +74,7 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
     case SceneLayerKind::sphere:
     case SceneLayerKind::cylinder:
     case SceneLayerKind::quadric:
+    case SceneLayerKind::mesh:
       return within(number[kPieceStiffness], 0, kStiffest_n_per_m) &&
              within(number[kPieceDamping], 0, kMostDamping_n_s_per_m) &&
              within(number[kPieceArrestMass], 0, kMostPiece_kg) &&
@@ -230,6 +232,37 @@ SceneFault check_piece(const SceneView& view, const SceneLayer& layer, uint32_t 
              : SceneFault::value;
 }
 
+bool sound(const MeshNode& node, uint32_t place, const MeshTable& table) noexcept {
+  for (int i = 0; i < 3; ++i)
+    if (!within(node.least_m[i], -kLargestPiece_m, kLargestPiece_m) ||
+        !within(node.most_m[i], -kLargestPiece_m, kLargestPiece_m))
+      return false;
+  const uint32_t first = node.leaf / (kMostLeafTriangles + 1), count = node.leaf % (kMostLeafTriangles + 1);
+  return node.skip > place && node.skip <= table.nodes && first <= table.triangles &&
+         count <= table.triangles - first;
+}
+
+SceneFault check_mesh(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                      uint32_t& words) noexcept {
+  constexpr uint32_t kHead = sizeof(MeshTable) / sizeof(uint32_t),
+                     kNode = sizeof(MeshNode) / sizeof(uint32_t);
+  if (room < kHead) return SceneFault::structure;
+  const auto& table = table_of<MeshTable>(view, layer);
+  const uint64_t all =
+      kHead + uint64_t{kNode} * table.nodes + uint64_t{3} * table.triangles + uint64_t{3} * table.vertices;
+  if (table.nodes == 0 || table.triangles >= 1U << 29 || all > room) return SceneFault::structure;
+  words = static_cast<uint32_t>(all);
+  if (!sound(table.piece, SceneLayerKind::mesh) || !within(table.skin_m, kThinnestSkin_m, kThickestSkin_m))
+    return SceneFault::value;
+  for (uint32_t i = 0; i < table.nodes; ++i)
+    if (!sound(nodes_of(table)[i], i, table)) return SceneFault::structure;
+  for (uint32_t i = 0; i < 3 * table.triangles; ++i)
+    if (triangles_of(table)[i] >= table.vertices) return SceneFault::structure;
+  for (uint64_t i = 0; i < uint64_t{3} * table.vertices; ++i)
+    if (!within(vertices_of(table)[i], -kLargestPiece_m, kLargestPiece_m)) return SceneFault::value;
+  return SceneFault::none;
+}
+
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,
                        uint32_t& words) noexcept {
   switch (static_cast<SceneLayerKind>(layer.kind)) {
@@ -253,6 +286,8 @@ SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t 
     case SceneLayerKind::cylinder:
     case SceneLayerKind::quadric:
       return check_piece(view, layer, room, words);
+    case SceneLayerKind::mesh:
+      return check_mesh(view, layer, room, words);
     case SceneLayerKind::spring:
     case SceneLayerKind::damper:
     case SceneLayerKind::tick_damper:

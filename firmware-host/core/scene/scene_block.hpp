@@ -35,12 +35,13 @@ enum class SceneLayerKind : uint16_t {
   plane = 16,
   sphere = 17,
   cylinder = 18,
-  quadric = 19
+  quadric = 19,
+  mesh = 20
 };
 
 /// Whether a layer is a piece: a solid in space. In a block either all layers are pieces or none is.
 constexpr bool is_piece(SceneLayerKind kind) noexcept {
-  return kind >= SceneLayerKind::plane && kind <= SceneLayerKind::quadric;
+  return kind >= SceneLayerKind::plane && kind <= SceneLayerKind::mesh;
 }
 
 constexpr bool is_known(SceneLayerKind kind) noexcept {
@@ -100,6 +101,7 @@ constexpr uint32_t changeable_numbers_of(SceneLayerKind kind) noexcept {
     case SceneLayerKind::sphere:
     case SceneLayerKind::cylinder:
     case SceneLayerKind::quadric:
+    case SceneLayerKind::mesh:
       return kPieceNumbers;
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
@@ -275,6 +277,36 @@ struct PieceTable {
   TransientTable transient;
 };
 static_assert(sizeof(PieceTable) == 88);
+
+/// A triangle mesh: this, then the nodes, the triangles as three vertices each (u32), counter-clockwise from
+/// outside, and the vertices as three coordinates each (f32, m, from the origin of the piece).
+struct MeshTable {
+  PieceTable piece;  ///< of its form only the size is used: the half extent, within which all vertices are
+  float skin_m = 0;  ///< distance that the ghost keeps from the triangles; half of it is never undercut
+  uint32_t nodes = 0, triangles = 0, vertices = 0;
+};
+static_assert(sizeof(MeshTable) == 104);
+
+inline constexpr uint32_t kMostLeafTriangles = 7;
+
+/// A box of the tree, around triangles and their skin. The tree is stored from the root on, each node before
+/// what is below it: a way that misses a box goes on at `skip`, otherwise at the next node.
+struct MeshNode {
+  float least_m[3] = {}, most_m[3] = {};
+  uint32_t skip = 0;  ///< larger than its own place
+  uint32_t leaf = 0;  ///< first triangle x 8 + number of triangles; number 0: not a leaf
+};
+static_assert(sizeof(MeshNode) == 32);
+
+inline const MeshNode* nodes_of(const MeshTable& table) noexcept {
+  return reinterpret_cast<const MeshNode*>(&table + 1);
+}
+inline const uint32_t* triangles_of(const MeshTable& table) noexcept {
+  return reinterpret_cast<const uint32_t*>(nodes_of(table) + table.nodes);
+}
+inline const float* vertices_of(const MeshTable& table) noexcept {
+  return reinterpret_cast<const float*>(triangles_of(table) + 3 * static_cast<uint64_t>(table.triangles));
+}
 
 /// A block that was read; it points into its memory.
 struct SceneView {

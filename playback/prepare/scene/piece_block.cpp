@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
+#include <memory>
 #include <utility>
 
 #include "playback/prepare/scene/contact_transient.hpp"
+#include "playback/prepare/scene/mesh_block.hpp"
 #include "playback/stability/sampled_loop.hpp"
 
 namespace tacto::playback {
@@ -41,24 +44,20 @@ SceneLayerKind kind_of_piece(PieceShape shape) {
       return SceneLayerKind::sphere;
     case PieceShape::cylinder:
       return SceneLayerKind::cylinder;
+    case PieceShape::mesh:
+      return SceneLayerKind::mesh;
     case PieceShape::quadric:
       break;
   }
   return SceneLayerKind::quadric;
 }
 
-// A plane and a plate are raised by the radius of the point; balls and cylinders get a larger radius.
-Result<core::PieceTable> table_of_piece(const Piece& piece, double point_radius_m, const PlaneSteps& steps,
-                                        const std::string& where) {
+// At whole counts, and a rest.
+Result<core::PieceTable> table_at(const schema::MeshVertex& place_m, const PlaneSteps& steps,
+                                  const std::string& where) {
   core::PieceTable table;
-  const auto& d = piece.direction;
-  const double size = std::hypot(d[0], d[1], d[2]);
-  const double n[3] = {d[0] / size, d[1] / size, d[2] / size};
-  const double raised_m = piece.shape == PieceShape::plane ? point_radius_m : 0;
-  const double place_m[3] = {piece.x_m + raised_m * n[0], piece.y_m + raised_m * n[1],
-                             piece.z_m + raised_m * n[2]};
   const double step_m[3] = {steps.x_m, steps.y_m, steps.z_m};
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     const double counts = std::round(place_m[i] / step_m[i]);
     if (!(std::abs(counts) <= kMostPlaceCounts))
       return fail(ErrorKind::unsuitable,
@@ -67,20 +66,63 @@ Result<core::PieceTable> table_of_piece(const Piece& piece, double point_radius_
     table.origin[i] = static_cast<std::int32_t>(counts);
     table.rest_m[i] = static_cast<float>(place_m[i] - counts * step_m[i]);
   }
+  return table;
+}
+
+// A plane and a plate are raised by the radius of the point; balls and cylinders get a larger radius.
+Result<core::PieceTable> table_of_piece(const Piece& piece, double point_radius_m, const PlaneSteps& steps,
+                                        const std::string& where) {
+  const auto& d = piece.direction;
+  const double size = std::hypot(d[0], d[1], d[2]);
+  const double n[3] = {d[0] / size, d[1] / size, d[2] / size};
+  const double raised_m = piece.shape == PieceShape::plane ? point_radius_m : 0;
+  auto placed = table_at(
+      {piece.x_m + raised_m * n[0], piece.y_m + raised_m * n[1], piece.z_m + raised_m * n[2]}, steps, where);
+  TACTO_TRY(placed);
+  core::PieceTable& table = *placed;
   if (piece.shape == PieceShape::quadric) {
     // In units of the largest one: the kernel's least gradient is an absolute one.
     const auto [least, most] = std::ranges::minmax(piece.coefficients);
     const double scale = std::max(-least, most);
     std::ranges::transform(piece.coefficients, table.form,
                            [&](double c) { return static_cast<float>(c / scale); });
-    return table;
+    return placed;
   }
   for (int i = 0; i < 3; ++i) table.form[core::kPieceDirection + i] = static_cast<float>(n[i]);
   const double extent_m = piece.shape != PieceShape::plane ? piece.radius_m + point_radius_m
                           : piece.thickness_m > 0          ? piece.thickness_m + 2 * point_radius_m
                                                            : 0;
   table.form[core::kPieceSize] = static_cast<float>(extent_m);
-  return table;
+  return placed;
+}
+
+// Its origin is the middle of its box: so the places of its vertices are small.
+Result<std::vector<std::uint32_t>> words_of_mesh(const Piece& piece, const schema::Mesh& mesh,
+                                                 const PlaneSteps& steps,
+                                                 const core::TransientTable& transient,
+                                                 const std::string& where) {
+  const schema::MeshVertex middle = middle_of(mesh);
+  auto placed = table_at({piece.x_m + middle[0], piece.y_m + middle[1], piece.z_m + middle[2]}, steps, where);
+  TACTO_TRY(placed);
+  std::vector<std::uint32_t> words = mesh_table(mesh, {-middle[0], -middle[1], -middle[2]});
+  static_assert(offsetof(core::MeshTable, piece) == 0);
+  core::PieceTable table;
+  std::memcpy(&table, words.data(), sizeof table);
+  std::copy(std::begin(table.form), std::end(table.form), placed->form);
+  placed->transient = transient;
+  std::memcpy(words.data(), &*placed, sizeof *placed);
+  return words;
+}
+
+// Each file once.
+Result<void> read_meshes(PreparedScene& scene, const std::string& where) {
+  for (const Piece& piece : scene.pieces) {
+    if (piece.shape != PieceShape::mesh || scene.meshes.contains(piece.mesh)) continue;
+    auto mesh = schema::read_mesh(schema::texture_in_scene(where, piece.mesh));
+    TACTO_TRY(mesh);
+    scene.meshes[piece.mesh] = std::make_shared<const schema::Mesh>(std::move(*mesh));
+  }
+  return {};
 }
 
 void append_numbers(const Piece& piece, std::vector<float>& numbers) {
@@ -147,29 +189,34 @@ Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::stri
   space.half_width_m = space.half_height_m = static_cast<float>(kWholeSpace_m);
   space.layers = static_cast<std::uint16_t>(scene.pieces.size());
   space.adds = scene.contact == schema::PieceContact::add ? 1 : 0;
+  TACTO_TRY(read_meshes(base, where));
   std::vector<core::SceneLayer> layers;
   std::vector<float> numbers;
-  std::vector<core::PieceTable> tables;
+  std::vector<std::uint32_t> tables;
   for (const Piece& piece : scene.pieces) {
-    const std::string at = fmt::format("{}#/pieces/{}", where, tables.size());
+    const std::string at = fmt::format("{}#/pieces/{}", where, layers.size());
     for (const Piece& end : slider_ends(piece)) TACTO_TRY(check_wall(end, device, rate_hz, hand, at));
-    layers.push_back(
-        {static_cast<std::uint16_t>(kind_of_piece(piece.shape)), static_cast<std::uint16_t>(numbers.size()),
-         static_cast<std::uint32_t>(tables.size() * sizeof(core::PieceTable) / sizeof(std::uint32_t))});
-    append_numbers(piece, numbers);
-    auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
-    TACTO_TRY(table);
     const auto transient = transient_table(piece, rate_hz, at);
     TACTO_TRY(transient);
+    layers.push_back({static_cast<std::uint16_t>(kind_of_piece(piece.shape)),
+                      static_cast<std::uint16_t>(numbers.size()), static_cast<std::uint32_t>(tables.size())});
+    append_numbers(piece, numbers);
+    if (piece.shape == PieceShape::mesh) {
+      const auto words = words_of_mesh(piece, *base.meshes.at(piece.mesh), base.steps, *transient, at);
+      TACTO_TRY(words);
+      append_words(tables, *words);
+      continue;
+    }
+    auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
+    TACTO_TRY(table);
     table->transient = *transient;
-    tables.push_back(*table);
+    append_words(tables, std::vector{*table});
   }
   core::SceneHeader header;
   header.patches = 1;
   header.layers = static_cast<std::uint16_t>(layers.size());
   header.numbers = static_cast<std::uint16_t>(numbers.size());
-  header.table_words =
-      static_cast<std::uint32_t>(tables.size() * sizeof(core::PieceTable) / sizeof(std::uint32_t));
+  header.table_words = static_cast<std::uint32_t>(tables.size());
   append_words(base.words, std::vector{header});
   append_words(base.words, std::vector{space});
   append_words(base.words, layers);
@@ -178,6 +225,23 @@ Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::stri
   header.check = core::scene_check(base.words.data(), static_cast<std::uint32_t>(base.bytes()));
   std::memcpy(base.words.data(), &header, sizeof header);
   return base;
+}
+
+std::string remedy_for_meshes(const PreparedScene& scene, std::size_t room) {
+  std::size_t bytes = 0, triangles = 0;
+  const core::SceneView view = scene.view();
+  for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
+    if (scene.pieces[i].shape != PieceShape::mesh) continue;
+    const auto& table = core::table_of<core::MeshTable>(view, view.layers[i]);
+    triangles += table.triangles;
+    bytes += sizeof table + sizeof(core::MeshNode) * table.nodes +
+             3 * sizeof(std::uint32_t) * (std::size_t{table.triangles} + table.vertices);
+  }
+  const std::size_t others = scene.bytes() - bytes;
+  if (others >= room) return "leave pieces out";
+  const double share = static_cast<double>(room - others) / static_cast<double>(bytes);
+  return fmt::format("decimate its meshes: of {} triangles about {:.0f} fit", triangles,
+                     std::floor(0.95 * share * static_cast<double>(triangles)));
 }
 
 std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const schema::Device& device,

@@ -11,7 +11,8 @@
 namespace tacto::playback {
 
 /// The block of the pieces for one device. `where` is the scene's file. Errors: unsuitable, by JSON pointer:
-/// a place beyond 2^30 counts; a wall whose integral is unstable (wall_growth()); transient_table().
+/// a place beyond 2^30 counts; a wall whose integral is unstable (wall_growth()); transient_table(); as
+/// schema::read_mesh().
 schema::Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::string& where,
                                              const schema::Device& device, double rate_hz,
                                              const std::optional<schema::Hand>& hand);
@@ -21,6 +22,9 @@ schema::Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const s
 /// friction is left out, and the force limit. Of all axes the largest; 0 if the device states no mass.
 double wall_growth(const schema::Piece& piece, const schema::Device& device, double rate_hz,
                    const std::optional<schema::Hand>& hand);
+
+/// What makes the meshes of a scene small enough for this many bytes, in words.
+std::string remedy_for_meshes(const PreparedScene& scene, std::size_t room);
 
 /// Warnings, one line each: axes that the device does not have; walls beyond stiffness_limit_of(); transients
 /// that the limits of the device cut at kFastTap_mps.

@@ -364,6 +364,7 @@ std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLa
 }
 
 std::string PreparedScene::remedy_for(std::size_t room) const {
+  if (!meshes.empty()) return remedy_for_meshes(*this, room);
   std::size_t maps = 0, textures = 0;
   for (const schema::Patch& patch : patches)
     for (const ForceLayer& layer : patch.layers)

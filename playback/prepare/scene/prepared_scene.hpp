@@ -13,6 +13,7 @@
 
 #include "data-schema/device/device.hpp"
 #include "data-schema/device/hand.hpp"
+#include "data-schema/mesh/mesh.hpp"
 #include "data-schema/scene/atoms.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
@@ -54,6 +55,7 @@ struct PreparedScene {
   Reliefs reliefs = {};
   /// In place of patches, in the order of the block.
   std::vector<schema::Piece> pieces = {};
+  std::map<std::string, std::shared_ptr<const schema::Mesh>> meshes = {};  ///< by Piece::mesh
   double point_radius_m = 0;
   schema::PieceContact contact = schema::PieceContact::ghost;
 
@@ -62,8 +64,8 @@ struct PreparedScene {
   core::SceneView view() const;
   /// Other patches for the same device, each of them once part of such a scene.
   PreparedScene with(std::vector<schema::Patch> others) const;
-  /// What makes a scene with height maps, force maps or textures small enough for this many bytes, in words;
-  /// empty if nothing does.
+  /// What makes a scene with height maps, force maps, textures or meshes small enough for this many bytes, in
+  /// words; empty if nothing does.
   std::string remedy_for(std::size_t room) const;
   /// The bytes of a layer in the block.
   std::size_t layer_bytes(const schema::Patch& patch, const schema::ForceLayer& layer) const;

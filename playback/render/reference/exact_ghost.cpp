@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kNear_m = 1e-9;  // nearer, a piece is touched
 constexpr double kBends_m = 1e-13;
+constexpr double kFarAway_m = 1e3;  // a mesh, whose triangles are asked instead
 constexpr int kPasses = 300;        // of a tick
 constexpr int kSweeps = 2000;       // of Hildreth's iteration
 constexpr int kEntrySamples = 128;  // of a way
@@ -40,11 +41,18 @@ SpaceMetres unit_of(const std::array<double, 3>& a) {
 }  // namespace
 
 ExactGhost::ExactGhost(const PreparedScene& scene, const schema::Device& device, double rate_hz)
-    : scene_(scene), device_(device), tick_s_(1 / rate_hz), walls_(scene.pieces.size()) {}
+    : scene_(scene), device_(device), tick_s_(1 / rate_hz), walls_(scene.pieces.size()) {
+  for (const Piece& piece : scene.pieces)
+    meshes_.push_back(piece.shape == PieceShape::mesh
+                          ? std::optional<ExactMesh>(std::in_place, scene.meshes.at(piece.mesh),
+                                                     SpaceMetres{piece.x_m, piece.y_m, piece.z_m})
+                          : std::nullopt);
+}
 
 ExactGhost::Surface ExactGhost::surface_at(const Piece& piece, const SpaceMetres& place_m) const {
   const SpaceMetres p = sum_of(place_m, -1, {piece.x_m, piece.y_m, piece.z_m});
   const double radius_m = scene_.point_radius_m;
+  if (piece.shape == PieceShape::mesh) return {kFarAway_m, {0, 0, 1}};
   if (piece.shape == PieceShape::plane) {
     const SpaceMetres n = unit_of(piece.direction);
     const double above_m = inner(n, p), below_m = -piece.thickness_m - above_m;
@@ -87,46 +95,94 @@ double ExactGhost::entry_of(const Piece& piece, const SpaceMetres& from_m, const
   return 2;
 }
 
+// As core::is_held_by; one beside a triangle not where another plane is nearly the same.
+void ExactGhost::add_triangles(std::vector<Touch>& touches) {
+  std::vector<Touch> beside;
+  std::erase_if(triangles_, [&](const TouchedTriangle& touched) {
+    const auto side = meshes_[touched.piece]->side_of(touched.triangle, ghost_m_);
+    if (side.distance_m > (side.beside ? 1.125 : 1.5) * kExactSkin_m ||
+        side.above_m < -0.05 * side.distance_m)
+      return true;
+    (side.beside ? beside : touches)
+        .push_back({touched.piece, {side.distance_m - kExactSkin_m, side.away}, kExactSkin_m, 0});
+    return false;
+  });
+  for (const Touch& each : beside)
+    if (std::ranges::none_of(touches, [&](const Touch& other) {
+          return other.skin_m > 0 && inner(other.surface.normal, each.surface.normal) > 0.97;
+        }))
+      touches.push_back(each);
+}
+
 // Hildreth 1957: min |way - straight|^2, normal way >= -distance, one plane after the other.
 std::vector<ExactGhost::Held> ExactGhost::follow(const SpaceMetres& hand_m) {
   const auto& pieces = scene_.pieces;
-  std::vector<Held> held(pieces.size());
+  std::vector<Touch> touches;
   std::vector<bool> touched(pieces.size());
-  for (int pass = 0; pass < kPasses; ++pass) {
-    const SpaceMetres straight = sum_of(hand_m, -1, ghost_m_);
+  const auto way_with = [&](const SpaceMetres& straight, double skins) {
     SpaceMetres way = straight;
-    std::vector<Surface> surfaces;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      surfaces.push_back(surface_at(pieces[i], ghost_m_));
-      held[i] = {surfaces[i].normal, 0};
-      touched[i] = touched[i] || surfaces[i].distance_m <= kNear_m;
-    }
+    for (Touch& touch : touches) touch.push_m = 0;
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       double changed_m = 0;
-      for (std::size_t i = 0; i < pieces.size(); ++i) {
-        if (!touched[i]) continue;
-        const double lack_m = -surfaces[i].distance_m - inner(surfaces[i].normal, way);
-        const double change_m = std::max(-held[i].depth_m, lack_m);
-        held[i].depth_m += change_m;
-        way = sum_of(way, change_m, surfaces[i].normal);
+      for (Touch& touch : touches) {
+        const double distance_m = touch.surface.distance_m + (1 - skins) * touch.skin_m;
+        const double lack_m = -distance_m - inner(touch.surface.normal, way);
+        const double change_m = std::max(-touch.push_m, lack_m);
+        touch.push_m += change_m;
+        way = sum_of(way, change_m, touch.surface.normal);
         changed_m = std::max(changed_m, std::abs(change_m));
       }
       if (changed_m < 1e-15) break;
     }
+    return way;
+  };
+  SpaceMetres straight = {};
+  for (int pass = 0; pass < kPasses; ++pass) {
+    straight = sum_of(hand_m, -1, ghost_m_);
+    touches.clear();
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const Surface surface = surface_at(pieces[i], ghost_m_);
+      touched[i] = touched[i] || surface.distance_m <= kNear_m;
+      if (touched[i]) touches.push_back({i, surface, 0, 0});
+    }
+    add_triangles(touches);
+    const bool in_skin = std::ranges::any_of(
+        touches, [](const Touch& touch) { return touch.surface.distance_m < -0.25 * touch.skin_m; });
+    const SpaceMetres way = way_with(in_skin ? SpaceMetres{} : straight, 1);
     double part = 1;
     std::size_t met = pieces.size();
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (touched[i]) continue;
+      if (touched[i] || meshes_[i]) continue;
       const double entry = entry_of(pieces[i], ghost_m_, way);
       if (entry < part) part = entry, met = i;
     }
-    if (met < pieces.size()) touched[met] = true;
+    std::optional<TouchedTriangle> triangle;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (!meshes_[i]) continue;
+      const auto hit = meshes_[i]->first_hit(ghost_m_, way);
+      if (hit && hit->part <= part) part = hit->part, met = i, triangle = {i, hit->triangle};
+    }
+    if (triangle)
+      triangles_.push_back(*triangle);
+    else if (met < pieces.size())
+      touched[met] = true;
     // On a surface that bends towards the ghost the whole way may lead back and forth without an end.
-    for (std::size_t i = 0; i < pieces.size() && met == pieces.size(); ++i)
-      if (held[i].depth_m > 0 && surface_at(pieces[i], sum_of(ghost_m_, 1, way)).distance_m < -kBends_m)
-        part = 0.5;
+    for (const Touch& touch : touches)
+      if (met == pieces.size() && touch.skin_m == 0 && touch.push_m > 0 &&
+          surface_at(pieces[touch.piece], sum_of(ghost_m_, 1, way)).distance_m < -kBends_m)
+        part = std::min(part, 0.5);
     ghost_m_ = sum_of(ghost_m_, part, way);
-    if (met == pieces.size() && size_of(way) < 1e-13) break;
+    if (met == pieces.size() && !in_skin && size_of(way) < (triangles_.empty() ? 1e-13 : 1e-11)) break;
+  }
+  way_with(straight, 0);
+  std::vector<Held> held(pieces.size());
+  std::vector<SpaceMetres> push(pieces.size());
+  for (const Touch& touch : touches)
+    push[touch.piece] = sum_of(push[touch.piece], touch.push_m, touch.surface.normal);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    held[i].normal = surface_at(pieces[i], ghost_m_).normal;
+    if (const double depth_m = size_of(push[i]); depth_m > 0)
+      held[i] = {sum_of({}, 1 / depth_m, push[i]), depth_m};
   }
   return held;
 }
@@ -270,8 +326,9 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
   for (std::size_t i = 0; i < scene_.pieces.size(); ++i) {
     const Piece& piece = scene_.pieces[i];
     if (adds) held[i] = nearest_face(piece, hand_m);
-    const double force_n = wall_force(piece, walls_[i], held[i], surface_at(piece, hand_m).distance_m,
-                                      inner(held[i].normal, speed_mps));
+    double outside_m = surface_at(piece, hand_m).distance_m;
+    if (meshes_[i] && walls_[i].touched) outside_m = meshes_[i]->distance_m(hand_m);
+    const double force_n = wall_force(piece, walls_[i], held[i], outside_m, inner(held[i].normal, speed_mps));
     const SpaceMetres on = adds ? sum_of(hand_m, held[i].depth_m, held[i].normal) : ghost_m_;
     sum = sum_of(sum, force_n, held[i].normal);
     sum = sum_of(sum, 1, friction_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "data-schema/device/device.hpp"
 #include "playback/prepare/scene/prepared_scene.hpp"
+#include "playback/render/reference/exact_mesh.hpp"
 
 namespace tacto::playback {
 
@@ -14,8 +17,8 @@ using SpaceMetres = std::array<double, 3>;
 
 /// The contract of core::GhostPoint, core::wall_force and core::friction_force, by other methods: the planes
 /// that hold the ghost by Hildreth's iteration over all that it touches, the entry into a piece by samples
-/// and bisection, curved surfaces by many small steps instead of a closed form, each slip of the friction by
-/// bisection. Slow; not for the tick.
+/// and bisection, curved surfaces by many small steps instead of a closed form, meshes by trying all
+/// triangles, each slip of the friction by bisection. Slow; not for the tick.
 class ExactGhost {
  public:
   /// Keeps references to both.
@@ -41,6 +44,16 @@ class ExactGhost {
     SpaceMetres normal = {};
     double depth_m = 0;
   };
+  // A plane that holds the ghost or may do so.
+  struct Touch {
+    std::size_t piece = 0;
+    Surface surface;  // of a triangle it is a skin above it
+    double skin_m = 0, push_m = 0;
+  };
+  struct TouchedTriangle {
+    std::size_t piece = 0, triangle = 0;
+  };
+  void add_triangles(std::vector<Touch>& touches);
   Surface surface_at(const schema::Piece& piece, const SpaceMetres& place_m) const;
   double entry_of(const schema::Piece& piece, const SpaceMetres& from_m, const SpaceMetres& way_m) const;
   std::vector<Held> follow(const SpaceMetres& hand_m);
@@ -59,6 +72,8 @@ class ExactGhost {
   bool placed_ = false;
   SpaceMetres ghost_m_ = {};
   std::vector<Wall> walls_;
+  std::vector<std::optional<ExactMesh>> meshes_;  // of each piece
+  std::vector<TouchedTriangle> triangles_;        // that the ghost met and is still near
 };
 
 }  // namespace tacto::playback

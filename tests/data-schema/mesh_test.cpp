@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Meshes: what is wrong with them, their repair, and their file.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "data-schema/mesh/mesh.hpp"
+
+namespace tacto::schema {
+namespace {
+
+Mesh unit_cube() {
+  Mesh cube;
+  for (const double z : {0.0, 1.0})
+    for (const double y : {0.0, 1.0})
+      for (const double x : {0.0, 1.0}) cube.vertices_m.push_back({x, y, z});
+  cube.triangles = {{4, 5, 7}, {4, 7, 6}, {0, 3, 1}, {0, 2, 3}, {0, 1, 5}, {0, 5, 4},
+                    {2, 7, 3}, {2, 6, 7}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return cube;
+}
+
+// Each triangle with its own vertices, as in an STL file.
+Mesh as_soup(const Mesh& mesh) {
+  Mesh soup;
+  for (const MeshTriangle& triangle : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.vertices_m.size());
+    for (const std::uint32_t vertex : triangle) soup.vertices_m.push_back(mesh.vertices_m[vertex]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
+TEST(MeshTest, FiguresOfACube) {
+  const Mesh cube = unit_cube();
+  const MeshFigures figures = figures_of(cube);
+  EXPECT_DOUBLE_EQ(figures.volume_m3, 1);
+  EXPECT_DOUBLE_EQ(figures.longest_edge_m, std::sqrt(2.0));
+  EXPECT_EQ(figures.most_m, (MeshVertex{1, 1, 1}));
+  EXPECT_TRUE(check_mesh(cube, "m"));
+}
+
+TEST(MeshTest, EqualVerticesAreMerged) {
+  Mesh soup = as_soup(unit_cube());
+  EXPECT_EQ(faults_of(soup).open_edges, 36U);
+  merge_equal_vertices(soup);
+  EXPECT_EQ(soup.vertices_m.size(), 8U);
+  EXPECT_EQ(faults_of(soup).open_edges, 0U);
+}
+
+TEST(MeshTest, FaultsAreCountedAndRepaired) {
+  Mesh broken = as_soup(unit_cube());
+  std::swap(broken.triangles[3][0], broken.triangles[3][1]);
+  std::swap(broken.triangles[8][0], broken.triangles[8][1]);
+  for (std::size_t i = 0; i < broken.vertices_m.size(); i += 2) broken.vertices_m[i][0] += 1e-8;
+  broken.triangles.push_back({0, 0, 1});
+  EXPECT_EQ(faults_of(broken).degenerate, 1U);
+  EXPECT_FALSE(check_mesh(broken, "m"));
+  const MeshRepair done = repair(broken, 1e-6);
+  EXPECT_EQ(done.dropped, 1U);
+  EXPECT_EQ(done.turned, 2U);
+  EXPECT_EQ(broken.vertices_m.size(), 8U);
+  const MeshFaults left = faults_of(broken);
+  EXPECT_EQ(left.degenerate + left.flipped + left.open_edges, 0U);
+  EXPECT_FALSE(left.one_sided || left.inside_out);
+  EXPECT_NEAR(figures_of(broken).volume_m3, 1, 1e-6);
+}
+
+TEST(MeshTest, FlippedTrianglesInsideOutAndHoles) {
+  Mesh flipped = unit_cube();
+  std::swap(flipped.triangles[0][0], flipped.triangles[0][1]);
+  EXPECT_EQ(faults_of(flipped).flipped, 1U);
+  Mesh inside_out = unit_cube();
+  for (MeshTriangle& triangle : inside_out.triangles) std::swap(triangle[0], triangle[1]);
+  EXPECT_EQ(faults_of(inside_out).flipped, 0U);
+  EXPECT_TRUE(faults_of(inside_out).inside_out);
+  EXPECT_EQ(repair(inside_out, 0).turned, 12U);
+  EXPECT_DOUBLE_EQ(figures_of(inside_out).volume_m3, 1);
+  Mesh open = unit_cube();
+  open.triangles.pop_back();
+  EXPECT_EQ(faults_of(open).open_edges, 3U);
+  EXPECT_TRUE(check_mesh(open, "m"));  // holes are a question of the import
+}
+
+TEST(MeshTest, AMoebiusStripHasNoOuterSide) {
+  Mesh strip;
+  constexpr std::uint32_t kTurns = 12;
+  for (std::uint32_t i = 0; i < kTurns; ++i) {
+    const double angle = 6.283185307179586 * i / kTurns, half = angle / 2;
+    for (const double side : {-0.3, 0.3}) {
+      const double r = 1 + side * std::cos(half);
+      strip.vertices_m.push_back({r * std::cos(angle), r * std::sin(angle), side * std::sin(half)});
+    }
+  }
+  for (std::uint32_t i = 0; i < kTurns; ++i) {
+    const bool last = i + 1 == kTurns;
+    const std::uint32_t a = 2 * i, b = a + 1, c = last ? 1 : a + 2, d = last ? 0 : a + 3;
+    strip.triangles.insert(strip.triangles.end(), {{a, c, b}, {b, c, d}});
+  }
+  EXPECT_TRUE(faults_of(strip).one_sided);
+  EXPECT_FALSE(check_mesh(strip, "m"));
+}
+
+TEST(MeshTest, AFileIsReadAsItWasWritten) {
+  Mesh cube = unit_cube();
+  cube.source = "cube.stl", cube.notes = "a note";
+  cube.vertices_m[7] = {1.0000001, 1, 1};
+  const std::string path = testing::TempDir() + "mesh_test.mesh.nc";
+  ASSERT_TRUE(write_mesh(path, cube, Existing::replace));
+  const auto read = read_mesh(path);
+  ASSERT_TRUE(read) << message(read.error());
+  EXPECT_EQ(read->vertices_m, cube.vertices_m);
+  EXPECT_EQ(read->triangles, cube.triangles);
+  EXPECT_EQ(read->source, "cube.stl");
+  EXPECT_EQ(read->notes, "a note");
+  EXPECT_TRUE(is_mesh(path));
+  EXPECT_EQ(read_mesh(testing::TempDir() + "no_such").error().kind, ErrorKind::not_found);
+  cube.vertices_m[0] = {-100, 0, 0};
+  EXPECT_EQ(check_mesh(cube, "m").error().kind, ErrorKind::unsuitable);
+}
+
+}  // namespace
+}  // namespace tacto::schema
