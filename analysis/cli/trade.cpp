@@ -31,8 +31,8 @@ namespace tacto::analysis {
 namespace {
 
 using cli::Report;
-using schema::ErrorKind;
 using schema::Dimension;
+using schema::ErrorKind;
 using schema::Result;
 
 // `trade` of a scene of force patches on a force device.

@@ -29,11 +29,11 @@ class PiecesWorkload {
       const float wall[core::kPieceNumbers] = {2000, 4, 0.1F, 3000, 2, 0.5F, 0.6F, 0.4F, 1};
       for (uint32_t j = 0; j < core::kPieceNumbers; ++j) block_.numbers[i * kWords + j] = wall[j];
     }
-    block_.tables[0] = {{0, 0, -2000}, {1e-6F, 0, -3e-6F}, {0.28F, 0, 0.96F}};
-    block_.tables[1] = {{1500, 0, 0}, {}, {1, 0, 0, 0.001F}};
-    block_.tables[2] = {{-1000, 500, 0}, {}, {0, 0, 1, 0.01F}};
-    block_.tables[3] = {{0, -2500, 500}, {}, {0.6F, 0, 0.8F, 0.008F}};
-    block_.tables[4] = {{300, 2000, 700}, {}, {1e4F, 2e4F, 4e4F, 1e3F, 0, 0, 0, 2, 0, -1}};
+    block_.tables[0] = {{0, 0, -2000}, {1e-6F, 0, -3e-6F}, {0.28F, 0, 0.96F}, {}};
+    block_.tables[1] = {{1500, 0, 0}, {}, {1, 0, 0, 0.001F}, {}};
+    block_.tables[2] = {{-1000, 500, 0}, {}, {0, 0, 1, 0.01F}, {}};
+    block_.tables[3] = {{0, -2500, 500}, {}, {0.6F, 0, 0.8F, 0.008F}, {}};
+    block_.tables[4] = {{300, 2000, 700}, {}, {1e4F, 2e4F, 4e4F, 1e3F, 0, 0, 0, 2, 0, -1}, {}};
     block_.header.check = core::scene_check(&block_, sizeof block_);
     core::SceneView view;
     core::read_scene_block(&block_, sizeof block_, view);

@@ -195,8 +195,9 @@ SpaceVector shortened(const SceneView& scene, const Planes& planes, const Goal& 
 
 // Of the triangles that the ghost met those that still hold it: by their plane; beside a triangle, by the
 // plane across the way from its edge or corner, unless another plane is nearly the same.
-void add_triangles(const SceneView& scene, const SpacePlace& ghost, const float (&step_m)[3],
-                   GhostPoint::TouchedTriangles& touched, Planes& planes) noexcept {
+[[gnu::noinline]] void add_triangles(const SceneView& scene, const SpacePlace& ghost,
+                                     const float (&step_m)[3], GhostPoint::TouchedTriangles& touched,
+                                     Planes& planes) noexcept {
   Planes beside;
   uint32_t kept = 0;
   for (uint32_t i = 0; i < touched.count; ++i) {
@@ -246,8 +247,8 @@ void touch(GhostPoint::TouchedTriangles& touched, uint32_t piece, uint32_t trian
 }
 
 // Of all meshes; `piece` is set if there is one.
-MeshHit first_triangle(const SceneView& scene, const SpacePlace& ghost, SpaceVector way,
-                       const float (&step_m)[3], uint32_t& piece) noexcept {
+[[gnu::noinline]] MeshHit first_triangle(const SceneView& scene, const SpacePlace& ghost, SpaceVector way,
+                                         const float (&step_m)[3], uint32_t& piece) noexcept {
   MeshHit first;
   for (uint32_t i = 0; i < scene.layer_count; ++i) {
     if (!is_mesh(scene, i)) continue;
@@ -269,8 +270,10 @@ float settled_on_meshes(const SceneView& scene) noexcept {
   return settled_m;
 }
 
-// The pushes of the planes without the skins that triangles have.
-void take_off_skins(Planes planes, Goal& goal, SpaceVector straight) noexcept {
+// The pushes of the planes without the skins that triangles have. Here and below not inlined: the frame of
+// GhostPoint::follow has to fit a board.
+[[gnu::noinline]] void take_off_skins(const Planes& with_skins, Goal& goal, SpaceVector straight) noexcept {
+  Planes planes = with_skins;
   bool any = false;
   for (uint32_t i = 0; i < planes.count; ++i) {
     planes.at[i].distance_m += planes.at[i].skin_m;
@@ -285,6 +288,18 @@ void take_off_skins(Planes planes, Goal& goal, SpaceVector straight) noexcept {
   for (uint32_t i = 0; i < goal.count; ++i) {
     const float push_m = goal.push_m[i] - planes.at[goal.plane[i]].skin_m;
     goal.push_m[i] = push_m > 0 ? push_m : 0;
+  }
+}
+
+[[gnu::noinline]] void hold(const Planes& planes, Goal goal, SpaceVector straight,
+                            GhostPoint::Holding& holding) noexcept {
+  take_off_skins(planes, goal, straight);
+  holding.count = goal.count;
+  for (uint32_t i = 0; i < goal.count; ++i) {
+    const Plane& plane = planes.at[goal.plane[i]];
+    holding.piece[i] = plane.piece;
+    holding.normal[i] = plane.normal;
+    holding.depth_m[i] = goal.push_m[i];
   }
 }
 
@@ -315,8 +330,9 @@ void GhostPoint::move(SpaceVector way, const float (&step_m)[3]) noexcept {
 }
 
 // On one curved piece: to the place nearest to the hand, if that is near and nothing is between.
-bool GhostPoint::settle_on(const SceneView& scene, const SpacePlace& hand, const float (&step_m)[3],
-                           uint32_t touched, Holding& holding) noexcept {
+[[gnu::noinline]] bool GhostPoint::settle_on(const SceneView& scene, const SpacePlace& hand,
+                                             const float (&step_m)[3], uint32_t touched,
+                                             Holding& holding) noexcept {
   const uint32_t piece = holding.piece[0];
   const SceneLayerKind kind = kind_of(scene, piece);
   if (kind == SceneLayerKind::plane || kind == SceneLayerKind::mesh) return false;
@@ -367,15 +383,7 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
     }
     add_triangles(scene, ghost_, step_m, touched_, planes);
     const Goal goal = nearest_allowed(planes, straight);
-    Goal felt = goal;
-    take_off_skins(planes, felt, straight);
-    holding.count = felt.count;
-    for (uint32_t i = 0; i < felt.count; ++i) {
-      const Plane& plane = planes.at[felt.plane[i]];
-      holding.piece[i] = plane.piece;
-      holding.normal[i] = plane.normal;
-      holding.depth_m[i] = felt.push_m[i];
-    }
+    hold(planes, goal, straight, holding);
     if (nearest_m >= -kInside_m) last = ghost_, of_last = holding, outside = true;
     if (goal.count == 1 && settle_on(scene, hand, step_m, touched, holding)) break;
     if (pass == kGhostPasses) break;

@@ -51,14 +51,15 @@ class GhostPoint {
     uint32_t count = 0;
     uint32_t piece[kMostTouched] = {}, triangle[kMostTouched] = {};
   };
-
- private:
+  /// Surfaces that hold the ghost.
   struct Holding {
     uint32_t count = 0;
     uint32_t piece[kMostHolding] = {};
     SpaceVector normal[kMostHolding];
     float depth_m[kMostHolding] = {};
   };
+
+ private:
   Holding follow(const SceneView& scene, const SpacePlace& hand, const float (&step_m)[3]) noexcept;
   bool settle_on(const SceneView& scene, const SpacePlace& hand, const float (&step_m)[3], uint32_t touched,
                  Holding& holding) noexcept;

@@ -314,6 +314,7 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) noe
       case SceneLayerKind::sphere:
       case SceneLayerKind::cylinder:
       case SceneLayerKind::quadric:
+      case SceneLayerKind::mesh:
         break;  // in space: GhostPoint
     }
     sum.x += force.x;

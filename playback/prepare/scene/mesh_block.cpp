@@ -19,7 +19,7 @@ constexpr float kSkin = 0x1p-18F;  // of the half extent
 
 using Place = std::array<float, 3>;
 
-struct Box {
+struct MeshBox {
   Place least = {INFINITY, INFINITY, INFINITY}, most = {-INFINITY, -INFINITY, -INFINITY};
 
   void add(const Place& place) {
@@ -41,7 +41,7 @@ class MeshTree {
       : vertices_(vertices), triangles_(triangles), skin_m_(skin_m), order_(triangles.size()) {
     std::iota(order_.begin(), order_.end(), std::uint32_t{0});
     for (const schema::MeshTriangle& triangle : triangles) {
-      Box box;
+      MeshBox box;
       for (const std::uint32_t vertex : triangle) box.add(vertices[vertex]);
       middles_.push_back(
           {box.least[0] + box.most[0], box.least[1] + box.most[1], box.least[2] + box.most[2]});
@@ -57,7 +57,7 @@ class MeshTree {
     const std::size_t place = nodes_.size();
     nodes_.emplace_back();
     const std::span<std::uint32_t> own = std::span(order_).subspan(first, last - first);
-    Box box, middles;
+    MeshBox box, middles;
     for (const std::uint32_t triangle : own) {
       for (const std::uint32_t vertex : triangles_[triangle]) box.add(vertices_[vertex]);
       middles.add(middles_[triangle]);
