@@ -31,7 +31,8 @@ struct SpaceHand {
 /// on in the next tick. The force is the sum over the holding planes of wall_force() along the normal, the
 /// depth of each its share of the way from hand to ghost (the multiplier of its plane): of equal stiffness K
 /// together K (ghost - hand) once the ghost has come to rest; while it is on its way, the planes where it is
-/// give the force. `contact: add`: each piece by itself, from its nearest face.
+/// give the force. Along each piece that holds it comes friction_force(). `contact: add`: each piece by
+/// itself, from its nearest face.
 class GhostPoint {
  public:
   /// Without a place: the next hand is the ghost.
