@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "data-schema/base/error.hpp"
 #include "data-schema/base/one_of.hpp"
 
 namespace tacto::schema {

@@ -306,8 +306,8 @@ TEST(ContactTransientTest, ItStopsItsMass) {
 
 TEST(ContactTransientTest, AFrequencyOfHalfTheRateIsRefused) {
   const schema::Device arm = *schema::read_device("arm");
-  EXPECT_TRUE(prepare_scene(scene_with({1, 499, 100}), "s", arm, 1000));
-  const auto refused = prepare_scene(scene_with({1, 500, 100}), "s", arm, 1000);
+  EXPECT_TRUE(prepare_scene(scene_with(ContactTransient{1, 499, 100}), "s", arm, 1000));
+  const auto refused = prepare_scene(scene_with(ContactTransient{1, 500, 100}), "s", arm, 1000);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().where, "s#/pieces/0/transient/frequency_hz");
   const auto fast = prepare_scene(scene_with(HandSurface{0.001, 0.1, 0, 0, 1e5}), "s", arm, 1000);
