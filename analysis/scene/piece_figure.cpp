@@ -25,9 +25,10 @@ using Place = std::array<double, 3>;
 
 namespace {
 
-constexpr double kPageWidth = 520, kPageMargin = 14, kMapLeft = 62, kMapHeight = 230, kBelowMap = 60;
-constexpr double kLine = 13, kSwatch = 10, kIndent = 18;
-const spatial::TextStyle kMapTitle{.size = 9.5, .bold = true}, kWords{.size = 9};
+constexpr double kSectionsWidth = 520, kSectionsMargin = 14, kSectionLeft = 62, kSectionHeight = 230,
+                 kBelowSection = 60;
+constexpr double kListLine = 13, kSwatch = 10, kListIndent = 18;
+const spatial::TextStyle kSectionTitle{.size = 9.5, .bold = true}, kPieceWords{.size = 9};
 const char* const kAxes[] = {"x", "y", "z"};
 
 // Right and up on the page, and across it.
@@ -173,23 +174,24 @@ std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& g
 PieceFigure::PieceFigure(PiecePicture picture)
     : picture_(std::move(picture)), through_m_(picture_.through_m.value_or(middle_of(picture_.scene))) {
   heading_ = spatial::heading_of(picture_.name, "Pieces of a scene in space: three sections", "",
-                                 kPageWidth - 2 * kPageMargin);
-  double top = kPageMargin + heading_.height() + kLine;
+                                 kSectionsWidth - 2 * kSectionsMargin);
+  double top = kSectionsMargin + heading_.height() + kListLine;
   for (std::size_t i = 0; i < maps_.size(); ++i) {
-    maps_[i] = scene_map(range_of(picture_, kSections[i]), {kMapLeft, top},
-                         {kPageWidth - kMapLeft - kPageMargin, kMapHeight});
-    top = maps_[i].box.bottom() + kBelowMap;
+    maps_[i] = scene_map(range_of(picture_, kSections[i]), {kSectionLeft, top},
+                         {kSectionsWidth - kSectionLeft - kSectionsMargin, kSectionHeight});
+    top = maps_[i].box.bottom() + kBelowSection;
   }
 }
 
 double PieceFigure::draw_list(Canvas& canvas) const {
-  double y = maps_.back().box.bottom() + kBelowMap - kLine;
+  double y = maps_.back().box.bottom() + kBelowSection - kListLine;
   for (std::size_t i = 0; i < picture_.scene.pieces.size(); ++i) {
-    canvas.fill({kPageMargin, y + (kLine - kSwatch) / 2, kSwatch, kSwatch}, spatial::series_colour(i));
-    for (const std::string& line : spatial::wrapped(canvas, words_of(picture_.scene.pieces[i]), kWords,
-                                                    kPageWidth - 2 * kPageMargin - kIndent)) {
-      canvas.text({kPageMargin + kIndent, y + kLine / 2}, line, kWords);
-      y += kLine;
+    canvas.fill({kSectionsMargin, y + (kListLine - kSwatch) / 2, kSwatch, kSwatch},
+                spatial::series_colour(i));
+    for (const std::string& line : spatial::wrapped(canvas, words_of(picture_.scene.pieces[i]), kPieceWords,
+                                                    kSectionsWidth - 2 * kSectionsMargin - kListIndent)) {
+      canvas.text({kSectionsMargin + kListIndent, y + kListLine / 2}, line, kPieceWords);
+      y += kListLine;
     }
   }
   return y;
@@ -197,18 +199,18 @@ double PieceFigure::draw_list(Canvas& canvas) const {
 
 spatial::Size PieceFigure::page() const {
   Canvas ruler(spatial::PictureFormat::png, {1, 1});
-  return {kPageWidth, std::ceil(draw_list(ruler) + kPageMargin)};
+  return {kSectionsWidth, std::ceil(draw_list(ruler) + kSectionsMargin)};
 }
 
 schema::Result<void> PieceFigure::draw(Canvas& canvas) const {
-  draw_heading(canvas, {kPageMargin, kPageMargin}, heading_);
+  draw_heading(canvas, {kSectionsMargin, kSectionsMargin}, heading_);
   for (std::size_t i = 0; i < maps_.size(); ++i) {
     const Section& section = kSections[i];
     const SceneMap& map = maps_[i];
-    canvas.text({map.box.x, map.box.y - kLine / 2},
+    canvas.text({map.box.x, map.box.y - kListLine / 2},
                 fmt::format("{}, through {} = {}", section.from, kAxes[section.across],
                             spatial::typeset(schema::length_for_people(through_m_[section.across]))),
-                kMapTitle);
+                kSectionTitle);
     canvas.image(map.box,
                  pixels_of(solid_in_section(picture_.scene, map.grid, section.across, through_m_), map.grid));
     const auto count = [](double length) { return std::max(2, static_cast<int>(length / 45)); };

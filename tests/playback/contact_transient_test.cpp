@@ -79,15 +79,16 @@ double closed_form(const ContactTransient& t, double speed_mps, double time_s) {
          std::exp(-t.decay_per_s * time_s);
 }
 
-// Every other one near critical damping, where w is down to 1e-16 of a.
+// Every other one near critical damping, where w is down to 1e-16 of a. The force rises as fast in all: the
+// kernel ends what is below kTransientEnd_n.
 std::vector<ContactTransient> random_transients() {
   std::mt19937_64 random(2007);
   std::vector<ContactTransient> all;
   for (int i = 0; i < 2000; ++i) {
-    const double decay_per_s = 20 + 380 * unit_draw(random);
-    const double low_hz = decay_per_s * std::pow(10, -1 - 15 * unit_draw(random)) / (2 * std::numbers::pi);
-    all.push_back(
-        {100 * unit_draw(random) + 1, i % 2 == 0 ? low_hz : 20 + 230 * unit_draw(random), decay_per_s});
+    const double decay_per_s = 20 + 380 * unit_draw(random), amplitude = 100 * unit_draw(random) + 1;
+    const double share = i % 2 == 0 ? std::pow(10, -1 - 15 * unit_draw(random)) : 1;
+    const double low_hz = decay_per_s * share / (2 * std::numbers::pi);
+    all.push_back({amplitude / share, i % 2 == 0 ? low_hz : 20 + 230 * unit_draw(random), decay_per_s});
   }
   return all;
 }
@@ -114,7 +115,7 @@ using Motion = std::array<double, 3>;
 
 // One tick of the equations of motion of the model, by the Taylor series of their solution (they are linear).
 Motion moved(const HandSurface& model, double speed_mps, const Motion& at) {
-  constexpr int kParts = 16, kOrder = 24;
+  constexpr int kParts = 16, kOrder = 14;
   constexpr double kPart_s = kTransientTick_s / kParts;
   Motion now = at;
   for (int part = 0; part < kParts; ++part) {
@@ -151,7 +152,7 @@ std::vector<HandSurface> random_hands() {
         2 * std::sqrt(model.hand_mass_kg * (model.hand_stiffness_n_per_m + model.surface_stiffness_n_per_m));
     const double side = random() % 2 == 0 ? -1 : 1;
     const double damping = critical * (i % 2 == 0 ? 1 + side * std::pow(10, -1 - 15 * unit_draw(random))
-                                                  : 0.05 + 1.5 * unit_draw(random));
+                                                  : 0.15 + 1.5 * unit_draw(random));
     const double share = unit_draw(random);
     model.hand_damping_n_s_per_m = share * damping;
     model.surface_damping_n_s_per_m = (1 - share) * damping;
@@ -175,7 +176,7 @@ TEST(ContactTransientTest, AHandAndItsSurfaceAreThoseOfTheirEquationsOfMotion) {
     const double peak_n = kSpeed_mps * transient_peak_n_s_per_m(transient);
     Motion at{0, kSpeed_mps, 0};
     double most_n = 0;
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 60; ++i) {
       const double way_m = kSpeed_mps * kTransientTick_s * i;
       const double moving_n =
           model.surface_stiffness_n_per_m * at[0] + model.surface_damping_n_s_per_m * at[1];
@@ -202,9 +203,8 @@ TEST(ContactTransientTest, APeakOfTheModelIsReached) {
     const Transient transient = *transient_of(piece_with(model));
     const double last_s = 20 / transient.decay_per_s;
     double most = 0;
-    for (int i = 0; i <= 20'000; ++i)
-      most = std::max(most, std::abs(force_at(transient, last_s * i / 20'000)));
-    // Second order of a step of 1e-3 / decay; the frequencies are up to 20 times the decay.
+    for (int i = 0; i <= 4000; ++i) most = std::max(most, std::abs(force_at(transient, last_s * i / 4000)));
+    // Second order of a step of 5e-3 / decay; the frequencies are up to 7 times the decay.
     EXPECT_NEAR(most / transient_peak_n_s_per_m(transient), 1, 1e-3);
   }
 }
@@ -306,8 +306,8 @@ TEST(ContactTransientTest, ItStopsItsMass) {
 
 TEST(ContactTransientTest, AFrequencyOfHalfTheRateIsRefused) {
   const schema::Device arm = *schema::read_device("arm");
-  EXPECT_TRUE(prepare_scene(scene_with({1, 499, 100}), "s", arm, 1000));
-  const auto refused = prepare_scene(scene_with({1, 500, 100}), "s", arm, 1000);
+  EXPECT_TRUE(prepare_scene(scene_with(ContactTransient{1, 499, 100}), "s", arm, 1000));
+  const auto refused = prepare_scene(scene_with(ContactTransient{1, 500, 100}), "s", arm, 1000);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().where, "s#/pieces/0/transient/frequency_hz");
   const auto fast = prepare_scene(scene_with(HandSurface{0.001, 0.1, 0, 0, 1e5}), "s", arm, 1000);

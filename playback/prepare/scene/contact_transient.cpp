@@ -15,6 +15,7 @@ using schema::fail;
 namespace {
 
 constexpr double kLeastDecay_per_s = 1;
+constexpr double kFrequencyRounding = 1e-9;  // of a frequency
 
 // e^(-a t) cos(w t) and e^(-a t) sin(w t) / w, with w^2 = square - a^2 of either sign.
 struct Swing {
@@ -80,7 +81,7 @@ schema::Result<core::TransientTable> transient_table(const schema::Piece& piece,
                                                      const std::string& where) {
   const auto transient = transient_of(piece);
   if (!transient) return core::TransientTable();
-  if (const double hz = frequency_hz(*transient); !(2 * hz < rate_hz))
+  if (const double hz = frequency_hz(*transient); !(2 * hz < (1 - kFrequencyRounding) * rate_hz))
     return fail(ErrorKind::unsuitable,
                 fmt::format("a transient of {:g} Hz cannot be played at {:g} Hz", hz, rate_hz),
                 where + (piece.transient ? "/transient/frequency_hz" : "/hand_surface"),
