@@ -40,9 +40,10 @@ Server& server_of(lws* wsi) {
 
 // Conversations may have texts for each other's WebSockets.
 void send_what_is_to_say(const Server& server) {
-  for (lws* const wsi : server.sockets)
-    if (!static_cast<Place*>(lws_wsi_user(wsi))->exchange->conversation->to_say.empty())
-      lws_callback_on_writable(wsi);
+  for (lws* const wsi : server.sockets) {
+    const Exchange* const exchange = static_cast<Place*>(lws_wsi_user(wsi))->exchange;
+    if (exchange != nullptr && !exchange->conversation->to_say.empty()) lws_callback_on_writable(wsi);
+  }
 }
 
 std::string header_of(lws* wsi, lws_token_indexes token) {
