@@ -214,6 +214,16 @@ def ranks_are_compared():
     assert people["P01"]["w"] == 1
 
 
+def progress_is_watched():
+    watched = tacto.run_json("experiment", "watch", "rough", "--time", "0.1s")["runs"]
+    assert {run["run"]: run["complete"] for run in watched} == {"rough-P01": True, "rough-P02": True, "rough-P03": False, "rough-P04": True}
+    assert [run["delivered_and_answered"] for run in watched] == [3, 3, 1, 3] and all(run["trials"] == 3 for run in watched)
+    _, lines = tacto.run("experiment", "watch", "rough", "--time", "0.1s")
+    assert len(re.findall(r"^rough-P0\d: \d of 3 ", lines, re.M)) == 4 and not re.search(r"\bK\d|\b[ACE]\b", lines), lines
+    assert tacto.run_json("experiment", "watch", "once")["runs"][0]["complete"] is True  # none goes on: it ends
+    tacto.run("experiment", "watch", "nothing", code=3)
+
+
 def other_verbs():
     tacto.run("experiment", "export", "rough", "--unblind", "-o", "out")
     with open("out/trials.csv") as file:
@@ -237,6 +247,7 @@ def study():
     a_person_explores_at_the_terminal()
     a_killed_run_is_resumed()
     ranks_are_compared()
+    progress_is_watched()
     other_verbs()
 
 

@@ -243,6 +243,36 @@ def the_trials_are_exported():
     assert json.loads(pathlib.Path("out/dataset_description.json").read_text())["Name"] == "more"
 
 
+def levels_follow_the_answers():
+    for method, weber in (("staircase", "20%"), ("quest_plus", "30%")):
+        tacto.run("experiment", "new", "stretch", "-o", method, "--method", method, "--seed", "lab-7")
+        path = pathlib.Path(f"{method}.protocol.json")
+        protocol = json.loads(path.read_text())
+        assert protocol["method"] == method and protocol["repetitions"] == 60 and len(protocol["levels"]) == (14 if method == "staircase" else 28)
+        path.write_text(json.dumps({**protocol, "repetitions": 12, "most_attempts": 20}))
+        run = f"{method}-P01"
+        tacto.run("experiment", "run", method, "-d", "sim:", "--participant", "P01", "--observer", f"weber={weber},hurry=15%,seed=2")
+        rows = table(run)
+        counted = [row for row in rows if row["delivered"] == "yes"]
+        assert sorted(int(row["trial"].split(".")[1]) for row in counted) == list(range(1, 13)) and len(rows) > 12
+        numbers = sorted(range(1, 13), key=lambda i: hashlib.sha256(f"lab-7/P01/1/level.{i}".encode()).hexdigest())
+        assert [int(row["trial"].split(".")[1]) for row in rows[:12]] == numbers
+        proof = tacto.run_json("experiment", "prove", run)
+        assert proof["proven"] is True and proof["delivered"] == proof["trials"] == 12
+        tacto.run("experiment", "power", method, "--weber", "15.5%,25.3%", "--spread", "23%", code=5)
+        if method == "quest_plus":
+            continue
+        level, right = 14, 0  # in steps of 5 %: two right answers down, a wrong one up
+        for row in rows:
+            assert abs(float(row["nominal_stretch"]) - 0.05 * level) < 1e-9, (row, level)
+            if row["delivered"] != "yes":
+                continue
+            correct = row["answer_interval"] == row["standard_interval"]  # the stretched one is longer
+            right = right + 1 if correct else 0
+            if not correct or right == 2:
+                level, right = min(max(level + (-1 if correct else 1), 1), 14), 0
+
+
 def participants_are_planned():
     new_study("ten", 10)
     command = ["experiment", "power", "ten", "--spread", "23%"]
@@ -326,6 +356,7 @@ def study():
     bad_input()
     the_answers_are_fitted()
     the_trials_are_exported()
+    levels_follow_the_answers()
     participants_are_planned()
     a_participant_withdraws()
 
