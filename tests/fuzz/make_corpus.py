@@ -145,13 +145,24 @@ DEVICES = {
 
 
 SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP, BODY, LASSO, MOVER, FIELD, FORCE_MAP = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
-PLANE, SPHERE, CYLINDER, QUADRIC = 16, 17, 18, 19
+PLANE, SPHERE, CYLINDER, QUADRIC, MESH = 16, 17, 18, 19, 20
 AT_REST = (0,) * 9
 
 
 def piece(kind, origin, form, wall=(2000, 4, 0.15, 5000, 2, 0.5)):
     """A layer of a scene in space: the numbers of its wall with a state of zeros, and its table."""
     return kind, (*wall, 0, 0, 0), struct.pack("<3i3f10f", *origin, 1e-6, 0, -2e-6, *form, *(0,) * (10 - len(form)))
+
+
+def mesh(size_m):
+    """A tetrahedron: a root and two leaves."""
+    def node(skip, leaf):
+        return struct.pack("<6fII", *[-0.01 * size_m] * 3, *[1.01 * size_m] * 3, skip, leaf)
+
+    kind, numbers, table = piece(MESH, (3, -4, 5), (0, 0, 1, size_m))
+    tree = node(3, 0) + node(2, 0 * 8 + 2) + node(3, 2 * 8 + 2)
+    triangles = struct.pack("<12I", 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3)
+    return kind, numbers, table + struct.pack("<fIII", size_m * 2**-18, 3, 4, 4) + tree + triangles + struct.pack("<12f", *[0] * 3, size_m, 0, 0, 0, size_m, 0, 0, 0, size_m)
 
 
 SCENES = {
@@ -178,6 +189,7 @@ SCENES = {
                                                                   piece(CYLINDER, (-90, 1, 7), (0.6, 0, 0.8, 0.001)), piece(QUADRIC, (5, 1, 300), (1e6, 1e5, 1e6, 0, 10, 0, 0, 1, 0, -1))])]),
     "hard_pieces": scene((2**31 - 1, -70, 2**20, 40), [(0, 0, 1, 0, 1000, 1000, 1, [piece(QUADRIC, (0, 0, 0), (1e9, -1e9, 1e9, 1e9, -1e9, 0, 1e9, 0, 0, -1e9), (1e6, 1e4, 100, 1e7, 1000, 1000)),
                                                                                    piece(PLANE, (2**31 - 1, 0, -2**31), (1, 0, 0, 20), (1e6, 1e4, 100, 1e7, 1000, 1000))])]),
+    "mesh": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [mesh(0.002), piece(PLANE, (0, 0, -90), (0, 0.6, 0.8, 0.001))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,))])]),
 }
 
