@@ -275,7 +275,8 @@ schema::Result<cli::Report> list_streams(const Source& source) {
 // What a MATLAB or XDF file has; no other file is opened without an output.
 schema::Result<cli::Report> list_contents(const ImportRequest& request) {
   const auto source = open_source(request.file);
-  const bool has_own_reader = is_profile_request(request) || is_height_map_request(request);
+  const bool has_own_reader =
+      is_profile_request(request) || is_height_map_request(request) || is_mesh_request(request);
   if (!source && (!has_own_reader || source.error().kind == schema::ErrorKind::not_found))
     return schema::forward_error(source);
   if (!source || !(source->mat || source->xdf) || !request.channels.empty() || !request.stream.empty())

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "data-schema/base/creation_time.hpp"
@@ -38,8 +39,11 @@ Result<void> check_options(const ImportRequest& request) {
 Result<void> check_faults(const schema::MeshFaults& faults, std::size_t triangles,
                           const ImportRequest& request) {
   std::vector<std::string> words, remedies;
-  if (faults.degenerate > 0) words.push_back(fmt::format("{} triangles without an area", faults.degenerate));
-  if (faults.flipped > 0) words.push_back(fmt::format("{} flipped triangles", faults.flipped));
+  const auto counted = [](std::size_t count, std::string_view what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  if (faults.degenerate > 0) words.push_back(counted(faults.degenerate, "triangle") + " without an area");
+  if (faults.flipped > 0) words.push_back(counted(faults.flipped, "flipped triangle"));
   if (faults.inside_out) words.emplace_back("its outer side inside");
   if (!words.empty()) remedies.emplace_back("--repair drops and turns triangles");
   if (faults.one_sided) {
@@ -47,7 +51,10 @@ Result<void> check_faults(const schema::MeshFaults& faults, std::size_t triangle
     remedies.emplace_back("repair it in a program for meshes: each edge belongs to two triangles");
   }
   if (faults.open_edges > 0 && !request.open) {
-    words.push_back(fmt::format("holes with {} open edges", faults.open_edges));
+    words.push_back("holes with " + counted(faults.open_edges, "open edge"));
+    if (!request.repair)
+      remedies.emplace_back(
+          "--repair merges vertices within a millionth of the size, which may close the holes");
     remedies.emplace_back(
         "close the holes in a program for meshes; --open keeps them: the surface is then felt from its outer "
         "side, and a point passes through it from the other side");

@@ -354,7 +354,7 @@ struct UsualOptions {
 
 // With --help and --json, which every verb has: ten.
 const UsualOptions kUsualOptions[] = {
-    {"import", {"output", "channel", "rate", "time-column", "pitch", "speed", "surface", "force"}},
+    {"import", {"output", "channel", "rate", "time-column", "pitch", "unit", "speed", "surface", "force"}},
     {"record", {"device", "output", "template", "time", "strokes", "subject", "finger", "surface"}},
     {"spatial", {"output", "list", "stroke", "from", "to", "band", "grid", "average"}},
     {"spectrogram",

@@ -144,8 +144,8 @@ DEVICES = {
 }
 
 
-SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP, BODY, LASSO, MOVER, FIELD, FORCE_MAP = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
-PLANE, SPHERE, CYLINDER, QUADRIC = 16, 17, 18, 19
+SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP, BODY, LASSO, MOVER, FIELD, FORCE_MAP, TICK_DAMPER = range(11)
+PLANE, SPHERE, CYLINDER, QUADRIC, MESH = 16, 17, 18, 19, 20
 AT_REST = (0,) * 9
 
 
@@ -154,11 +154,22 @@ def piece(kind, origin, form, wall=(2000, 4, 0.15, 5000, 2, 0.5, 0.6, 0.4, 2), t
     return kind, (*wall, *(0,) * 11), struct.pack("<3i3f10f6f", *origin, 1e-6, 0, -2e-6, *form, *(0,) * (10 - len(form)), *transient)
 
 
+def mesh(size_m):
+    """A tetrahedron: a root and two leaves."""
+    def node(skip, leaf):
+        return struct.pack("<6fII", *[-0.01 * size_m] * 3, *[1.01 * size_m] * 3, skip, leaf)
+
+    kind, numbers, table = piece(MESH, (3, -4, 5), (0, 0, 1, size_m))
+    tree = node(3, 0) + node(2, 0 * 8 + 2) + node(3, 2 * 8 + 2)
+    triangles = struct.pack("<12I", 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3)
+    return kind, numbers, table + struct.pack("<fIII", size_m * 2**-18, 3, 4, 4) + tree + triangles + struct.pack("<12f", *[0] * 3, size_m, 0, 0, 0, size_m, 0, 0, 0, size_m)
+
+
 SCENES = {
     "spring": scene((3, -2, 5, 0), [(0, 0, 1, 0, 0.1, 0.1, 0, [(SPRING, (100, 0, 0))])]),
     "ice_on_soup": scene((90, 1, -70, 40), [(0, 0, 0.6, 0.8, 0.01, 0.01, 0, [(DAMPER, (0.1,))]),
                                            (0, 0, 1, 0, 1, 1, 0, [(DAMPER, (50,))]),
-                                           (0.01, 0, 1, 0, 1, 1, 1, [(SPRING, (1e6, 0.01, -0.02)), (DAMPER, (1e4,))])]),
+                                           (0.01, 0, 1, 0, 1, 1, 1, [(SPRING, (1e6, 0.01, -0.02)), (DAMPER, (1e4,)), (TICK_DAMPER, (1e4,))])]),
     "grooves": scene((3, -2, 50, 7), [(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(GROOVES, (1e-4, 2), grooves_table((2**25, -2**24), (800, 600), (0.6, 0, -0.2))),
                                                                       (GROOVES, (1, 1000), grooves_table((2**40, 7), (1e6, 0), (2,) * 64)), (DAMPER, (1,))])]),
     "noise": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [(NOISE, (1e-4, 2), noise_table(2**26, 900, (0.5, 0.25, 0.125))),
@@ -178,7 +189,8 @@ SCENES = {
                                                                   piece(CYLINDER, (-90, 1, 7), (0.6, 0, 0.8, 0.001)), piece(QUADRIC, (5, 1, 300), (1e6, 1e5, 1e6, 0, 10, 0, 0, 1, 0, -1))])]),
     "hard_pieces": scene((2**31 - 1, -70, 2**20, 40), [(0, 0, 1, 0, 1000, 1000, 1, [piece(QUADRIC, (0, 0, 0), (1e9, -1e9, 1e9, 1e9, -1e9, 0, 1e9, 0, 0, -1e9), (1e6, 1e4, 100, 1e7, 1000, 1000, 10, 10, 1e4), (-1e6, 1e6, -1.9, 0.1, -0.1, -1.9)),
                                                                                    piece(PLANE, (2**31 - 1, 0, -2**31), (1, 0, 0, 20), (1e6, 1e4, 100, 1e7, 1000, 1000, 1e-6, 10, 1e4), (0, 0, -1, 0, 0, -1))])]),
-    "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,))])]),
+    "mesh": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [mesh(0.002), piece(PLANE, (0, 0, -90), (0, 0.6, 0.8, 0.001))])]),
+    "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,)), (TICK_DAMPER, (1e4,))])]),
 }
 
 

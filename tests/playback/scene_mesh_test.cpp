@@ -115,7 +115,8 @@ struct MeshOnArm {
     of.pieces = {piece};
     scene = *prepare_scene(of, "s.scene.json", device, 1000);
     view = scene.view();
-    live.assign(view.numbers, view.numbers + view.number_count);
+    live.assign(view.live_words(), 0);
+    std::copy_n(view.numbers, view.number_count, live.begin());
   }
   std::vector<std::int32_t> counts_at(const Point& p) const {
     std::vector<std::int32_t> counts;

@@ -223,7 +223,7 @@ SpaceVector shortened(const SceneView& scene, const Planes& planes, const Goal& 
 // Nearer to a triangle than three quarters of its skin: it goes out first, and along the surface afterwards.
 bool is_in_skin(const Planes& planes) noexcept {
   for (uint32_t i = 0; i < planes.count; ++i)
-    if (planes.at[i].distance_m < -0.25F * planes.at[i].skin_m) return true;
+    if (planes.at[i].skin_m > 0 && planes.at[i].distance_m < -0.25F * planes.at[i].skin_m) return true;
   return false;
 }
 

@@ -98,7 +98,7 @@ bool has_area(const std::vector<Place>& vertices, const schema::MeshTriangle& tr
 }
 
 template <class T>
-void append(std::vector<std::uint32_t>& words, const T* parts, std::size_t count) {
+void append_parts(std::vector<std::uint32_t>& words, const T* parts, std::size_t count) {
   static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
   const std::size_t before = words.size();
   words.resize(before + count * sizeof(T) / sizeof(std::uint32_t));
@@ -138,10 +138,10 @@ std::vector<std::uint32_t> mesh_table(const schema::Mesh& mesh, const schema::Me
   table.triangles = static_cast<std::uint32_t>(triangles.size());
   table.vertices = static_cast<std::uint32_t>(vertices.size());
   std::vector<std::uint32_t> words;
-  append(words, &table, 1);
-  append(words, tree.nodes().data(), tree.nodes().size());
-  for (const std::uint32_t triangle : tree.order()) append(words, triangles[triangle].data(), 3);
-  append(words, vertices.data(), vertices.size());
+  append_parts(words, &table, 1);
+  append_parts(words, tree.nodes().data(), tree.nodes().size());
+  for (const std::uint32_t triangle : tree.order()) append_parts(words, triangles[triangle].data(), 3);
+  append_parts(words, vertices.data(), vertices.size());
   return words;
 }
 

@@ -146,8 +146,9 @@ std::vector<ExactGhost::Held> ExactGhost::follow(const SpaceMetres& hand_m) {
       if (touched[i]) touches.push_back({i, surface, 0, 0});
     }
     add_triangles(touches);
-    const bool in_skin = std::ranges::any_of(
-        touches, [](const Touch& touch) { return touch.surface.distance_m < -0.25 * touch.skin_m; });
+    const bool in_skin = std::ranges::any_of(touches, [](const Touch& touch) {
+      return touch.skin_m > 0 && touch.surface.distance_m < -0.25 * touch.skin_m;
+    });
     const SpaceMetres way = way_with(in_skin ? SpaceMetres{} : straight, 1);
     double part = 1;
     std::size_t met = pieces.size();
