@@ -55,6 +55,8 @@ bool is_solid(const Piece& piece, const Place& place_m) {
       return inner(p, p) - along * along < piece.radius_m * piece.radius_m;
     case PieceShape::quadric:
       break;
+    case PieceShape::mesh:
+      return false;  // add_mesh()
   }
   const auto& c = piece.coefficients;
   const auto [x, y, z] = p;
@@ -67,7 +69,36 @@ Place place_of(const Piece& piece) {
   return {piece.x_m, piece.y_m, piece.z_m};
 }
 
-Place middle_of(const schema::Scene& scene) {
+const schema::Mesh* mesh_of(const Piece& piece, const PieceMeshes& meshes) {
+  const auto found = piece.shape == PieceShape::mesh ? meshes.find(piece.mesh) : meshes.end();
+  return found == meshes.end() ? nullptr : &found->second;
+}
+
+// Where a line to the right at height `up`, within the section, passes through the mesh, in order.
+std::vector<double> crossings(const Piece& piece, const schema::Mesh& mesh, const Section& section, double up,
+                              double across) {
+  std::vector<double> found;
+  const Place at = place_of(piece);
+  for (const schema::MeshTriangle& triangle : mesh.triangles) {
+    double u[3], v[3], right[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const schema::MeshVertex& corner = mesh.vertices_m[triangle[i]];
+      u[i] = at[section.up] + corner[section.up] - up;
+      v[i] = at[section.across] + corner[section.across] - across;
+      right[i] = at[section.right] + corner[section.right];
+    }
+    if (std::min({u[0], u[1], u[2]}) > 0 || std::max({u[0], u[1], u[2]}) < 0) continue;
+    const auto area = [&](std::size_t i, std::size_t j) { return u[i] * v[j] - u[j] * v[i]; };
+    const double weight[3] = {area(1, 2), area(2, 0), area(0, 1)}, sum = weight[0] + weight[1] + weight[2];
+    if (sum == 0 || weight[0] * sum < 0 || weight[1] * sum < 0 || weight[2] * sum < 0) continue;
+    found.push_back((weight[0] * right[0] + weight[1] * right[1] + weight[2] * right[2]) / sum);
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+Place middle_of(const PiecePicture& picture) {
+  const schema::Scene& scene = picture.scene;
   const bool round =
       std::ranges::any_of(scene.pieces, [](const Piece& p) { return p.shape != PieceShape::plane; });
   Place sum = {};
@@ -75,6 +106,10 @@ Place middle_of(const schema::Scene& scene) {
   for (const Piece& piece : scene.pieces) {
     if (round && piece.shape == PieceShape::plane) continue;
     for (std::size_t i = 0; i < 3; ++i) sum[i] += place_of(piece)[i];
+    if (const schema::Mesh* const mesh = mesh_of(piece, picture.meshes)) {
+      const schema::MeshFigures figures = figures_of(*mesh);
+      for (std::size_t i = 0; i < 3; ++i) sum[i] += (figures.least_m[i] + figures.most_m[i]) / 2;
+    }
     ++count;
   }
   for (double& each : sum) each /= count;
@@ -98,6 +133,14 @@ PlaneRange range_of(const PiecePicture& picture, const Section& section) {
   }
   for (const Piece& piece : picture.scene.pieces) {
     const Place at = place_of(piece);
+    if (const schema::Mesh* const mesh = mesh_of(piece, picture.meshes)) {
+      const schema::MeshFigures figures = figures_of(*mesh);
+      for (const auto& [end_m, around_m] :
+           {std::pair{figures.least_m, -kAround_m}, {figures.most_m, kAround_m}})
+        range.add({at[section.right] + end_m[section.right] + around_m,
+                   at[section.up] + end_m[section.up] + around_m});
+      continue;
+    }
     const double around_m = piece.radius_m + kAround_m;
     range.add({at[section.right] - around_m, at[section.up] - around_m});
     range.add({at[section.right] + around_m, at[section.up] + around_m});
@@ -155,10 +198,16 @@ std::string words_of(const Piece& piece) {
 }  // namespace
 
 std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
-                                  const Place& through_m) {
+                                  const Place& through_m, const PieceMeshes& meshes) {
   const Section& section = *std::ranges::find(kSections, across, &Section::across);
+  const double beside_m = 1e-6 * grid.pixel_m;  // of the section, so that it meets no vertex
   std::vector<int> solid;
-  for (int row = 0; row < grid.rows; ++row)
+  for (int row = 0; row < grid.rows; ++row) {
+    std::map<std::size_t, std::vector<double>> of_meshes;
+    for (std::size_t i = 0; i < scene.pieces.size(); ++i)
+      if (const schema::Mesh* const mesh = mesh_of(scene.pieces[i], meshes))
+        of_meshes[i] = crossings(scene.pieces[i], *mesh, section, grid.centre_m(0, row).y + beside_m,
+                                 through_m[section.across] + beside_m);
     for (int column = 0; column < grid.columns; ++column) {
       const Point at = grid.centre_m(column, row);
       Place place_m = through_m;
@@ -166,13 +215,17 @@ std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& g
       int last = -1;
       for (std::size_t i = 0; i < scene.pieces.size(); ++i)
         if (is_solid(scene.pieces[i], place_m)) last = static_cast<int>(i);
+      for (const auto& [i, at_m] : of_meshes)
+        if ((std::ranges::lower_bound(at_m, at.x) - at_m.begin()) % 2 != 0)
+          last = std::max(last, static_cast<int>(i));
       solid.push_back(last);
     }
+  }
   return solid;
 }
 
 PieceFigure::PieceFigure(PiecePicture picture)
-    : picture_(std::move(picture)), through_m_(picture_.through_m.value_or(middle_of(picture_.scene))) {
+    : picture_(std::move(picture)), through_m_(picture_.through_m.value_or(middle_of(picture_))) {
   heading_ = spatial::heading_of(picture_.name, "Pieces of a scene in space: three sections", "",
                                  kSectionsWidth - 2 * kSectionsMargin);
   double top = kSectionsMargin + heading_.height() + kListLine;
@@ -211,8 +264,9 @@ schema::Result<void> PieceFigure::draw(Canvas& canvas) const {
                 fmt::format("{}, through {} = {}", section.from, kAxes[section.across],
                             spatial::typeset(schema::length_for_people(through_m_[section.across]))),
                 kSectionTitle);
-    canvas.image(map.box,
-                 pixels_of(solid_in_section(picture_.scene, map.grid, section.across, through_m_), map.grid));
+    canvas.image(map.box, pixels_of(solid_in_section(picture_.scene, map.grid, section.across, through_m_,
+                                                     picture_.meshes),
+                                    map.grid));
     const auto count = [](double length) { return std::max(2, static_cast<int>(length / 45)); };
     canvas.frame(map.box, {});
     draw_axis(canvas, map.box, spatial::Side::bottom, map.x, ticks_of(map.x, count(map.box.width)));

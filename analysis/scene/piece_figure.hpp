@@ -3,17 +3,22 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/scene/scene_map.hpp"
 #include "data-schema/device/device.hpp"
+#include "data-schema/mesh/mesh.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "spatial/picture/draw/heading.hpp"
 #include "spatial/picture/figure.hpp"
 
 namespace tacto::analysis {
+
+/// By the member `mesh` of the pieces.
+using PieceMeshes = std::map<std::string, schema::Mesh>;
 
 /// A scene of pieces; without a device the sections show 20 mm around all pieces.
 struct PiecePicture {
@@ -21,12 +26,14 @@ struct PiecePicture {
   schema::Scene scene;
   std::optional<schema::Device> device;            ///< whose travel is shown
   std::optional<std::array<double, 3>> through_m;  ///< default: the middle of the balls, pipes and quadrics
+  PieceMeshes meshes = {};
 };
 
 /// In a section across axis `across`, 0 to 2: which piece is solid in each pixel, from 0 on, or -1. Where
-/// several are, it is the last one. Pieces are drawn as they are, without the radius of the point.
+/// several are, it is the last one. Pieces are drawn as they are, without the radius of the point. A mesh
+/// with holes is not everywhere drawn as the solid that it is for the hand.
 std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
-                                  const std::array<double, 3>& through_m);
+                                  const std::array<double, 3>& through_m, const PieceMeshes& meshes = {});
 
 class PieceFigure : public spatial::Figure {
  public:

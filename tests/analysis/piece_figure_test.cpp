@@ -54,6 +54,23 @@ TEST(PieceFigureTest, SectionsHaveTheAreasOfTheirShapes) {
   EXPECT_EQ(area_mm2(plate, 2, {0, 0, 0.001}), 0);
 }
 
+// A double tetrahedron with corners at 20 mm on each axis: |x| + |y| + |z| < 20 mm.
+TEST(PieceFigureTest, SectionsOfAMeshHaveTheAreaOfItsSolid) {
+  schema::Mesh mesh;
+  mesh.vertices_m = {{0.02, 0, 0}, {-0.02, 0, 0}, {0, 0.02, 0}, {0, -0.02, 0}, {0, 0, 0.02}, {0, 0, -0.02}};
+  mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  schema::Scene scene;
+  Piece piece = shape_of(PieceShape::mesh, 0);
+  piece.mesh = "octahedron", piece.x_m = 0.002;
+  scene.pieces = {piece};
+  for (std::size_t across = 0; across < 3; ++across) {
+    std::array<double, 3> through_m = {0.002, 0, 0};
+    through_m[across] += 0.005;  // a square with half diagonals of 15 mm
+    const auto solid = solid_in_section(scene, kAround, across, through_m, {{"octahedron", mesh}});
+    EXPECT_NEAR(0.01 * static_cast<double>(std::ranges::count(solid, 0)), 450, 2) << across;
+  }
+}
+
 TEST(PieceFigureTest, ASceneIsDrawnThroughTheMiddleOfItsBalls) {
   PiecePicture picture;
   picture.name = "room";
