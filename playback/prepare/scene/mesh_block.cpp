@@ -17,12 +17,12 @@ constexpr std::size_t kLeafTriangles = 4;
 static_assert(kLeafTriangles <= core::kMostLeafTriangles);
 constexpr float kSkin = 0x1p-18F;  // of the half extent
 
-using Place = std::array<float, 3>;
+using MeshPlace = std::array<float, 3>;
 
-struct Box {
-  Place least = {INFINITY, INFINITY, INFINITY}, most = {-INFINITY, -INFINITY, -INFINITY};
+struct MeshBox {
+  MeshPlace least = {INFINITY, INFINITY, INFINITY}, most = {-INFINITY, -INFINITY, -INFINITY};
 
-  void add(const Place& place) {
+  void add(const MeshPlace& place) {
     for (std::size_t i = 0; i < 3; ++i)
       least[i] = std::min(least[i], place[i]), most[i] = std::max(most[i], place[i]);
   }
@@ -36,12 +36,12 @@ struct Box {
 
 class MeshTree {
  public:
-  MeshTree(const std::vector<Place>& vertices, const std::vector<schema::MeshTriangle>& triangles,
+  MeshTree(const std::vector<MeshPlace>& vertices, const std::vector<schema::MeshTriangle>& triangles,
            float skin_m)
       : vertices_(vertices), triangles_(triangles), skin_m_(skin_m), order_(triangles.size()) {
     std::iota(order_.begin(), order_.end(), std::uint32_t{0});
     for (const schema::MeshTriangle& triangle : triangles) {
-      Box box;
+      MeshBox box;
       for (const std::uint32_t vertex : triangle) box.add(vertices[vertex]);
       middles_.push_back(
           {box.least[0] + box.most[0], box.least[1] + box.most[1], box.least[2] + box.most[2]});
@@ -57,7 +57,7 @@ class MeshTree {
     const std::size_t place = nodes_.size();
     nodes_.emplace_back();
     const std::span<std::uint32_t> own = std::span(order_).subspan(first, last - first);
-    Box box, middles;
+    MeshBox box, middles;
     for (const std::uint32_t triangle : own) {
       for (const std::uint32_t vertex : triangles_[triangle]) box.add(vertices_[vertex]);
       middles.add(middles_[triangle]);
@@ -80,15 +80,15 @@ class MeshTree {
     nodes_[place] = node;
   }
 
-  const std::vector<Place>& vertices_;
+  const std::vector<MeshPlace>& vertices_;
   const std::vector<schema::MeshTriangle>& triangles_;
   float skin_m_;
   std::vector<std::uint32_t> order_;
-  std::vector<Place> middles_;
+  std::vector<MeshPlace> middles_;
   std::vector<core::MeshNode> nodes_;
 };
 
-bool has_area(const std::vector<Place>& vertices, const schema::MeshTriangle& triangle) {
+bool has_area(const std::vector<MeshPlace>& vertices, const schema::MeshTriangle& triangle) {
   std::array<std::array<double, 3>, 2> edge;
   for (std::size_t k = 0; k < 2; ++k)
     for (std::size_t i = 0; i < 3; ++i)
@@ -98,7 +98,7 @@ bool has_area(const std::vector<Place>& vertices, const schema::MeshTriangle& tr
 }
 
 template <class T>
-void append(std::vector<std::uint32_t>& words, const T* parts, std::size_t count) {
+void append_parts(std::vector<std::uint32_t>& words, const T* parts, std::size_t count) {
   static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
   const std::size_t before = words.size();
   words.resize(before + count * sizeof(T) / sizeof(std::uint32_t));
@@ -115,11 +115,11 @@ schema::MeshVertex middle_of(const schema::Mesh& mesh) {
 }
 
 std::vector<std::uint32_t> mesh_table(const schema::Mesh& mesh, const schema::MeshVertex& shift_m) {
-  std::vector<Place> vertices;
+  std::vector<MeshPlace> vertices;
   vertices.reserve(mesh.vertices_m.size());
   float half_m = 0;
   for (const schema::MeshVertex& vertex : mesh.vertices_m) {
-    Place place;
+    MeshPlace place;
     for (std::size_t i = 0; i < 3; ++i) {
       place[i] = static_cast<float>(vertex[i] + shift_m[i]);
       half_m = std::max(half_m, std::abs(place[i]));
@@ -138,10 +138,10 @@ std::vector<std::uint32_t> mesh_table(const schema::Mesh& mesh, const schema::Me
   table.triangles = static_cast<std::uint32_t>(triangles.size());
   table.vertices = static_cast<std::uint32_t>(vertices.size());
   std::vector<std::uint32_t> words;
-  append(words, &table, 1);
-  append(words, tree.nodes().data(), tree.nodes().size());
-  for (const std::uint32_t triangle : tree.order()) append(words, triangles[triangle].data(), 3);
-  append(words, vertices.data(), vertices.size());
+  append_parts(words, &table, 1);
+  append_parts(words, tree.nodes().data(), tree.nodes().size());
+  for (const std::uint32_t triangle : tree.order()) append_parts(words, triangles[triangle].data(), 3);
+  append_parts(words, vertices.data(), vertices.size());
   return words;
 }
 
