@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kMergeShare = 1e-6;  // of the largest size: about 10 times what STL rounds by
 
-Result<void> check_options(const ImportRequest& request) {
+Result<void> check_mesh_options(const ImportRequest& request) {
   if (!request.unit_m)
     return fail(ErrorKind::usage, "a mesh file does not say its unit", request.file,
                 "give it, for example --unit mm");
@@ -72,7 +72,7 @@ bool is_mesh_request(const ImportRequest& request) {
 }
 
 Result<ImportedMesh> import_mesh(const ImportRequest& request) {
-  TACTO_TRY(check_options(request));
+  TACTO_TRY(check_mesh_options(request));
   ImportedMesh imported;
   imported.path = schema::mesh_path(request.name);
   const auto existing = request.replace ? schema::Existing::replace : schema::Existing::keep;

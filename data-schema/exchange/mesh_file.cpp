@@ -18,13 +18,13 @@
 namespace tacto::schema {
 namespace {
 
-std::string ending_of(const std::string& path) {
+std::string lower_ending_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
   return ending;
 }
 
-Result<std::string> content_of(const std::string& path) {
+Result<std::string> mesh_content_of(const std::string& path) {
   TACTO_TRY(check_readable(path));
   std::error_code failed;
   const auto bytes = std::filesystem::file_size(path, failed);
@@ -57,7 +57,7 @@ Mesh mesh_of(const aiScene& scene, double unit_m) {
 }  // namespace
 
 bool is_mesh_file(const std::string& path) {
-  const std::string ending = ending_of(path);
+  const std::string ending = lower_ending_of(path);
   return ending == ".stl" || ending == ".obj" || ending == ".ply";
 }
 
@@ -66,11 +66,12 @@ Result<Mesh> read_mesh_file(const std::string& path, double unit_m) try {
   static const auto entry = function_in_module(kAssimpModule, kAssimpEntry);
   TACTO_TRY(entry);
   static const AssimpFunctions* const functions = reinterpret_cast<AssimpEntry>(*entry)();
-  const auto content = content_of(path);
+  const auto content = mesh_content_of(path);
   TACTO_TRY(content);
   const std::unique_ptr<const aiScene, void (*)(const aiScene*)> scene(
       functions->import(content->data(), static_cast<unsigned>(content->size()),
-                        aiProcess_Triangulate | aiProcess_PreTransformVertices, ending_of(path).c_str() + 1),
+                        aiProcess_Triangulate | aiProcess_PreTransformVertices,
+                        lower_ending_of(path).c_str() + 1),
       functions->release);
   if (!scene)
     return fail(ErrorKind::malformed, fmt::format("cannot be read as a mesh: {}", functions->fault()), path,

@@ -18,26 +18,26 @@ namespace tacto::schema {
 namespace {
 
 constexpr const char* kMeshKind = "mesh";
-constexpr std::string_view kEnding = ".mesh.nc";
-constexpr std::size_t kBlock = 1 << 14;  // vertices and triangles of a block in the file
-constexpr const char* kRemedy =
+constexpr std::string_view kMeshEnding = ".mesh.nc";
+constexpr std::size_t kMeshBlock = 1 << 14;  // vertices and triangles of a block in the file
+constexpr const char* kMeshRemedy =
     "'tactograph import FILE --unit UNIT --repair' drops triangles without an area and turns flipped ones";
 
-MeshVertex difference(const MeshVertex& a, const MeshVertex& b) {
+MeshVertex way_between(const MeshVertex& a, const MeshVertex& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
-MeshVertex cross(const MeshVertex& a, const MeshVertex& b) {
+MeshVertex cross_product(const MeshVertex& a, const MeshVertex& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-double dot(const MeshVertex& a, const MeshVertex& b) {
+double dot_product(const MeshVertex& a, const MeshVertex& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 double longest_edge_m2(const Mesh& mesh, const MeshTriangle& t) {
   double longest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const MeshVertex edge = difference(mesh.vertices_m[t[(i + 1) % 3]], mesh.vertices_m[t[i]]);
-    longest = std::max(longest, dot(edge, edge));
+    const MeshVertex edge = way_between(mesh.vertices_m[t[(i + 1) % 3]], mesh.vertices_m[t[i]]);
+    longest = std::max(longest, dot_product(edge, edge));
   }
   return longest;
 }
@@ -45,9 +45,9 @@ double longest_edge_m2(const Mesh& mesh, const MeshTriangle& t) {
 // Its height over the longest edge is rounding.
 bool is_degenerate(const Mesh& mesh, const MeshTriangle& t) {
   constexpr double kLeastHeight = 1e-12;  // of the longest edge
-  const MeshVertex area = cross(difference(mesh.vertices_m[t[1]], mesh.vertices_m[t[0]]),
-                                difference(mesh.vertices_m[t[2]], mesh.vertices_m[t[0]]));
-  return !(std::sqrt(dot(area, area)) > kLeastHeight * longest_edge_m2(mesh, t));
+  const MeshVertex area = cross_product(way_between(mesh.vertices_m[t[1]], mesh.vertices_m[t[0]]),
+                                        way_between(mesh.vertices_m[t[2]], mesh.vertices_m[t[0]]));
+  return !(std::sqrt(dot_product(area, area)) > kLeastHeight * longest_edge_m2(mesh, t));
 }
 
 // A side of a triangle: between two vertices, along the triangle or against it.
@@ -85,8 +85,9 @@ void each_edge(const std::vector<Side>& sides, Visit&& visit) {
 }
 
 double volume_of(const Mesh& mesh, const MeshVertex& middle, const MeshTriangle& t) {
-  return dot(difference(mesh.vertices_m[t[0]], middle),
-             cross(difference(mesh.vertices_m[t[1]], middle), difference(mesh.vertices_m[t[2]], middle))) /
+  return dot_product(way_between(mesh.vertices_m[t[0]], middle),
+                     cross_product(way_between(mesh.vertices_m[t[1]], middle),
+                                   way_between(mesh.vertices_m[t[2]], middle))) /
          6;
 }
 
@@ -167,23 +168,24 @@ std::vector<std::uint32_t> near_vertices(const Mesh& mesh, double merge_m) {
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (kept[order[i]] != order[i]) continue;
     for (std::size_t j = i + 1; j < order.size(); ++j) {
-      const MeshVertex way = difference(at[order[j]], at[order[i]]);
+      const MeshVertex way = way_between(at[order[j]], at[order[i]]);
       if (way[0] > merge_m) break;
-      if (kept[order[j]] == order[j] && dot(way, way) <= merge_m * merge_m) kept[order[j]] = order[i];
+      if (kept[order[j]] == order[j] && dot_product(way, way) <= merge_m * merge_m) kept[order[j]] = order[i];
     }
   }
   return kept;
 }
 
-Result<void> write_netcdf(const std::string& path, const std::string& named, const Mesh& mesh) {
+Result<void> write_mesh_netcdf(const std::string& path, const std::string& named, const Mesh& mesh) {
   NetcdfWriter file(path);
   const std::size_t vertices = mesh.vertices_m.size(), triangles = mesh.triangles.size();
   const int of_vertices = file.dimension("vertices", vertices), axes = file.dimension("axes", 3),
             of_triangles = file.dimension("triangles", triangles), corners = file.dimension("corners", 3);
-  const int vertex =
-      file.values("vertex", {{of_vertices, axes}, {std::min(vertices, kBlock), 3}}, "m", "place of a vertex");
-  const int triangle = file.indices("triangle", {{of_triangles, corners}, {std::min(triangles, kBlock), 3}},
-                                    "vertices of a triangle, counter-clockwise from outside");
+  const int vertex = file.values("vertex", {{of_vertices, axes}, {std::min(vertices, kMeshBlock), 3}}, "m",
+                                 "place of a vertex");
+  const int triangle =
+      file.indices("triangle", {{of_triangles, corners}, {std::min(triangles, kMeshBlock), 3}},
+                   "vertices of a triangle, counter-clockwise from outside");
   std::vector<double> numbers;
   for (const MeshVertex& place : mesh.vertices_m) numbers.insert(numbers.end(), place.begin(), place.end());
   file.put(vertex, {{0, 0}, {vertices, 3}}, std::span<const double>(numbers));
@@ -201,7 +203,7 @@ Result<void> write_netcdf(const std::string& path, const std::string& named, con
   return file.close(named);
 }
 
-Result<void> read_numbers(NetcdfReader& file, const std::string& path, Mesh& mesh) {
+Result<void> read_mesh_numbers(NetcdfReader& file, const std::string& path, Mesh& mesh) {
   const std::size_t vertices = file.length("vertices"), triangles = file.length("triangles");
   if (triangles > kMostTriangles || vertices > 3 * kMostTriangles) return check_mesh(mesh, path);
   const std::vector<double> places = file.values("vertex", {{0, 0}, {vertices, 3}}),
@@ -314,20 +316,20 @@ Result<void> check_mesh(const Mesh& mesh, const std::string& where) {
   if (faults.degenerate > 0)
     return unsuitable(
         fmt::format("{} of its {} triangles have no area", faults.degenerate, mesh.triangles.size()),
-        kRemedy);
+        kMeshRemedy);
   if (faults.flipped > 0)
     return unsuitable(fmt::format("{} of its {} triangles are turned the other way than the others",
                                   faults.flipped, mesh.triangles.size()),
-                      kRemedy);
+                      kMeshRemedy);
   if (faults.one_sided)
     return unsuitable("its triangles have no common outer side",
                       "repair it in a program for meshes: each edge belongs to two triangles");
-  if (faults.inside_out) return unsuitable("its outer side is inside: its volume is negative", kRemedy);
+  if (faults.inside_out) return unsuitable("its outer side is inside: its volume is negative", kMeshRemedy);
   return {};
 }
 
 std::string mesh_path(const std::string& name) {
-  return name.ends_with(kEnding) ? name : name + std::string(kEnding);
+  return name.ends_with(kMeshEnding) ? name : name + std::string(kMeshEnding);
 }
 
 Result<void> write_mesh(const std::string& path, const Mesh& mesh, Existing existing) {
@@ -335,7 +337,7 @@ Result<void> write_mesh(const std::string& path, const Mesh& mesh, Existing exis
   PendingFiles files;
   const auto temporary = files.add(path);
   TACTO_TRY(temporary);
-  TACTO_TRY(write_netcdf(*temporary, path, mesh));
+  TACTO_TRY(write_mesh_netcdf(*temporary, path, mesh));
   return files.commit(existing);
 }
 
@@ -354,7 +356,7 @@ Result<Mesh> read_mesh(const std::string& name) {
   if (file.has("vertex") && file.units("vertex") != "m")
     return fail(ErrorKind::malformed, fmt::format("its vertices are in '{}', not in m", file.units("vertex")),
                 path);
-  TACTO_TRY(read_numbers(file, path, mesh));
+  TACTO_TRY(read_mesh_numbers(file, path, mesh));
   mesh.notes = file.text("notes"), mesh.source = file.text("source");
   mesh.created = file.text("created"), mesh.creator = file.text("creator");
   TACTO_TRY(file.status(path));

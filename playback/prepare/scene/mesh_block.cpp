@@ -17,12 +17,12 @@ constexpr std::size_t kLeafTriangles = 4;
 static_assert(kLeafTriangles <= core::kMostLeafTriangles);
 constexpr float kSkin = 0x1p-18F;  // of the half extent
 
-using Place = std::array<float, 3>;
+using MeshPlace = std::array<float, 3>;
 
 struct MeshBox {
-  Place least = {INFINITY, INFINITY, INFINITY}, most = {-INFINITY, -INFINITY, -INFINITY};
+  MeshPlace least = {INFINITY, INFINITY, INFINITY}, most = {-INFINITY, -INFINITY, -INFINITY};
 
-  void add(const Place& place) {
+  void add(const MeshPlace& place) {
     for (std::size_t i = 0; i < 3; ++i)
       least[i] = std::min(least[i], place[i]), most[i] = std::max(most[i], place[i]);
   }
@@ -36,7 +36,7 @@ struct MeshBox {
 
 class MeshTree {
  public:
-  MeshTree(const std::vector<Place>& vertices, const std::vector<schema::MeshTriangle>& triangles,
+  MeshTree(const std::vector<MeshPlace>& vertices, const std::vector<schema::MeshTriangle>& triangles,
            float skin_m)
       : vertices_(vertices), triangles_(triangles), skin_m_(skin_m), order_(triangles.size()) {
     std::iota(order_.begin(), order_.end(), std::uint32_t{0});
@@ -80,15 +80,15 @@ class MeshTree {
     nodes_[place] = node;
   }
 
-  const std::vector<Place>& vertices_;
+  const std::vector<MeshPlace>& vertices_;
   const std::vector<schema::MeshTriangle>& triangles_;
   float skin_m_;
   std::vector<std::uint32_t> order_;
-  std::vector<Place> middles_;
+  std::vector<MeshPlace> middles_;
   std::vector<core::MeshNode> nodes_;
 };
 
-bool has_area(const std::vector<Place>& vertices, const schema::MeshTriangle& triangle) {
+bool has_area(const std::vector<MeshPlace>& vertices, const schema::MeshTriangle& triangle) {
   std::array<std::array<double, 3>, 2> edge;
   for (std::size_t k = 0; k < 2; ++k)
     for (std::size_t i = 0; i < 3; ++i)
@@ -115,11 +115,11 @@ schema::MeshVertex middle_of(const schema::Mesh& mesh) {
 }
 
 std::vector<std::uint32_t> mesh_table(const schema::Mesh& mesh, const schema::MeshVertex& shift_m) {
-  std::vector<Place> vertices;
+  std::vector<MeshPlace> vertices;
   vertices.reserve(mesh.vertices_m.size());
   float half_m = 0;
   for (const schema::MeshVertex& vertex : mesh.vertices_m) {
-    Place place;
+    MeshPlace place;
     for (std::size_t i = 0; i < 3; ++i) {
       place[i] = static_cast<float>(vertex[i] + shift_m[i]);
       half_m = std::max(half_m, std::abs(place[i]));

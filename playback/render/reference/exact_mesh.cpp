@@ -8,29 +8,30 @@
 namespace tacto::playback {
 namespace {
 
-using Place = ExactMesh::Place;
+using ExactPlace = ExactMesh::Place;
 
 constexpr double kSameDistance_m = kExactSkin_m / 16;
 
-Place minus(const Place& a, const Place& b) {
+ExactPlace minus(const ExactPlace& a, const ExactPlace& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
-Place plus(const Place& a, double by, const Place& b) {
+ExactPlace plus(const ExactPlace& a, double by, const ExactPlace& b) {
   return {a[0] + by * b[0], a[1] + by * b[1], a[2] + by * b[2]};
 }
-double scalar(const Place& a, const Place& b) {
+double scalar(const ExactPlace& a, const ExactPlace& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-double norm(const Place& a) {
+double norm_of(const ExactPlace& a) {
   return std::sqrt(scalar(a, a));
 }
-Place vector_product(const Place& a, const Place& b) {
+ExactPlace vector_product(const ExactPlace& a, const ExactPlace& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 // Ericson, Real-Time Collision Detection, 5.1.5: by the regions of the corners, edges and the face.
-std::pair<Place, bool> nearest_on_triangle(const Place& p, const Place& a, const Place& b, const Place& c) {
-  const Place ab = minus(b, a), ac = minus(c, a), ap = minus(p, a), bp = minus(p, b), cp = minus(p, c);
+std::pair<ExactPlace, bool> nearest_on_triangle(const ExactPlace& p, const ExactPlace& a, const ExactPlace& b,
+                                                const ExactPlace& c) {
+  const ExactPlace ab = minus(b, a), ac = minus(c, a), ap = minus(p, a), bp = minus(p, b), cp = minus(p, c);
   const double d1 = scalar(ab, ap), d2 = scalar(ac, ap), d3 = scalar(ab, bp), d4 = scalar(ac, bp),
                d5 = scalar(ab, cp), d6 = scalar(ac, cp);
   if (d1 <= 0 && d2 <= 0) return {a, true};
@@ -42,33 +43,33 @@ std::pair<Place, bool> nearest_on_triangle(const Place& p, const Place& a, const
     return {plus(a, d2 / (d2 - d6), ac), true};
   if (const double va = d3 * d6 - d5 * d4; va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
     return {plus(b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), minus(c, b)), true};
-  const Place n = vector_product(ab, ac);
+  const ExactPlace n = vector_product(ab, ac);
   return {plus(p, -scalar(n, ap) / scalar(n, n), n), false};
 }
 
 }  // namespace
 
-ExactMesh::ExactMesh(std::shared_ptr<const schema::Mesh> mesh, const Place& origin_m)
+ExactMesh::ExactMesh(std::shared_ptr<const schema::Mesh> mesh, const ExactPlace& origin_m)
     : mesh_(std::move(mesh)), origin_m_(origin_m) {}
 
-ExactMesh::Side ExactMesh::side_of(std::size_t triangle, const Place& place_m) const {
+ExactMesh::Side ExactMesh::side_of(std::size_t triangle, const ExactPlace& place_m) const {
   const auto& [i, j, k] = mesh_->triangles[triangle];
-  const Place &a = mesh_->vertices_m[i], &b = mesh_->vertices_m[j], &c = mesh_->vertices_m[k];
-  const Place p = minus(place_m, origin_m_), area = vector_product(minus(b, a), minus(c, a));
+  const ExactPlace &a = mesh_->vertices_m[i], &b = mesh_->vertices_m[j], &c = mesh_->vertices_m[k];
+  const ExactPlace p = minus(place_m, origin_m_), area = vector_product(minus(b, a), minus(c, a));
   Side side;
-  side.normal = plus({}, 1 / norm(area), area);
+  side.normal = plus({}, 1 / norm_of(area), area);
   side.above_m = scalar(side.normal, minus(p, a));
   const auto [nearest, beside] = nearest_on_triangle(p, a, b, c);
   side.beside = beside;
-  const Place way = minus(p, nearest);
-  side.distance_m = beside ? norm(way) : std::abs(side.above_m);
+  const ExactPlace way = minus(p, nearest);
+  side.distance_m = beside ? norm_of(way) : std::abs(side.above_m);
   side.away = !beside               ? plus({}, side.above_m < 0 ? -1 : 1, side.normal)
               : side.distance_m > 0 ? plus({}, 1 / side.distance_m, way)
                                     : side.normal;
   return side;
 }
 
-double ExactMesh::distance_m(const Place& place_m) const {
+double ExactMesh::distance_m(const ExactPlace& place_m) const {
   double nearest_m = INFINITY;
   for (std::size_t i = 0; i < mesh_->triangles.size(); ++i)
     nearest_m = std::min(nearest_m, side_of(i, place_m).distance_m);
@@ -76,9 +77,9 @@ double ExactMesh::distance_m(const Place& place_m) const {
 }
 
 // Of each triangle that the box around the way reaches: Newton's method from the start of the way.
-std::optional<ExactMesh::Hit> ExactMesh::first_hit(const Place& from_m, const Place& way_m) const {
-  const double size_m = norm(way_m);
-  const Place from = minus(from_m, origin_m_), to = plus(from, 1, way_m);
+std::optional<ExactMesh::Hit> ExactMesh::first_hit(const ExactPlace& from_m, const ExactPlace& way_m) const {
+  const double size_m = norm_of(way_m);
+  const ExactPlace from = minus(from_m, origin_m_), to = plus(from, 1, way_m);
   std::optional<Hit> first;
   double soonest = 1, steepest = 0;
   for (std::size_t i = 0; i < mesh_->triangles.size() && size_m > 0; ++i) {
