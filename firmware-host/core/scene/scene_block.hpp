@@ -274,7 +274,7 @@ struct PieceTable {
   int32_t origin[3] = {};
   float rest_m[3] = {};
   float form[kPieceFormWords] = {};
-  TransientTable transient;
+  TransientTable transient = {};
 };
 static_assert(sizeof(PieceTable) == 88);
 
