@@ -76,8 +76,9 @@ std::string adaptive_code(const schema::Protocol& protocol, const schema::Protoc
 std::vector<double> reversals_of(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                  const std::vector<Attempt>& attempts) {
   const Levels levels = by_size(protocol.levels);
+  const Staircase staircase = staircase_of(levels, key, attempts);
   std::vector<double> reversals;
-  for (const double index : staircase_of(levels, key, attempts).reversals())
+  for (const double index : staircase.reversals())
     reversals.push_back(levels[static_cast<std::size_t>(index)]);
   return reversals;
 }

@@ -65,9 +65,9 @@ TEST(PieceFigureTest, SectionsOfAMeshHaveTheAreaOfItsSolid) {
   scene.pieces = {piece};
   for (std::size_t across = 0; across < 3; ++across) {
     std::array<double, 3> through_m = {0.002, 0, 0};
-    through_m[across] += 0.005;  // a square with half diagonals of 15 mm
+    through_m[across] += 0.00503;  // a square with half diagonals of 14.97 mm; no pixel is on its border
     const auto solid = solid_in_section(scene, kAround, across, through_m, {{"octahedron", mesh}});
-    EXPECT_NEAR(0.01 * static_cast<double>(std::ranges::count(solid, 0)), 450, 2) << across;
+    EXPECT_NEAR(0.01 * static_cast<double>(std::ranges::count(solid, 0)), 2 * 14.97 * 14.97, 1) << across;
   }
 }
 

@@ -9,19 +9,19 @@
 
 namespace tacto::tests {
 
-inline constexpr uint32_t kPiecesFingerprint = 3058390590;
+inline constexpr uint32_t kPiecesFingerprint = 1680518810;
 
-/// A floor, a plate on edge, a ball, a pipe and an ellipsoid, and a hand that is pushed through them at up to
-/// 60 counts per tick; walls with dampers, arrest and integral; all limits are reached.
+/// A floor, a plate on edge, a ball, a pipe, an ellipsoid and a mesh, and a hand that is pushed through them
+/// at up to 60 counts per tick; walls with dampers, arrest and integral; all limits are reached.
 class PiecesWorkload {
-  static constexpr uint32_t kPieces = 5, kWords = core::kPieceNumbers + core::kWallStateWords;
+  static constexpr uint32_t kPieces = 6, kWords = core::kPieceNumbers + core::kWallStateWords;
 
  public:
-  static constexpr uint16_t kKinds[kPieces] = {16, 16, 17, 18, 19};
+  static constexpr uint16_t kKinds[kPieces] = {16, 16, 17, 18, 19, 20};
   PiecesWorkload() noexcept {
     block_.header.patches = 1, block_.header.layers = kPieces;
     block_.header.numbers = kPieces * kWords;
-    block_.header.table_words = kPieces * sizeof(core::PieceTable) / sizeof(uint32_t);
+    block_.header.table_words = (sizeof block_.tables + sizeof block_.mesh) / sizeof(uint32_t);
     block_.patch = {0, 0, 1, 0, 1000, 1000, 0, kPieces, 0};
     for (uint32_t i = 0; i < kPieces; ++i) {
       block_.layers[i] = {kKinds[i], static_cast<uint16_t>(i * kWords),
@@ -34,6 +34,18 @@ class PiecesWorkload {
     block_.tables[2] = {{-1000, 500, 0}, {}, {0, 0, 1, 0.01F}, {}};
     block_.tables[3] = {{0, -2500, 500}, {}, {0.6F, 0, 0.8F, 0.008F}, {}};
     block_.tables[4] = {{300, 2000, 700}, {}, {1e4F, 2e4F, 4e4F, 1e3F, 0, 0, 0, 2, 0, -1}, {}};
+    // A tetrahedron: a root and two leaves.
+    constexpr float kSize_m = 0.015F;
+    block_.mesh.table = {{{-1200, -1500, 900}, {}, {0, 0, 1, kSize_m}, {}}, kSize_m * 0x1p-18F, 3, 4, 4};
+    const uint32_t skips[3] = {3, 2, 3}, leaves[3] = {0, 0 * 8 + 2, 2 * 8 + 2};
+    for (int i = 0; i < 3; ++i) {
+      core::MeshNode& node = block_.mesh.nodes[i];
+      for (int j = 0; j < 3; ++j) node.least_m[j] = -0.01F * kSize_m, node.most_m[j] = 1.01F * kSize_m;
+      node.skip = skips[i], node.leaf = leaves[i];
+      block_.mesh.vertices[i + 1][i] = kSize_m;
+    }
+    const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    for (int i = 0; i < 12; ++i) block_.mesh.triangles[i] = triangles[i];
     block_.header.check = core::scene_check(&block_, sizeof block_);
     core::SceneView view;
     core::read_scene_block(&block_, sizeof block_, view);
@@ -70,7 +82,13 @@ class PiecesWorkload {
     core::ScenePatch patch;
     core::SceneLayer layers[kPieces];
     float numbers[kPieces * kWords] = {};
-    core::PieceTable tables[kPieces];
+    core::PieceTable tables[kPieces - 1];
+    struct {
+      core::MeshTable table;
+      core::MeshNode nodes[3];
+      uint32_t triangles[12] = {};
+      float vertices[4][3] = {};
+    } mesh;
   } block_;
   WorkloadRandom next_{1996};
   uint32_t flags_ = 0, ticks_ = 0;

@@ -245,7 +245,7 @@ def an_adaptive_spring_is_a_spring_and_a_damper():
     rows = run_json("explain", "soft.scene.json", "--device", "sandpaper-1990")["layers"]
     assert [row["type"] for row in rows] == ["spring", "damper", "damper"] and rows[0]["adaptive"] is True, rows
     added = rows[2]["added_damping_n_s_per_m"]
-    write_scene("both", patch(width_m=0.05, height_m=0.05, layers=[spring(9000), slid, damper(added)]))
+    write_scene("both", patch(width_m=0.05, height_m=0.05, layers=[spring(9000), slid, {**damper(added), "two_ticks": True}]))
     assert run_json("info", "soft")["patches"][0]["layers"][0]["adaptive"] is True
     write_script("set.csv", [0.5], ["set a.damper.damping_n_s_per_m 0.2"])
     write_script("set1.csv", [0.5], ["set a.1.damping_n_s_per_m 0.2"])
