@@ -354,7 +354,7 @@ struct UsualOptions {
 
 // With --help and --json, which every verb has: ten.
 const UsualOptions kUsualOptions[] = {
-    {"import", {"output", "channel", "rate", "time-column", "pitch", "unit", "speed", "surface", "force"}},
+    {"import", {"output", "channel", "rate", "time-column", "pitch", "speed", "surface", "force"}},
     {"record", {"device", "output", "template", "time", "strokes", "subject", "finger", "surface"}},
     {"spatial", {"output", "list", "stroke", "from", "to", "band", "grid", "average"}},
     {"spectrogram",
@@ -394,6 +394,7 @@ const Heading kHeadings[] = {
      {"interpolation", "inverse", "reconstruction", "cutoff", "hold", "keep-hysteresis", "no-look-ahead",
       "engine", "encoder-step", "rate", "loop", "onset", "target", "displacement"}},
     {"Limits", {"energy-limit", "energy-window", "over-limit", "contact", "contact-off"}},
+    {"Mesh", {"unit", "repair", "open"}},
     {"Stored in the file", {"subject", "finger", "surface", "notes", "humidity", "date", "calibrated"}},
     {"Calibration", {"calibration", "no-calibration", "stale-after"}},
     {"Measuring and tables",

@@ -67,7 +67,8 @@ TEST(PieceFigureTest, SectionsOfAMeshHaveTheAreaOfItsSolid) {
     std::array<double, 3> through_m = {0.002, 0, 0};
     through_m[across] += 0.00503;  // a square with half diagonals of 14.97 mm; no pixel is on its border
     const auto solid = solid_in_section(scene, kAround, across, through_m, {{"octahedron", mesh}});
-    EXPECT_NEAR(0.01 * static_cast<double>(std::ranges::count(solid, 0)), 2 * 14.97 * 14.97, 1) << across;
+    // In a quadrant a + b <= 148 for pixels with centres at a + 1/2 and b + 1/2.
+    EXPECT_EQ(std::ranges::count(solid, 0), 4 * 149 * 150 / 2) << across;
   }
 }
 

@@ -178,7 +178,7 @@ def a_softer_layer_keeps_its_added_damper():
     run("validate", "soft.scene.json")
     soft, damper = json.loads(pathlib.Path("soft.scene.json").read_text())["patches"][0]["layers"]
     assert soft["octaves"] < 5 and not soft.get("adaptive", False), soft
-    assert damper == {"type": "damper", "damping_n_s_per_m": added}, (damper, added)
+    assert damper == {"type": "damper", "damping_n_s_per_m": added, "two_ticks": True}, (damper, added)
     off = np.hypot(*(forces("soft") - forces("s")).T).max()
     assert off <= report["promised_n"] + report["rounding_n"], (off, report)
     assert len(report["changed"]) == 2 and "without_choice" not in report, report  # the octaves, the damper

@@ -107,7 +107,7 @@ Result<std::vector<std::uint32_t>> words_of_mesh(const Piece& piece, const schem
   std::vector<std::uint32_t> words = mesh_table(mesh, {-middle[0], -middle[1], -middle[2]});
   static_assert(offsetof(core::MeshTable, piece) == 0);
   core::PieceTable table;
-  std::memcpy(&table, words.data(), sizeof table);
+  std::memcpy(static_cast<void*>(&table), words.data(), sizeof table);
   std::copy(std::begin(table.form), std::end(table.form), placed->form);
   placed->transient = transient;
   std::memcpy(words.data(), &*placed, sizeof *placed);
