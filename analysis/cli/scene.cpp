@@ -127,7 +127,8 @@ Result<std::array<double, 3>> place_in_space(const std::string& text) {
       return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is not a place in space", text),
                           "--through", "write three lengths, as in 10mm,20mm,-5mm");
     const auto length_m = schema::parse_quantity(text.substr(at, end - at), schema::Dimension::length);
-    TACTO_TRY(length_m);
+    if (!length_m)
+      return schema::fail(length_m.error().kind, length_m.error().what, "--through", length_m.error().remedy);
     place_m[i] = *length_m;
     at = end + 1;
   }

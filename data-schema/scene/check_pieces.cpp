@@ -87,7 +87,8 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
       least = slider_of("static_friction", piece.static_friction).from;
       kinetic > least)
     return fail(ErrorKind::unsuitable,
-                fmt::format("the kinetic friction {:g} is above the static friction {:g}", kinetic, least),
+                fmt::format("the kinetic friction {:g} is above the static friction {:g}{}", kinetic, least,
+                            piece.sliders.empty() ? "" : ", with each slider at its worse end"),
                 where + "/kinetic_friction", "choose a static friction that is not smaller");
   if (piece.transient && piece.hand_surface)
     return fail(ErrorKind::unsuitable, "a piece has one transient", where + "/hand_surface",

@@ -22,6 +22,9 @@ void read_wall(Piece& piece, const Json& body) {
     piece.*value = at->is_object() ? (*at)["value"] : *at;
     if (at->is_object()) piece.sliders[name] = {(*at)["slider"]["from"], (*at)["slider"]["to"]};
   }
+  if (body.contains("kinetic_friction")) return;
+  const auto fixed = piece.sliders.find("static_friction");
+  piece.kinetic_friction = fixed == piece.sliders.end() ? piece.static_friction : fixed->second.from;
 }
 
 void write_wall(const Piece& piece, Json& body) {
@@ -30,7 +33,8 @@ void write_wall(const Piece& piece, Json& body) {
     if (number.slider)
       body[each.name] = {{"value", number.value},
                          {"slider", {{"from", number.slider->from}, {"to", number.slider->to}}}};
-    else if (number.value != 0 || each.value == &Piece::stiffness_n_per_m)
+    else if (number.value != 0 || each.value == &Piece::stiffness_n_per_m ||
+             (each.value == &Piece::kinetic_friction && piece.static_friction > 0))
       body[each.name] = number.value;
   }
 }

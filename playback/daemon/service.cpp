@@ -350,7 +350,8 @@ Result<ControlFields> Service::load(Program program) {
 Result<ControlFields> Service::load(ForceProgram forces) {
   ControlFields fields{{"file", load_request_.file},
                        {"rate_hz", forces.session.rate_hz},
-                       {"patches", static_cast<std::int64_t>(forces.scene.patches.size())},
+                       {forces.scene.pieces.empty() ? "patches" : "pieces",
+                        static_cast<std::int64_t>(forces.scene.patches.size() + forces.scene.pieces.size())},
                        {"block_bytes", static_cast<std::int64_t>(forces.scene.bytes())}};
   for (std::size_t i = 0; i < forces.notes.size(); ++i)
     fields.emplace_back(fmt::format("note_{}", i + 1), forces.notes[i]);

@@ -53,6 +53,9 @@ Result<std::size_t> place_of(std::string_view kind, const std::string& name, con
 }
 
 Result<std::size_t> patch_place(const std::string& name, const PreparedScene& scene) {
+  if (!scene.pieces.empty())
+    return fail(ErrorKind::usage, fmt::format("there is no patch '{}' in a scene of pieces", name), {},
+                "pieces do not move; 'set PIECE.MEMBER VALUE' changes a number of a piece");
   Words patches;
   for (const schema::Patch& patch : scene.patches) patches.push_back(patch.name);
   return place_of("patch", name, patches);
@@ -147,6 +150,13 @@ Result<wire::Set> target_in_piece(const Words& path, double value, const ForcePr
   TACTO_TRY(at_piece);
   const auto number = place_of("member of a piece named", path[1], members);
   TACTO_TRY(number);
+  if (!schema::kWallNumbers[*number].changes) {
+    std::erase_if(members, [](const std::string& name) {
+      return !std::ranges::find(schema::kWallNumbers, name, &schema::PieceNumber::name)->changes;
+    });
+    return fail(ErrorKind::usage, fmt::format("{} cannot change during playback", path[1]), {},
+                fmt::format("of a piece these can: {}", fmt::join(members, ", ")));
+  }
   TACTO_TRY(check_value(named_number(pieces[*at_piece], schema::kWallNumbers[*number]), value, path,
                         *at_piece, forces));
   return wire::Set{static_cast<std::uint16_t>(*at_piece), static_cast<std::uint16_t>(*number),

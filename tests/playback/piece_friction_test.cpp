@@ -74,6 +74,48 @@ Piece rough_floor(double fixed, double kinetic) {
   return floor;
 }
 
+TEST(PieceFrictionTest, WithoutAKineticCoefficientItIsTheStaticOne) {
+  const auto kinetic_of = [](const std::string& members) {
+    const auto scene = schema::parse_scene(
+        R"({"kind": "scene", "version": "1.0", "pieces": [{"name": "a", "shape": "plane", "place": {"x_m": 0, "y_m": 0, "z_m": 0}, "stiffness_n_per_m": 1, )" +
+            members + "}]}",
+        "s.scene.json");
+    EXPECT_TRUE(scene) << schema::message(scene.error());
+    static int count = 0;
+    const std::string stem = testing::TempDir() + "friction" + std::to_string(++count);
+    EXPECT_TRUE(schema::write_scene(stem, *scene));
+    EXPECT_EQ(schema::read_scene(stem)->pieces[0].kinetic_friction, scene->pieces[0].kinetic_friction);
+    return scene->pieces[0].kinetic_friction;
+  };
+  EXPECT_EQ(kinetic_of(R"("static_friction": 0.6)"), 0.6);
+  EXPECT_EQ(kinetic_of(R"("static_friction": 0.6, "kinetic_friction": 0)"), 0);
+  EXPECT_EQ(kinetic_of(R"("static_friction": {"value": 0.6, "slider": {"from": 0.2, "to": 1}})"), 0.2);
+  EXPECT_EQ(kinetic_of(R"("viscous_n_s_per_m": 1)"), 0);
+}
+
+// It is not held from the origin of the piece, which may be anywhere.
+TEST(PieceFrictionTest, AHandThatBeginsInAPieceIsHeldFromThere) {
+  Piece floor = rough_floor(0.6, 0.4), ball = rough_floor(0.6, 0.4);
+  floor.x_m = -0.05, floor.y_m = 0.09;
+  ball.shape = schema::PieceShape::sphere, ball.radius_m = 0.02, ball.z_m = -0.02;
+  for (const Piece& piece : {floor, ball})
+    for (const auto& contact : {schema::PieceContact::ghost, schema::PieceContact::add}) {
+      RoughPieces rough({piece}, contact);
+      ExactScene exact(rough.scene, rough.device, 1000);
+      Space force_n = {};
+      for (int i = 0; i < 300; ++i) {
+        force_n = rough.at({0, 0, -2e-3});
+        const auto reference = exact.tick({0, 0, -2000}).force_n;
+        EXPECT_NEAR(std::hypot(force_n[0], force_n[1]), 0, 1e-6);
+        EXPECT_NEAR(std::hypot(reference[0], reference[1]), 0, 1e-6);
+      }
+      EXPECT_NEAR(force_n[2], 2, 1e-5);
+      for (int i = 1; i <= 100; ++i) force_n = rough.at({0, 20e-6 * i, -2e-3});
+      EXPECT_GT(-force_n[1],
+                0.3 * force_n[2]);  // at least the kinetic friction, but for the slope of the ball
+    }
+}
+
 // Each slip gives back (0.6 - 0.4) N / 1 N/mm; in ticks of 47 um it would be found 5 ticks later, after 235.
 TEST(PieceFrictionTest, DraggedItSlipsEvery200Micrometres) {
   constexpr double kWay_m = 47e-6, kSlip_m = 200e-6;

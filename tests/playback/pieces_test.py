@@ -140,7 +140,7 @@ def a_dragged_hand_slips_and_sliders_move():
     assert along.max() < 0.3 + 1e-5 and along.min() > 0.29, "without slips: both coefficients are 0.6"
     sliders = run_json("info", "rough.scene.json")["sliders"]
     assert [(row["piece"], row["member"], row["from"], row["to"]) for row in sliders] == [("floor", "stiffness_n_per_m", 500, 1500), ("floor", "kinetic_friction", 0.1, 0.6)], sliders
-    for command in ("set floor.stiffness_n_per_m 400", "set floor.static_friction 0.5", "set flor.stiffness_n_per_m 600", "set floor.0.stiffness_n_per_m 600", "set floor.radius_m 1"):
+    for command in ("set floor.stiffness_n_per_m 400", "set floor.static_friction 0.5", "set flor.stiffness_n_per_m 600", "set floor.0.stiffness_n_per_m 600", "set floor.radius_m 1", "set floor.arrest_mass_kg 1", "move floor 1mm,1mm", "raise floor"):
         pathlib.Path("set.csv").write_text(f"time_s,command\n0.5,{command}\n")
         run("play", "rough.scene.json", "-d", "sim:arm", "--finger-path", "path.csv", "--script", "set.csv", "-o", "wrong", code=MALFORMED)
     for wrong in ({"kinetic_friction": 0.7}, {"kinetic_friction": {"value": 0.4, "slider": {"from": 0.3, "to": 0.7}}}, {"stiffness_n_per_m": {"value": 400, "slider": {"from": 500, "to": 600}}}):

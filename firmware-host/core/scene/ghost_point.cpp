@@ -446,7 +446,8 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
   bool beyond = false;
   for (uint32_t i = 0; i < scene.layer_count; ++i)
     beyond = beyond || far(place, origin_of(piece_of(scene, i)));
-  if (!placed_ || beyond || far(place, ghost_)) ghost_ = place, touched_.count = 0;
+  const bool arrives = !placed_ || beyond || far(place, ghost_);
+  if (arrives) ghost_ = place, touched_.count = 0;
   placed_ = true;
   const bool adds = scene.patches[0].adds != 0;
   Holding holding;
@@ -484,6 +485,8 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
     const float normal_n = wall_force(number, table.transient, state, touch);
     const SpaceVector on =
         adds ? from + touch.depth_m * normal : difference(ghost_, origin_of(table), step_m);
+    if (arrives)
+      state.anchor_m = state.last_m = on;  // a hand that begins in a piece is not held from elsewhere
     sum = sum + normal_n * normal + friction_force(number, state, normal_n, normal, on, hand.speed_mps);
   }
   return sum;

@@ -318,7 +318,8 @@ SpaceMetres ExactGhost::friction_force(const Piece& piece, Wall& wall, double no
 }
 
 SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {
-  if (!placed_) ghost_m_ = hand_m;
+  const bool arrives = !placed_;
+  if (arrives) ghost_m_ = hand_m;
   placed_ = true;
   const bool adds = scene_.contact == schema::PieceContact::add;
   std::vector<Held> held(scene_.pieces.size());
@@ -331,6 +332,7 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
     if (meshes_[i] && walls_[i].touched) outside_m = meshes_[i]->distance_m(hand_m);
     const double force_n = wall_force(piece, walls_[i], held[i], outside_m, inner(held[i].normal, speed_mps));
     const SpaceMetres on = adds ? sum_of(hand_m, held[i].depth_m, held[i].normal) : ghost_m_;
+    if (arrives) walls_[i].anchor_m = walls_[i].last_m = on;
     sum = sum_of(sum, force_n, held[i].normal);
     sum = sum_of(sum, 1, friction_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
   }
