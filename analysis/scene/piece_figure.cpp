@@ -148,16 +148,19 @@ PlaneRange range_of(const PiecePicture& picture, const Section& section) {
   return range;
 }
 
-std::uint32_t pixel_of(const Colour& colour, double ink) {
-  const auto byte = [&](double value) {
-    return static_cast<std::uint32_t>(std::lround(255 * (1 - ink * (1 - value))));
-  };
+// Of a solid, inside its border.
+Colour inside(const Colour& colour) {
+  const auto light = [](double value) { return 1 - 0.25 * (1 - value); };
+  return {light(colour.red), light(colour.green), light(colour.blue)};
+}
+
+std::uint32_t pixel_of(const Colour& colour) {
+  const auto byte = [](double value) { return static_cast<std::uint32_t>(std::lround(255 * value)); };
   return byte(colour.red) << 16 | byte(colour.green) << 8 | byte(colour.blue);
 }
 
 // Solid pieces in a light colour; pixels at their borders in the full one.
 spatial::Pixels pixels_of(const std::vector<int>& solid, const PixelGrid& grid) {
-  constexpr double kInside = 0.25;
   spatial::Pixels pixels{grid.columns, grid.rows, {}};
   pixels.rgb.reserve(solid.size());
   const auto at = [&](int column, int row) {
@@ -170,9 +173,9 @@ spatial::Pixels pixels_of(const std::vector<int>& solid, const PixelGrid& grid) 
       const int here = at(column, row);
       const bool border = at(column - 1, row) != here || at(column + 1, row) != here ||
                           at(column, row - 1) != here || at(column, row + 1) != here;
-      pixels.rgb.push_back(
-          here < 0 ? 0xFFFFFF
-                   : pixel_of(spatial::series_colour(static_cast<std::size_t>(here)), border ? 1 : kInside));
+      const Colour colour =
+          here < 0 ? Colour{1, 1, 1} : spatial::series_colour(static_cast<std::size_t>(here));
+      pixels.rgb.push_back(pixel_of(here < 0 || border ? colour : inside(colour)));
     }
   return pixels;
 }
@@ -239,8 +242,10 @@ PieceFigure::PieceFigure(PiecePicture picture)
 double PieceFigure::draw_list(Canvas& canvas) const {
   double y = maps_.back().box.bottom() + kBelowSection - kListLine;
   for (std::size_t i = 0; i < picture_.scene.pieces.size(); ++i) {
-    canvas.fill({kSectionsMargin, y + (kListLine - kSwatch) / 2, kSwatch, kSwatch},
-                spatial::series_colour(i));
+    const Colour colour = spatial::series_colour(i);
+    const double top = y + (kListLine - kSwatch) / 2;
+    canvas.fill({kSectionsMargin, top, kSwatch, kSwatch}, colour);
+    canvas.fill({kSectionsMargin + 1, top + 1, kSwatch - 2, kSwatch - 2}, inside(colour));
     for (const std::string& line : spatial::wrapped(canvas, words_of(picture_.scene.pieces[i]), kPieceWords,
                                                     kSectionsWidth - 2 * kSectionsMargin - kListIndent)) {
       canvas.text({kSectionsMargin + kListIndent, y + kListLine / 2}, line, kPieceWords);
