@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "analysis/extremes/extreme.hpp"
+#include "data-schema/mesh/mesh.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
+#include "playback/prepare/scene/mesh_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/stability/sampled_spring.hpp"
 
@@ -233,9 +235,106 @@ double ticks_at_rest() {
   return changed + std::abs(numbers - 4);
 }
 
+// A ball of 2e6 triangles, by 1000 meridians and 1000 circles of latitude.
+constexpr double kBall_m = 0.05;
+schema::Mesh large_ball() {
+  constexpr std::uint32_t kCircles = 1000, kMeridians = 1000, kNorth = kCircles * kMeridians;
+  schema::Mesh ball;
+  for (std::uint32_t i = 1; i <= kCircles; ++i)
+    for (std::uint32_t j = 0; j < kMeridians; ++j) {
+      const double polar = std::numbers::pi * i / (kCircles + 1),
+                   azimuth = 2 * std::numbers::pi * j / kMeridians;
+      ball.vertices_m.push_back({kBall_m * std::sin(polar) * std::cos(azimuth),
+                                 kBall_m * std::sin(polar) * std::sin(azimuth), kBall_m * std::cos(polar)});
+    }
+  ball.vertices_m.push_back({0, 0, kBall_m});
+  ball.vertices_m.push_back({0, 0, -kBall_m});
+  for (std::uint32_t j = 0; j < kMeridians; ++j) {
+    const std::uint32_t next = (j + 1) % kMeridians, last = (kCircles - 1) * kMeridians;
+    ball.triangles.push_back({kNorth, j, next});
+    ball.triangles.push_back({kNorth + 1, last + next, last + j});
+    for (std::uint32_t i = 0; i < last; i += kMeridians) {
+      ball.triangles.push_back({i + j, i + kMeridians + j, i + next});
+      ball.triangles.push_back({i + next, i + kMeridians + j, i + kMeridians + next});
+    }
+  }
+  return ball;
+}
+
+// A block of one piece: 1 N/mm, at the origin.
+std::vector<std::uint32_t> block_of(const std::vector<std::uint32_t>& table) {
+  core::SceneHeader header;
+  header.patches = header.layers = 1;
+  header.numbers = core::kPieceNumbers + core::kWallStateWords;
+  header.table_words = static_cast<std::uint32_t>(table.size());
+  const core::ScenePatch space{0, 0, 1, 0, 1000, 1000, 0, 1, 0};
+  const core::SceneLayer layer{static_cast<std::uint16_t>(core::SceneLayerKind::mesh), 0, 0};
+  std::vector<float> numbers(header.numbers);
+  numbers[core::kPieceStiffness] = 1000;
+  std::vector<std::uint32_t> words;
+  const auto append = [&]<class T>(const T* parts, std::size_t count) {
+    const auto* const from = reinterpret_cast<const std::uint32_t*>(parts);
+    words.insert(words.end(), from, from + count * sizeof(T) / sizeof(std::uint32_t));
+  };
+  append(&header, 1);
+  append(&space, 1);
+  append(&layer, 1);
+  append(numbers.data(), numbers.size());
+  append(table.data(), table.size());
+  header.check = core::scene_check(words.data(), static_cast<std::uint32_t>(words.size() * sizeof(words[0])));
+  std::memcpy(words.data(), &header, sizeof header);
+  return words;
+}
+
+// A hand 1 mm below the ball, coming straight from outside: re its force on the true ball.
+double large_mesh_error() {
+  constexpr double kStep_m = 1e-6, kDepth_m = 1e-3;
+  const auto block = block_of(playback::mesh_table(large_ball(), {}));
+  core::SceneView view;
+  if (core::read_scene_block(block.data(), static_cast<std::uint32_t>(block.size() * sizeof(block[0])),
+                             view) != core::SceneFault::none)
+    return 1;
+  core::ForceSetup setup;
+  for (std::uint32_t i = 0; i < 3; ++i)
+    setup.axes[i] = {static_cast<core::AxisAlong>(i), static_cast<float>(kStep_m), 1e9F, 1e9F};
+  setup.axis_count = 3, setup.rate_hz = 1000;
+  setup.peak_n = setup.continuous_n = 1e9F, setup.slew_n_per_s = 1e15F;
+  std::vector<float> live(view.live_words());
+  double worst = 0;
+  for (int k = 0; k < 300; ++k) {
+    // Evenly over the ball, from pole to pole (a golden spiral).
+    const double z = 1 - 2 * (k + 0.5) / 300, azimuth = k * std::numbers::pi * (3 - std::sqrt(5.0));
+    const double away[3] = {std::sqrt(1 - z * z) * std::cos(azimuth),
+                            std::sqrt(1 - z * z) * std::sin(azimuth), z};
+    core::SceneKernel kernel;
+    kernel.set(view, setup, live.data());
+    core::ForceOutput output;
+    double place_m[3] = {};
+    for (int tick = 0; tick < 60; ++tick) {
+      std::int32_t counts[3] = {};
+      for (int i = 0; i < 3; ++i) {
+        counts[i] = static_cast<std::int32_t>(
+            std::lround((kBall_m + std::max(-kDepth_m, kDepth_m - 1e-4 * tick)) * away[i] / kStep_m));
+        place_m[i] = counts[i] * kStep_m;
+      }
+      output = kernel.tick(counts, true);
+    }
+    const double distance_m = std::hypot(place_m[0], place_m[1], place_m[2]);
+    double square = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double exact_n = 1000 * (kBall_m - distance_m) * place_m[i] / distance_m;
+      square += std::pow(double{output.unlimited_n[i]} - exact_n, 2);
+    }
+    worst = std::max(worst, std::sqrt(square) / (1000 * (kBall_m - distance_m)));
+  }
+  return worst;
+}
+
 }  // namespace
 
 std::vector<Extreme> scene_extremes() {
+  // Of a triangle from its corners to its middle, 0.176 mm of 50 mm, and the bar of the ghost on a mesh.
+  constexpr double kMeshError = 3.5e-3 + 2e-3;
   return {{"playback", "masses of 1 g to 10 kg at 100 Hz to 20 kHz: the largest stable stiffness",
            "the exact discretisation in closed form, in long double", limit_error(), kStatedLimitError,
            "friction of 1 mN s/m to 100 N s/m"},
@@ -253,7 +352,10 @@ std::vector<Extreme> scene_extremes() {
            "their closed form", all_counts_error(), kStatedForceError, "613,480 ticks of 7001 counts"},
           {"firmware-host", "1e9 ticks at rest, with spring, damper, grooves and a brick: the force",
            "the same at each tick", ticks_at_rest(), 0,
-           "1.9e7 ticks, after which all state but the number of the tick repeats"}};
+           "1.9e7 ticks, after which all state but the number of the tick repeats"},
+          {"firmware-host", "a ball of 50 mm, a mesh of 2e6 triangles, 1 mm deep: the force, a vector",
+           "K (R - r) away from the middle of a true ball", large_mesh_error(), kMeshError,
+           "half the angle of a triangle, and 2 mrad"}};
 }
 
 }  // namespace tacto::analysis

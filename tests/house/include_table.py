@@ -149,7 +149,7 @@ MAY_INCLUDE = {
         "analysis/page data-schema/{base device report results scene} firmware-host/{core/scene sim/planar} "
         "playback/{prepare/scene stability}",
     "analysis/extremes":
-        "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/{base recording} "
+        "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/{base mesh recording} "
         "firmware-host/core/scene playback/{prepare prepare/scene render/reference stability} spatial/{dsp/filter dsp/resample features reference spectrogram strokes}",
     "analysis/fidelity":
         "analysis/{compare page} data-schema/{base results texture transducer} firmware-host/{sim/bench "
