@@ -119,8 +119,9 @@ JudgedPiece judged_piece(const Scene& scene, std::size_t index, const DesignRequ
     if (sum.growth >= worst.growth) worst = std::move(sum);
   }
   worst.alone = piece;
-  if (piece.static_friction > 0) {
+  if (piece.static_friction > 0 || piece.viscous_n_s_per_m > 0) {
     Piece along = piece;
+    if (!(piece.static_friction > 0)) along.stiffness_n_per_m = 0;
     along.damping_n_s_per_m = piece.viscous_n_s_per_m;
     along.integral_n_per_m_s = 0;
     worst.growth_along = growth_of(along, request);

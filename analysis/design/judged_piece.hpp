@@ -25,7 +25,7 @@ struct JudgedPiece {
 /// do not add, because each wall holds its part of the way to the ghost; with the dampings of all pieces that
 /// may hold the ghost together, not perpendicular, a wall that would grow is not known. Friction that holds
 /// is a spring of the same stiffness along the surface, with the viscous friction; one that grows is
-/// unstable, up to where it slips.
+/// unstable, up to where it slips. Viscous friction alone is a damper that may grow, too.
 JudgedPiece judged_piece(const schema::Scene& scene, std::size_t index, const DesignRequest& request);
 
 }  // namespace tacto::analysis

@@ -215,6 +215,14 @@ def growth_per_tick(stiffness, damping, integral=0, delay_ticks=0, hand=(0, 0, 0
     return np.abs(np.linalg.eigvals(motion)).max()
 
 
+def growth_along(viscous):
+    """Of a damper alone: of the speed and the last step, because no force depends on the place."""
+    mass, tick = 0.15, 1 / RATE_HZ
+    motion = expm(tick * np.array([[0, 1, 0], [0, -0.5 / mass, 1 / mass], [0, 0, 0]]))
+    # Step and speed after a tick, by the speed and the force of the tick: -viscous x the step before / T.
+    return np.abs(np.linalg.eigvals([[-viscous / tick * motion[0, 2], motion[0, 1]], [-viscous / tick * motion[1, 2], motion[1, 1]]])).max()
+
+
 def decay_time_s(*wall):
     return -1 / RATE_HZ / np.log(growth_per_tick(*wall))
 
@@ -243,6 +251,18 @@ def design_of_a_wall_is_that_of_numpy():
                 assert abs(row["decay_time_s" if growth < 1 else "growth_time_s"] / time_s - 1) < 1e-6, (row, time_s, delay_ticks, hand)
                 verdicts.add((row["verdict"], hand, delay_ticks > 0))
     assert len(verdicts) == 12, verdicts
+
+
+def viscous_friction_alone_is_judged():
+    """Beyond 2 M / T = 300 N s/m."""
+    for viscous in (299, 301, 400):
+        write_scene("thick", piece("floor", "plane", damping_n_s_per_m=4, viscous_n_s_per_m=viscous) | {"stiffness_n_per_m": 900})
+        unstable = growth_along(viscous) > 1
+        assert unstable == (viscous > 300), growth_along(viscous)
+        row = run_json("design", "thick.scene.json", "--device", "arm", code=UNSTABLE if unstable else 0)["pieces"][0]
+        assert row["verdict"] == row["along_surface"] == ("unstable" if unstable else "stable"), row
+        assert (row["limit_along_n_per_m"] > 0) != unstable, row
+        assert ("'floor'" in run("explain", "thick.scene.json", "--device", "arm")[1]) == unstable, viscous
 
 
 def design_adds_up_what_acts_together():
@@ -319,6 +339,6 @@ def what_cannot_be_is_refused():
 
 if __name__ == "__main__":
     for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit, a_dragged_hand_slips_and_sliders_move,
-                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, design_adds_up_what_acts_together,
+                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, design_adds_up_what_acts_together,
                  what_cannot_be_is_refused):
         tacto.in_folder(test)

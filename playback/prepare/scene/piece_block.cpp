@@ -267,9 +267,12 @@ std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const sche
   for (const Piece& piece : scene.pieces) {
     const std::vector<Piece> ends = slider_ends(piece);
     std::ranges::any_of(ends, [&](const Piece& end) { return unstable(end, end.damping_n_s_per_m, ""); });
-    std::ranges::any_of(ends, [&](const Piece& end) {
-      return end.static_friction > 0 &&
-             unstable(end, end.viscous_n_s_per_m, ", along its surface where its friction holds");
+    std::ranges::any_of(ends, [&](Piece end) {
+      const bool holds = end.static_friction > 0;
+      if (!holds) end.stiffness_n_per_m = 0;
+      return (holds || end.viscous_n_s_per_m > 0) &&
+             unstable(end, end.viscous_n_s_per_m,
+                      holds ? ", along its surface where its friction holds" : ", along its surface");
     });
   }
   return notes;
