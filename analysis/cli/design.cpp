@@ -137,20 +137,27 @@ Result<void> add_adaptive(schema::Scene& scene, const std::string& file, const D
   return {};
 }
 
-// The worse one of both ends of all sliders.
+// The worst one of the ends of all sliders. The least stiffness only where there is an integral: without one
+// it is never the worse end.
 JudgedPiece judged_at_slider_ends(const schema::Scene& scene, std::size_t index,
                                   const DesignRequest& request) {
-  schema::Scene ends[2] = {scene, scene};
-  for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
-    const auto both = slider_ends(scene.pieces[i]);
-    ends[0].pieces[i] = both.front(), ends[1].pieces[i] = both.back();
-  }
-  JudgedPiece low = judged_piece(ends[0], index, request), high = judged_piece(ends[1], index, request);
+  const bool grows = std::ranges::any_of(
+      scene.pieces, [](const schema::Piece& piece) { return piece.integral_n_per_m_s > 0; });
   const auto rank = [](const JudgedPiece& judged) {
     return std::tuple(judged.verdict == Stability::unstable, judged.verdict == Stability::not_known,
                       std::max(judged.growth, judged.growth_along));
   };
-  return rank(low) > rank(high) ? low : high;
+  JudgedPiece worst;
+  for (std::size_t end = 0; end < (grows ? 4U : 2U); ++end) {
+    schema::Scene at = scene;
+    for (schema::Piece& piece : at.pieces) {
+      const auto ends = slider_ends(piece);
+      piece = ends[std::min(end, ends.size() - 1)];
+    }
+    JudgedPiece judged = judged_piece(at, index, request);
+    if (end == 0 || rank(judged) >= rank(worst)) worst = std::move(judged);
+  }
+  return worst;
 }
 
 // Pieces in space: the motion on their walls from tick to tick.

@@ -265,6 +265,20 @@ def viscous_friction_alone_is_judged():
         assert ("'floor'" in run("explain", "thick.scene.json", "--device", "arm")[1]) == unstable, viscous
 
 
+def the_lower_end_of_a_stiffness_is_judged_with_an_integral():
+    assert growth_per_tick(1000, 4, 5000) < 1 < growth_per_tick(50, 4, 5000)
+    for least in (500, 50):
+        assert growth_per_tick(500, 4, 5000) < 1
+        write_scene("soft", piece("floor", "plane", damping_n_s_per_m=4, integral_n_per_m_s=5000, integral_bound_n=3) | {"stiffness_n_per_m": {"value": 1000, "slider": {"from": least, "to": 1000}}})
+        row = run_json("design", "soft.scene.json", "--device", "arm", code=UNSTABLE if least == 50 else 0)["pieces"][0]
+        assert row["verdict"] == ("unstable" if least == 50 else "stable") and (least == 500 or row["stiffness_n_per_m"] == 50), row
+        if least == 50:
+            assert abs(row["growth_time_s"] * RATE_HZ * np.log(growth_per_tick(50, 4, 5000)) - 1) < 1e-6, row
+            assert error_of("explain", "soft.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces/0/integral_n_per_m_s")
+        else:
+            run("explain", "soft.scene.json", "--device", "arm")
+
+
 def design_adds_up_what_acts_together():
     def rows(*pieces, **members):
         write_scene("sums", *pieces, **members)
@@ -339,6 +353,6 @@ def what_cannot_be_is_refused():
 
 if __name__ == "__main__":
     for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit, a_dragged_hand_slips_and_sliders_move,
-                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, design_adds_up_what_acts_together,
+                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together,
                  what_cannot_be_is_refused):
         tacto.in_folder(test)

@@ -134,13 +134,19 @@ void append_numbers(const Piece& piece, std::vector<float>& numbers) {
 Result<void> check_wall(const Piece& piece, const schema::Device& device, double rate_hz,
                         const std::optional<schema::Hand>& hand, const std::string& where) {
   if (!(piece.integral_n_per_m_s > 0)) return {};
-  if (wall_growth(piece, device, rate_hz, hand) <= 1) return {};
-  return fail(ErrorKind::unsuitable,
-              fmt::format("the integral of piece '{}' makes its wall unstable on the device '{}': with {:g} "
-                          "N/m, {:g} N s/m and {:g} N/(m s) a motion grows from tick to tick (computed)",
-                          piece.name, device.name, piece.stiffness_n_per_m, piece.damping_n_s_per_m,
-                          piece.integral_n_per_m_s),
-              where + "/integral_n_per_m_s", "choose a smaller integral, more damping or less stiffness");
+  const double growth = wall_growth(piece, device, rate_hz, hand);
+  if (growth <= 1) return {};
+  Piece stiffer = piece;
+  stiffer.stiffness_n_per_m = 1 + 1.01 * piece.stiffness_n_per_m;
+  const bool stiffens = wall_growth(stiffer, device, rate_hz, hand) < growth;
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format("the integral of piece '{}' makes its wall unstable on the device '{}': with {:g} "
+                  "N/m, {:g} N s/m and {:g} N/(m s) a motion grows from tick to tick (computed)",
+                  piece.name, device.name, piece.stiffness_n_per_m, piece.damping_n_s_per_m,
+                  piece.integral_n_per_m_s),
+      where + "/integral_n_per_m_s",
+      fmt::format("choose a smaller integral, more damping or {} stiffness", stiffens ? "more" : "less"));
 }
 
 std::optional<std::string> cut_of_transient(const Piece& piece, const schema::Device& device,
