@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <tuple>
 
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/design/design_page.hpp"
-#include "analysis/design/judged_piece.hpp"
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/prepare/scene/acting_load.hpp"
+#include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/stability/free_limit.hpp"
 
@@ -137,22 +136,6 @@ Result<void> add_adaptive(schema::Scene& scene, const std::string& file, const D
   return {};
 }
 
-// The worse one of both ends of all sliders.
-JudgedPiece judged_at_slider_ends(const schema::Scene& scene, std::size_t index,
-                                  const DesignRequest& request) {
-  schema::Scene ends[2] = {scene, scene};
-  for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
-    const auto both = slider_ends(scene.pieces[i]);
-    ends[0].pieces[i] = both.front(), ends[1].pieces[i] = both.back();
-  }
-  JudgedPiece low = judged_piece(ends[0], index, request), high = judged_piece(ends[1], index, request);
-  const auto rank = [](const JudgedPiece& judged) {
-    return std::tuple(judged.verdict == Stability::unstable, judged.verdict == Stability::not_known,
-                      std::max(judged.growth, judged.growth_along));
-  };
-  return rank(low) > rank(high) ? low : high;
-}
-
 // Pieces in space: the motion on their walls from tick to tick.
 Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& scene, const std::string& file,
                              const DesignRequest& request) {
@@ -171,10 +154,14 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
   bool unstable = false;
   for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
     const schema::Piece& piece = scene.pieces[i];
-    const JudgedPiece judged = judged_at_slider_ends(scene, i, request);
-    unstable = unstable || judged.verdict == Stability::unstable;
+    const playback::JudgedPiece judged =
+        playback::judged_piece(scene, i, request.device, request.rate_hz, request.hand);
+    const Stability verdict = judged.is_unstable()      ? Stability::unstable
+                              : judged.unjudged.empty() ? Stability::stable
+                                                        : Stability::not_known;
+    unstable = unstable || judged.is_unstable();
     Report row;
-    row.add("piece", piece.name).add("verdict", to_string(judged.verdict));
+    row.add("piece", piece.name).add("verdict", to_string(verdict));
     row.add("stiffness_n_per_m", judged.alone.stiffness_n_per_m)
         .add("damping_n_s_per_m", judged.alone.damping_n_s_per_m);
     if (!judged.with.empty())
@@ -188,11 +175,15 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
     if (judged.growth != 1)
       row.add(judged.growth < 1 ? "decay_time_s" : "growth_time_s",
               1 / (request.rate_hz * std::abs(std::log(judged.growth))));
-    if (judged.growth_along > 0)
-      row.add("along_surface", to_string(judged.growth_along > 1 ? Stability::unstable : Stability::stable))
+    if (judged.growth_along > 0) {
+      row.add("along_surface", to_string(judged.growth_along > 1 ? Stability::unstable : Stability::stable));
+      if (!judged.along_with.empty()) row.add("along_with", judged.along_with);
+      row.add("stiffness_along_n_per_m", judged.along.stiffness_n_per_m)
+          .add("damping_along_n_s_per_m", judged.along.damping_n_s_per_m)
           .add("limit_along_n_per_m",
                playback::stiffness_limit_of(request.device, request.rate_hz, request.hand,
-                                            judged.alone.viscous_n_s_per_m, true));
+                                            judged.along.damping_n_s_per_m, true));
+    }
     rows.push_back(std::move(row));
   }
   Report report;
@@ -202,10 +193,11 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
   report.add(
       "assumed",
       scene.contact == schema::PieceContact::add
-          ? "touched along an axis of the device; planes of the same direction add up, and pieces that "
-            "may overlap in another way are not computed"
-          : "each piece touched along an axis of the device; of pieces that hold the ghost together at "
-            "an angle, only the sum of their dampings is looked at");
+          ? "touched along an axis of the device; planes of the same direction add up, friction also with a "
+            "second plane at a right angle, and pieces that may overlap in another way are not computed"
+          : "each piece touched along an axis of the device; friction adds up with that of a second plane at "
+            "a right angle; of pieces that hold the ghost together at another angle, only the sums of their "
+            "dampings and of their frictions are looked at");
   if (unstable) report.ends_with(ErrorKind::unstable);
   return report;
 }

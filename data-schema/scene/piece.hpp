@@ -94,8 +94,9 @@ inline constexpr PieceNumber kWallNumbers[] = {{"stiffness_n_per_m", &Piece::sti
 /// Under its name in the file, with its slider.
 NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number);
 
-/// What is judged of a piece: it alone, or with all sliders at their upper ends, and with dampings at the
-/// lower ones.
+/// What is judged of a piece: it alone, or with all sliders at their upper ends, but dampings or not at the
+/// lower ones; the last two of four the same with the least stiffness, which is the worse end of a wall with
+/// an integral.
 std::vector<Piece> slider_ends(const Piece& piece);
 
 /// "plane", "sphere", "cylinder", "quadric", "mesh".

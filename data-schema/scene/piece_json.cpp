@@ -58,12 +58,14 @@ NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number) {
 
 std::vector<Piece> slider_ends(const Piece& piece) {
   if (piece.sliders.empty()) return {piece};
-  std::vector<Piece> ends(2, piece);
+  std::vector<Piece> ends(4, piece);
   for (const PieceNumber& number : kWallNumbers) {
     const LayerNumber with = named_number(piece, number).number;
     const bool damps = number.value == &Piece::damping_n_s_per_m || number.value == &Piece::viscous_n_s_per_m;
-    ends[0].*number.value = damps ? least_value(with) : largest_value(with);
-    ends[1].*number.value = largest_value(with);
+    const bool stiffens = number.value == &Piece::stiffness_n_per_m;
+    for (std::size_t i = 0; i < ends.size(); ++i)
+      ends[i].*number.value =
+          (damps && i % 2 == 0) || (stiffens && i >= 2) ? least_value(with) : largest_value(with);
   }
   for (Piece& end : ends) end.sliders.clear();
   return ends;

@@ -215,6 +215,14 @@ def growth_per_tick(stiffness, damping, integral=0, delay_ticks=0, hand=(0, 0, 0
     return np.abs(np.linalg.eigvals(motion)).max()
 
 
+def growth_along(viscous):
+    """Of a damper alone: of the speed and the last step, because no force depends on the place."""
+    mass, tick = 0.15, 1 / RATE_HZ
+    motion = expm(tick * np.array([[0, 1, 0], [0, -0.5 / mass, 1 / mass], [0, 0, 0]]))
+    # Step and speed after a tick, by the speed and the force of the tick: -viscous x the step before / T.
+    return np.abs(np.linalg.eigvals([[-viscous / tick * motion[0, 2], motion[0, 1]], [-viscous / tick * motion[1, 2], motion[1, 1]]])).max()
+
+
 def decay_time_s(*wall):
     return -1 / RATE_HZ / np.log(growth_per_tick(*wall))
 
@@ -245,6 +253,32 @@ def design_of_a_wall_is_that_of_numpy():
     assert len(verdicts) == 12, verdicts
 
 
+def viscous_friction_alone_is_judged():
+    """Beyond 2 M / T = 300 N s/m."""
+    for viscous in (299, 301, 400):
+        write_scene("thick", piece("floor", "plane", damping_n_s_per_m=4, viscous_n_s_per_m=viscous) | {"stiffness_n_per_m": 900})
+        unstable = growth_along(viscous) > 1
+        assert unstable == (viscous > 300), growth_along(viscous)
+        row = run_json("design", "thick.scene.json", "--device", "arm", code=UNSTABLE if unstable else 0)["pieces"][0]
+        assert row["verdict"] == row["along_surface"] == ("unstable" if unstable else "stable"), row
+        assert (row["limit_along_n_per_m"] > 0) != unstable, row
+        assert ("'floor'" in run("explain", "thick.scene.json", "--device", "arm")[1]) == unstable, viscous
+
+
+def the_lower_end_of_a_stiffness_is_judged_with_an_integral():
+    assert growth_per_tick(1000, 4, 5000) < 1 < growth_per_tick(50, 4, 5000)
+    for least in (500, 50):
+        assert growth_per_tick(500, 4, 5000) < 1
+        write_scene("soft", piece("floor", "plane", damping_n_s_per_m=4, integral_n_per_m_s=5000, integral_bound_n=3) | {"stiffness_n_per_m": {"value": 1000, "slider": {"from": least, "to": 1000}}})
+        row = run_json("design", "soft.scene.json", "--device", "arm", code=UNSTABLE if least == 50 else 0)["pieces"][0]
+        assert row["verdict"] == ("unstable" if least == 50 else "stable") and (least == 500 or row["stiffness_n_per_m"] == 50), row
+        if least == 50:
+            assert abs(row["growth_time_s"] * RATE_HZ * np.log(growth_per_tick(50, 4, 5000)) - 1) < 1e-6, row
+            assert error_of("explain", "soft.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces/0/integral_n_per_m_s")
+        else:
+            run("explain", "soft.scene.json", "--device", "arm")
+
+
 def design_adds_up_what_acts_together():
     def rows(*pieces, **members):
         write_scene("sums", *pieces, **members)
@@ -261,6 +295,12 @@ def design_adds_up_what_acts_together():
             assert row["verdict"] == "unstable" and row["adds_to"] == [other] and row["total_stiffness_n_per_m"] == 1800, row
             assert abs(row["growth_time_s"] * RATE_HZ * np.log(growth_per_tick(1800, 0)) - 1) < 1e-6, row
         assert {row["verdict"] for row in rows(wall("a", 900), wall("b", 900, place=(0, 0, -depth))).values()} == {"stable"}
+    # `explain` and `play` warn of the sum, too.
+    write_path("path.csv", np.zeros((2, 3)))
+    for contact, warned in (("ghost", False), ("add", True)):
+        write_scene("sums", wall("first", 900), wall("second", 900), contact=contact)
+        for said in (run("explain", "sums.scene.json", "--device", "arm")[1], run("play", "sums.scene.json", "-d", "sim:arm", "--finger-path", "path.csv", "-o", contact)[1]):
+            assert ("'first'" in said) == ("'second'" in said) == ("1800" in said) == warned, said
     # A damper on top, and a spring that would grow alone.
     assert growth_per_tick(1500, 0) > 1 > max(growth_per_tick(500, 4), growth_per_tick(2000, 4))
     found = rows(wall("skin", 500, 4), wall("core", 1500, place=(0, 0, -0.01)), contact="add")
@@ -276,6 +316,53 @@ def design_adds_up_what_acts_together():
     for damping, slope, verdict in ((170, 0.05, "not known"), (60, 0.05, "stable"), (170, 1, "stable")):
         found = rows(*(wall(name, STIFFNESS, damping, direction=[way * slope, 0, 1]) for name, way in (("a", 1), ("b", -1))))
         assert {row["verdict"] for row in found.values()} == {verdict}, found
+
+
+def friction_of_several_pieces_adds_up():
+    def rows(code, *pieces, **members):
+        write_scene("rubs", *pieces, **members)
+        return {row["piece"]: row for row in run_json("design", "rubs.scene.json", "--device", "arm", code=code)["pieces"]}
+
+    def wall(name, direction=(0, 0, 1), place=(0, 0, 0), stiffness=900, friction=(1.5, 1), **members):
+        return piece(name, "plane", place, direction=list(direction), static_friction=friction[0], kinetic_friction=friction[1], **members) | {"stiffness_n_per_m": stiffness}
+
+    def along(row):
+        return row["along_surface"], row["stiffness_along_n_per_m"], row["damping_along_n_s_per_m"], row.get("along_with", [])
+
+    # Two planes of the same direction; with `ghost` the upper one alone holds.
+    assert growth_per_tick(1800, 2) < 1 < growth_per_tick(1800, 0) and growth_per_tick(900, 0) < 1
+    both = [wall(name, damping_n_s_per_m=1) for name in "ab"]
+    for name, row in rows(UNSTABLE, *both, contact="add").items():
+        assert along(row) == ("unstable", 1800, 0, ["b" if name == "a" else "a"]), row
+    for row in rows(0, *both).values():
+        assert along(row) == ("stable", 900, 0, []) and row["verdict"] == "stable", row
+    # What damps one damps both.
+    assert growth_per_tick(1800, 2) < 1
+    for row in rows(0, *(wall(name, damping_n_s_per_m=1, viscous_n_s_per_m=1) for name in "ab"), contact="add").values():
+        assert row["verdict"] == "stable" and row["along_surface"] == "stable", row
+    # Along the edge of two at a right angle; walls face to face are not touched together.
+    floor, left, right = wall("floor"), wall("left", (1, 0, 0), (-0.05, 0, 0)), wall("right", (-1, 0, 0), (0.05, 0, 0))
+    for contact in ("ghost", "add"):
+        found = rows(UNSTABLE, floor, left, contact=contact)
+        assert along(found["floor"]) == ("unstable", 1800, 0, ["left"]) and along(found["left"])[1] == 1800, found
+        write_scene("rubs", floor, left, contact=contact)
+        said = run("explain", "rubs.scene.json", "--device", "arm")[1]
+        assert "'floor'" in said and "'left'" in said and "1800" in said, said
+        found = rows(0, left, right, contact=contact)
+        assert {row["verdict"] for row in found.values()} == {"stable"}, found
+    # Without friction of the second one: `add` holds the hand also against its wall, a ghost does not move there.
+    smooth = wall("left", (1, 0, 0), (-0.05, 0, 0), friction=(0, 0))
+    assert along(rows(UNSTABLE, floor, smooth, contact="add")["floor"]) == ("unstable", 1800, 0, ["left"])
+    assert along(rows(0, floor, smooth)["floor"]) == ("stable", 900, 0, [])
+    # The hand's speed is damped in both.
+    assert growth_per_tick(900, 200) < 1 < growth_per_tick(900, 400) and growth_along(200) < 1
+    thick, damped = wall("floor", friction=(0, 0), viscous_n_s_per_m=200), wall("left", (1, 0, 0), friction=(0, 0), damping_n_s_per_m=200)
+    assert along(rows(UNSTABLE, thick, damped)["floor"]) == ("unstable", 900, 400, ["left"])
+    # At another angle it is not known.
+    found = rows(0, *(wall(name, (way, 0, 1)) for name, way in (("a", 2), ("b", -1))))
+    assert {row["verdict"] for row in found.values()} == {"not known"} and found["a"]["not_computed_with"] == ["b"], found
+    found = rows(0, *(wall(name, (way, 0, 1), stiffness=400) for name, way in (("a", 2), ("b", -1))))
+    assert growth_per_tick(800, 0) < 1 and {row["verdict"] for row in found.values()} == {"stable"}, found
 
 
 def explain_and_design_judge_walls():
@@ -319,6 +406,6 @@ def what_cannot_be_is_refused():
 
 if __name__ == "__main__":
     for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit, a_dragged_hand_slips_and_sliders_move,
-                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, design_adds_up_what_acts_together,
+                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
                  what_cannot_be_is_refused):
         tacto.in_folder(test)
