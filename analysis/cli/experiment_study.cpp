@@ -152,8 +152,14 @@ Result<schema::Protocol> new_adjustment(const NewStudyOptions& o, NamedTextures&
     return schema::fail(ErrorKind::usage, fmt::format("the goal {} has none", schema::word_of(o.goal)),
                         "--reference", "leave it out, or add --goal match");
   const std::string adjusted = name_of_texture(o.textures.front());
+  const auto folder_of = [](const std::string& name) {
+    return std::filesystem::absolute(name).lexically_normal().parent_path();
+  };
   if (!o.reference.empty() && name_of_texture(o.reference) != adjusted)
     TACTO_TRY(read_named({o.reference}, textures));
+  else if (!o.reference.empty() && folder_of(o.reference) != folder_of(o.textures.front()))
+    return schema::fail(ErrorKind::usage, fmt::format("two textures have the name {}", adjusted),
+                        "--reference", "rename one of them");
   return adjustment_protocol(o.seed, textures, adjusted, o.goal);
 }
 
@@ -433,7 +439,8 @@ Result<Report> run_watch_study(const WatchOptions& o) {
       if (std::exchange(shown[stem], line) != line) cli::write_message(line);
     }
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begun;
-    if (!going_on || signals.stop_asked() || (o.time_s && elapsed.count() >= *o.time_s))
+    const bool may_begin = rows.empty() && o.time_s;
+    if ((!going_on && !may_begin) || signals.stop_asked() || (o.time_s && elapsed.count() >= *o.time_s))
       return Report().add("study", study->stem).add("runs", std::move(rows));
     std::this_thread::sleep_for(kLookEvery);
   }

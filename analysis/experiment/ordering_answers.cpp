@@ -30,7 +30,8 @@ OrderedBy ordered_by(std::string participant, const Scores& rows, const std::vec
   OrderedBy ordered{std::move(participant), rows.size(), std::vector<double>(rows.front().size(), 0), {}, {}};
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i)
-      ordered.mean_ranks[i] += row[i] / static_cast<double>(rows.size());
+      ordered.mean_ranks[i] += row[i];  // whole numbers first, so that equal sums are ties
+  for (double& rank : ordered.mean_ranks) rank /= static_cast<double>(rows.size());
   if (rows.size() > 1) ordered.agreement = concordance_of(rows);
   if (intended.empty()) return ordered;
   const auto rho = spearman_rho(intended, ordered.mean_ranks);

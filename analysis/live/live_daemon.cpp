@@ -156,7 +156,19 @@ void LiveDaemon::disconnect(Link& link) {
   link.reset();
 }
 
+// If another client has armed, the daemon does not watch the page: this does.
+void LiveDaemon::stop_if_silent() {
+  constexpr std::chrono::duration<double> kSilent(kDeadManS);
+  if (!steering_ || !played_ || std::chrono::steady_clock::now() - heard_ < kSilent) return;
+  ControlRequest stop;
+  stop.verb = ControlVerb::stop;
+  steering_->send(schema::control_request_line(stop));
+  asked_.push_back(nullptr);
+  played_ = false;
+}
+
 void LiveDaemon::step() {
+  stop_if_silent();
   if (pages_.empty()) {
     disconnect(watching_);
     about_.clear();
@@ -235,6 +247,7 @@ Result<void> LiveDaemon::ask(Page& page, const schema::LiveRequest& request) {
   if (request.verb == LiveVerb::steer) return {};
   if (steers_ != &page && !stops)
     return fail(ErrorKind::usage, "another page steers the daemon", "this page", "press Steer here");
+  if (steers_ == &page) heard_ = std::chrono::steady_clock::now();
   const auto line = line_of(request);
   TACTO_TRY(line);
   if (!steering_) {

@@ -56,6 +56,7 @@ class LiveDaemon {
   void steering_lost();
   void give_steering(Page* page);
   void leave(Page& page);
+  void stop_if_silent();
   void tell_all(const std::string& text);
 
   std::string socket_;
@@ -66,6 +67,7 @@ class LiveDaemon {
   Link watching_, steering_;
   std::deque<Page*> asked_;  // whose answers come next; null: nobody's
   bool played_ = false;      // the pages' last word: the drive has to fall when they leave
+  std::chrono::steady_clock::time_point heard_;  // of the page that steers: its last request
   std::chrono::steady_clock::time_point next_try_;
   std::string about_, status_,
       state_;  // the newest events, for a new page; state_ if it is newer than status_

@@ -10,11 +10,19 @@
 namespace tacto::analysis {
 namespace {
 
+// -1, 0 or 1; means of ranks that differ by rounding are equal.
+int order_of(double a, double b) {
+  constexpr double kRounding = 1e-12;
+  if (std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b))) return 0;
+  return a < b ? -1 : 1;
+}
+
 // The sum of t^3 - t over ties.
 double ties_of(std::span<const double> row) {
   double ties = 0;
   for (const double value : row) {
-    const auto equal = static_cast<double>(std::ranges::count(row, value));
+    const auto equal =
+        static_cast<double>(std::ranges::count_if(row, [&](double x) { return order_of(x, value) == 0; }));
     ties += equal * equal - 1;
   }
   return ties;
@@ -47,8 +55,10 @@ std::vector<double> ranks_of(std::span<const double> values) {
   std::vector<double> ranks;
   for (const double value : values) {
     const auto below =
-        static_cast<double>(std::ranges::count_if(values, [&](double x) { return x < value; }));
-    ranks.push_back(below + (static_cast<double>(std::ranges::count(values, value)) + 1) / 2);
+        static_cast<double>(std::ranges::count_if(values, [&](double x) { return order_of(x, value) < 0; }));
+    const auto ties =
+        static_cast<double>(std::ranges::count_if(values, [&](double x) { return order_of(x, value) == 0; }));
+    ranks.push_back(below + (ties + 1) / 2);
   }
   return ranks;
 }
@@ -67,11 +77,10 @@ std::optional<double> spearman_rho(std::span<const double> a, std::span<const do
 }
 
 std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b) {
-  const auto sign = [](double x) { return (x > 0) - (x < 0); };
   double both = 0, pairs_a = 0, pairs_b = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const int in_a = sign(a[i] - a[j]), in_b = sign(b[i] - b[j]);
+      const int in_a = order_of(a[i], a[j]), in_b = order_of(b[i], b[j]);
       both += in_a * in_b, pairs_a += std::abs(in_a), pairs_b += std::abs(in_b);
     }
   if (pairs_a == 0 || pairs_b == 0) return std::nullopt;

@@ -97,6 +97,7 @@ struct Turns {
   std::vector<bool> turned;
   std::size_t flipped = 0;
   bool one_sided = false;
+  std::vector<std::vector<std::uint32_t>> parts;  // their triangles
 };
 
 Turns turns_of(const Mesh& mesh) {
@@ -112,7 +113,7 @@ Turns turns_of(const Mesh& mesh) {
     neighbours[edge[0].triangle].push_back({edge[1].triangle, same});
     neighbours[edge[1].triangle].push_back({edge[0].triangle, same});
   });
-  Turns turns{std::vector<bool>(count), 0, false};
+  Turns turns{std::vector<bool>(count), 0, false, {}};
   std::vector<bool> seen(count);
   for (std::uint32_t start = 0; start < count; ++start) {
     if (seen[start]) continue;
@@ -136,8 +137,76 @@ Turns turns_of(const Mesh& mesh) {
     turns.flipped += std::min(flipped, part.size() - flipped);
     if (2 * flipped > part.size())
       for (const std::uint32_t own : part) turns.turned[own] = !turns.turned[own];
+    turns.parts.push_back(std::move(part));
   }
   return turns;
+}
+
+// Moeller and Trumbore 1997.
+bool crosses(const Mesh& mesh, const MeshTriangle& t, const MeshVertex& from, const MeshVertex& way) {
+  const MeshVertex& corner = mesh.vertices_m[t[0]];
+  const MeshVertex one = way_between(mesh.vertices_m[t[1]], corner),
+                   other = way_between(mesh.vertices_m[t[2]], corner), across = cross_product(way, other),
+                   back = way_between(from, corner), around = cross_product(back, one);
+  const double area = dot_product(one, across);
+  if (area == 0) return false;
+  const double u = dot_product(back, across) / area, v = dot_product(way, around) / area;
+  return u >= 0 && v >= 0 && u + v <= 1 && dot_product(other, around) / area > 0;
+}
+
+// A connected part of a closed mesh, whose triangles go the same way.
+struct Part {
+  const std::vector<std::uint32_t>* triangles = nullptr;
+  MeshVertex least_m, most_m;
+  double volume_m3 = 0;
+};
+
+Part part_of(const Mesh& mesh, const std::vector<std::uint32_t>& triangles) {
+  Part part{&triangles, {}, {}, 0};
+  part.least_m = part.most_m = mesh.vertices_m[mesh.triangles[triangles[0]][0]];
+  const MeshVertex middle = part.least_m;
+  for (const std::uint32_t triangle : triangles) {
+    part.volume_m3 += volume_of(mesh, middle, mesh.triangles[triangle]);
+    for (const std::uint32_t vertex : mesh.triangles[triangle])
+      for (std::size_t i = 0; i < 3; ++i) {
+        part.least_m[i] = std::min(part.least_m[i], mesh.vertices_m[vertex][i]);
+        part.most_m[i] = std::max(part.most_m[i], mesh.vertices_m[vertex][i]);
+      }
+  }
+  return part;
+}
+
+// By some of its vertices: parts that overlap are not one within the other.
+bool is_within(const Mesh& mesh, const Part& part, const Part& around) {
+  constexpr std::size_t kTried = 16;
+  constexpr MeshVertex kWay = {0.5257, 0.8506, 0.0123};  // along no usual face or edge
+  for (std::size_t i = 0; i < 3; ++i)
+    if (part.least_m[i] < around.least_m[i] || part.most_m[i] > around.most_m[i]) return false;
+  const std::size_t step = part.triangles->size() / kTried + 1;
+  for (std::size_t i = 0; i < part.triangles->size(); i += step) {
+    const MeshVertex& from = mesh.vertices_m[mesh.triangles[(*part.triangles)[i]][0]];
+    if (std::ranges::count_if(
+            *around.triangles,
+            [&](std::uint32_t triangle) { return crosses(mesh, mesh.triangles[triangle], from, kWay); }) %
+            2 ==
+        0)
+      return false;
+  }
+  return true;
+}
+
+// The parts whose volume has the wrong sign: it is positive, but negative of a cavity, which is within an odd
+// number of others.
+std::vector<const std::vector<std::uint32_t>*> parts_inside_out(const Mesh& mesh, const Turns& turns) {
+  std::vector<Part> parts;
+  for (const auto& triangles : turns.parts) parts.push_back(part_of(mesh, triangles));
+  std::vector<const std::vector<std::uint32_t>*> wrong;
+  for (const Part& part : parts) {
+    const auto around = std::ranges::count_if(
+        parts, [&](const Part& other) { return &other != &part && is_within(mesh, part, other); });
+    if (part.volume_m3 != 0 && (part.volume_m3 < 0) != (around % 2 != 0)) wrong.push_back(part.triangles);
+  }
+  return wrong;
 }
 
 // Moves the triangles to the vertices that `kept` names, and leaves out the vertices that no triangle has.
@@ -169,7 +238,7 @@ std::vector<std::uint32_t> near_vertices(const Mesh& mesh, double merge_m) {
     if (kept[order[i]] != order[i]) continue;
     for (std::size_t j = i + 1; j < order.size(); ++j) {
       const MeshVertex way = way_between(at[order[j]], at[order[i]]);
-      if (way[0] > merge_m) break;
+      if (way[0] > merge_m || (merge_m == 0 && at[order[j]] != at[order[i]])) break;
       if (kept[order[j]] == order[j] && dot_product(way, way) <= merge_m * merge_m) kept[order[j]] = order[i];
     }
   }
@@ -240,8 +309,7 @@ MeshFaults faults_of(const Mesh& mesh) {
   const Turns turns = turns_of(mesh);
   faults.flipped = turns.flipped;
   faults.one_sided = turns.one_sided || (unequal && turns.flipped == 0);
-  faults.inside_out =
-      !unequal && faults.open_edges == 0 && !mesh.triangles.empty() && figures_of(mesh).volume_m3 < 0;
+  faults.inside_out = !unequal && faults.open_edges == 0 && !parts_inside_out(mesh, turns).empty();
   return faults;
 }
 
@@ -279,16 +347,17 @@ MeshRepair repair(Mesh& mesh, double merge_m) {
     return is_degenerate(mesh, triangle) || !known.insert(sorted).second;
   });
   repair.dropped = triangles - mesh.triangles.size();
-  const Turns turns = turns_of(mesh);
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (!turns.turned[i]) continue;
-    std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
-    ++repair.turned;
-  }
-  if (!mesh.triangles.empty() && faults_of(mesh).inside_out) {
-    for (MeshTriangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-    repair.turned = mesh.triangles.size() - repair.turned;
-  }
+  Turns turns = turns_of(mesh);
+  const auto turn = [&](std::size_t i) { std::swap(mesh.triangles[i][1], mesh.triangles[i][2]); };
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    if (turns.turned[i]) turn(i);
+  if (faults_of(mesh).inside_out)
+    for (const auto* const part : parts_inside_out(mesh, turns))
+      for (const std::uint32_t i : *part) {
+        turn(i);
+        turns.turned[i] = !turns.turned[i];
+      }
+  repair.turned = static_cast<std::size_t>(std::ranges::count(turns.turned, true));
   return repair;
 }
 
@@ -324,7 +393,8 @@ Result<void> check_mesh(const Mesh& mesh, const std::string& where) {
   if (faults.one_sided)
     return unsuitable("its triangles have no common outer side",
                       "repair it in a program for meshes: each edge belongs to two triangles");
-  if (faults.inside_out) return unsuitable("its outer side is inside: its volume is negative", kMeshRemedy);
+  if (faults.inside_out)
+    return unsuitable("the outer side of a part is inside: its volume is negative", kMeshRemedy);
   return {};
 }
 

@@ -35,7 +35,7 @@ struct MeshFaults {
   std::size_t flipped = 0;     ///< triangles turned the other way than most of those they are connected with
   std::size_t open_edges = 0;  ///< edges of one triangle, or of an odd number of them: of holes
   bool one_sided = false;      ///< its triangles cannot be turned the same way, as those of a Moebius strip
-  bool inside_out = false;     ///< closed, but its volume is negative
+  bool inside_out = false;     ///< closed, but the volume of a part is negative, or that of a cavity is not
 };
 MeshFaults faults_of(const Mesh& mesh);
 

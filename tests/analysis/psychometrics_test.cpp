@@ -193,6 +193,9 @@ TEST(Concordance, TwoOrdersAreCorrelated) {
   EXPECT_FALSE(spearman_rho(a, same));
   EXPECT_FALSE(kendall_tau(same, b));
   EXPECT_EQ(ranks_of(b), (std::vector<double>{1.5, 1.5, 4, 3, 6, 5}));
+  // 7/3 by two sums of thirds, which differ by rounding, are a tie.
+  EXPECT_EQ(ranks_of(std::vector<double>{1.0 / 3 + 2.0 / 3 + 4.0 / 3, 1.0 / 3 + 1.0 / 3 + 5.0 / 3, 3}),
+            (std::vector<double>{1.5, 1.5, 3}));
 }
 
 // NumPy and SciPy: means and deviations of 20 log10, t.ppf(0.975), and Welch's degrees of freedom, 4.868.

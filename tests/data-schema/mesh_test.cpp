@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "data-schema/mesh/mesh.hpp"
@@ -81,6 +82,32 @@ TEST(MeshTest, FlippedTrianglesInsideOutAndHoles) {
   open.triangles.pop_back();
   EXPECT_EQ(faults_of(open).open_edges, 3U);
   EXPECT_TRUE(check_mesh(open, "m"));  // holes are a question of the import
+}
+
+// A second cube of this size, moved along all axes.
+Mesh with_cube(double size, double moved, bool inside_out) {
+  Mesh both = unit_cube();
+  for (const MeshVertex& v : unit_cube().vertices_m)
+    both.vertices_m.push_back({size * v[0] + moved, size * v[1] + moved, size * v[2] + moved});
+  for (MeshTriangle t : unit_cube().triangles) {
+    if (inside_out) std::swap(t[0], t[1]);
+    both.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  }
+  return both;
+}
+
+TEST(MeshTest, EachBodyAndEachCavityHasItsOuterSide) {
+  for (const auto& [size, moved, wrong_if_inside_out, volume] :
+       {std::tuple{1.0, 3.0, true, 2.0},
+        {0.5, 0.25, false, 0.875},
+        {1.0, 0.5, true, 2.0}}) {  // apart, within, overlapping
+    EXPECT_EQ(faults_of(with_cube(size, moved, true)).inside_out, wrong_if_inside_out) << moved;
+    EXPECT_EQ(faults_of(with_cube(size, moved, false)).inside_out, !wrong_if_inside_out) << moved;
+    Mesh wrong = with_cube(size, moved, wrong_if_inside_out);
+    EXPECT_EQ(repair(wrong, 0).turned, 12U) << moved;
+    EXPECT_FALSE(faults_of(wrong).inside_out) << moved;
+    EXPECT_DOUBLE_EQ(figures_of(wrong).volume_m3, volume) << moved;
+  }
 }
 
 TEST(MeshTest, AMoebiusStripHasNoOuterSide) {

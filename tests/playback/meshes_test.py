@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes on the command line: import of STL, OBJ and PLY, what is refused and repaired, `render` against all triangles in NumPy, `play` and `replay` to the bit, `explain`, `design`, `info`."""
 import json
+import math
 import pathlib
 import struct
 
@@ -130,6 +131,20 @@ def what_is_wrong_with_a_mesh_is_counted():
     assert error_of("import", "part.mesh.nc", "--unit", "mm", "-o", "again", code=USAGE)
 
 
+def a_file_that_was_cut_is_refused():
+    """In its middle, or as a list without an end: of these the library does not return, or ends its process."""
+    write_ply("whole.ply", CUBE, CUBE_FACES)
+    text = pathlib.Path("whole.ply").read_bytes()
+    binary = text.split(b"end_header")[0].replace(b"ascii", b"binary_little_endian") + b"end_header\n" + np.float32(CUBE).tobytes() + b"".join(b"\3" + np.int32(face).tobytes() for face in CUBE_FACES)
+    for name, content in (("empty.stl", b""), ("empty.obj", b""), ("empty.ply", b""), ("head.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n"),
+                          ("body.ply", text[:230]), ("binary.ply", binary[:-100]), ("nan.stl", bytes(80) + struct.pack("<I12fH", 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, math.nan, 0, 0))):
+        pathlib.Path(name).write_bytes(content)
+        error_of("import", name, "--unit", "mm", "-o", "cut", code=MALFORMED)
+        assert not pathlib.Path("cut.mesh.nc").exists()
+    pathlib.Path("binary.ply").write_bytes(binary)
+    assert run_json("import", "binary.ply", "--unit", "mm", "-o", "whole")["triangles"] == 12
+
+
 def a_rendered_force_is_that_of_all_triangles():
     places, faces = icosphere(3, 30)
     assert len(faces) == 1280
@@ -184,5 +199,5 @@ def a_played_mesh_replays_to_the_bit():
 
 
 if __name__ == "__main__":
-    for test in (three_formats_give_one_mesh, what_is_wrong_with_a_mesh_is_counted, a_rendered_force_is_that_of_all_triangles, a_played_mesh_replays_to_the_bit):
+    for test in (three_formats_give_one_mesh, what_is_wrong_with_a_mesh_is_counted, a_file_that_was_cut_is_refused, a_rendered_force_is_that_of_all_triangles, a_played_mesh_replays_to_the_bit):
         tacto.in_folder(test)

@@ -21,7 +21,7 @@ let cells = new Cells(), spectrum = new Spectrum(), last = null;  // last: the n
 let step = 1, m_per_count = null, missed = 0;
 let map = null, mapOf = null, seen = {from_m: 0, to_m: 0};
 let held = [];                   // cells of a pause
-let heard_ms = 0, beat_ms = 0, drawn_ms = 0, worded_ms = 0, mapDrawn = false, paused = false;
+let heard_ms = 0, beat_ms = 0, worded_ms = 0, mapDrawn = false, paused = false;
 let numbers = 0, waiting = new Map();  // requests without an answer, by id
 
 const mm = (metres, digits = 2) => `${(1e3 * metres).toFixed(digits)} mm`;
@@ -267,8 +267,7 @@ function draw(now_ms) {
   const wordy = now_ms - worded_ms >= CALM_MS;
   if (wordy) worded_ms = now_ms;
   if (wordy) show();  // also when nothing is heard
-  if (paused || (calm.matches && now_ms - drawn_ms < CALM_MS)) return;
-  drawn_ms = now_ms;
+  if (paused || (calm.matches && !wordy)) return;
   const strip = view();
   if (!mapDrawn) drawMap(at('map'), map && {map, start_m: status.start_m, length_m: status.length_m}, strip, at('colours').value);
   mapDrawn = true;
