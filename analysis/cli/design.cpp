@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <tuple>
 
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/design/design_page.hpp"
-#include "analysis/design/judged_piece.hpp"
 #include "data-schema/base/unknown_note.hpp"
 #include "data-schema/command/output_options.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/prepare/scene/acting_load.hpp"
+#include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/stability/free_limit.hpp"
 
@@ -137,29 +136,6 @@ Result<void> add_adaptive(schema::Scene& scene, const std::string& file, const D
   return {};
 }
 
-// The worst one of the ends of all sliders. The least stiffness only where there is an integral: without one
-// it is never the worse end.
-JudgedPiece judged_at_slider_ends(const schema::Scene& scene, std::size_t index,
-                                  const DesignRequest& request) {
-  const bool grows = std::ranges::any_of(
-      scene.pieces, [](const schema::Piece& piece) { return piece.integral_n_per_m_s > 0; });
-  const auto rank = [](const JudgedPiece& judged) {
-    return std::tuple(judged.verdict == Stability::unstable, judged.verdict == Stability::not_known,
-                      std::max(judged.growth, judged.growth_along));
-  };
-  JudgedPiece worst;
-  for (std::size_t end = 0; end < (grows ? 4U : 2U); ++end) {
-    schema::Scene at = scene;
-    for (schema::Piece& piece : at.pieces) {
-      const auto ends = slider_ends(piece);
-      piece = ends[std::min(end, ends.size() - 1)];
-    }
-    JudgedPiece judged = judged_piece(at, index, request);
-    if (end == 0 || rank(judged) >= rank(worst)) worst = std::move(judged);
-  }
-  return worst;
-}
-
 // Pieces in space: the motion on their walls from tick to tick.
 Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& scene, const std::string& file,
                              const DesignRequest& request) {
@@ -178,10 +154,14 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
   bool unstable = false;
   for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
     const schema::Piece& piece = scene.pieces[i];
-    const JudgedPiece judged = judged_at_slider_ends(scene, i, request);
-    unstable = unstable || judged.verdict == Stability::unstable;
+    const playback::JudgedPiece judged =
+        playback::judged_piece(scene, i, request.device, request.rate_hz, request.hand);
+    const Stability verdict = judged.is_unstable()      ? Stability::unstable
+                              : judged.unjudged.empty() ? Stability::stable
+                                                        : Stability::not_known;
+    unstable = unstable || judged.is_unstable();
     Report row;
-    row.add("piece", piece.name).add("verdict", to_string(judged.verdict));
+    row.add("piece", piece.name).add("verdict", to_string(verdict));
     row.add("stiffness_n_per_m", judged.alone.stiffness_n_per_m)
         .add("damping_n_s_per_m", judged.alone.damping_n_s_per_m);
     if (!judged.with.empty())

@@ -295,6 +295,12 @@ def design_adds_up_what_acts_together():
             assert row["verdict"] == "unstable" and row["adds_to"] == [other] and row["total_stiffness_n_per_m"] == 1800, row
             assert abs(row["growth_time_s"] * RATE_HZ * np.log(growth_per_tick(1800, 0)) - 1) < 1e-6, row
         assert {row["verdict"] for row in rows(wall("a", 900), wall("b", 900, place=(0, 0, -depth))).values()} == {"stable"}
+    # `explain` and `play` warn of the sum, too.
+    write_path("path.csv", np.zeros((2, 3)))
+    for contact, warned in (("ghost", False), ("add", True)):
+        write_scene("sums", wall("first", 900), wall("second", 900), contact=contact)
+        for said in (run("explain", "sums.scene.json", "--device", "arm")[1], run("play", "sums.scene.json", "-d", "sim:arm", "--finger-path", "path.csv", "-o", contact)[1]):
+            assert ("'first'" in said) == ("'second'" in said) == ("1800" in said) == warned, said
     # A damper on top, and a spring that would grow alone.
     assert growth_per_tick(1500, 0) > 1 > max(growth_per_tick(500, 4), growth_per_tick(2000, 4))
     found = rows(wall("skin", 500, 4), wall("core", 1500, place=(0, 0, -0.01)), contact="add")

@@ -16,7 +16,7 @@
 
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "firmware-host/sim/planar/planar_body.hpp"
-#include "playback/prepare/scene/piece_block.hpp"
+#include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/reference/exact_scene.hpp"
 

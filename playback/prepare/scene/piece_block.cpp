@@ -2,6 +2,7 @@
 #include "playback/prepare/scene/piece_block.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,8 @@
 #include <utility>
 
 #include "playback/prepare/scene/contact_transient.hpp"
+#include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/mesh_block.hpp"
-#include "playback/stability/sampled_loop.hpp"
 
 namespace tacto::playback {
 
@@ -164,24 +165,6 @@ std::optional<std::string> cut_of_transient(const Piece& piece, const schema::De
 
 }  // namespace
 
-double wall_growth(const Piece& piece, const schema::Device& device, double rate_hz,
-                   const std::optional<schema::Hand>& hand) {
-  const schema::Hand held = hand.value_or(schema::Hand());
-  double most = 0;
-  for (const schema::DeviceAxis& axis : device.axes)
-    if (axis.mass_kg > 0)
-      most = std::max(
-          most, growth_per_tick({axis.mass_kg + held.mass_kg, axis.viscous_n_s_per_m + held.damping_n_s_per_m,
-                                 held.stiffness_n_per_m},
-                                {1 / rate_hz, device.delay_s * rate_hz},
-                                {piece.stiffness_n_per_m,
-                                 piece.damping_n_s_per_m,
-                                 {},
-                                 piece.integral_n_per_m_s,
-                                 piece.integral_leak_per_s}));
-  return most;
-}
-
 Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::string& where,
                                      const schema::Device& device, double rate_hz,
                                      const std::optional<schema::Hand>& hand) {
@@ -260,26 +243,27 @@ std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const sche
   for (const Piece& piece : scene.pieces)
     if (auto note = cut_of_transient(piece, device, rate_hz)) notes.push_back(std::move(*note));
   if (!(device.axes.front().mass_kg > 0)) return notes;
-  const auto unstable = [&](const Piece& piece, double damping_n_s_per_m, const char* along) {
-    const double limit = stiffness_limit_of(device, rate_hz, hand, damping_n_s_per_m, true);
-    if (piece.stiffness_n_per_m < limit) return false;
-    notes.push_back(fmt::format(
-        "piece '{}' is unstable on this device with {}{}: its stiffness is {:.4g} N/m with {:.4g} "
-        "N s/m, the limit is {:.4g} N/m (computed, without the Coulomb friction of the device)",
-        piece.name, hand ? "hand " + hand->name : "nothing held", along, piece.stiffness_n_per_m,
-        damping_n_s_per_m, limit));
-    return true;
-  };
-  for (const Piece& piece : scene.pieces) {
-    const std::vector<Piece> ends = slider_ends(piece);
-    std::ranges::any_of(ends, [&](const Piece& end) { return unstable(end, end.damping_n_s_per_m, ""); });
-    std::ranges::any_of(ends, [&](Piece end) {
-      const bool holds = end.static_friction > 0;
-      if (!holds) end.stiffness_n_per_m = 0;
-      return (holds || end.viscous_n_s_per_m > 0) &&
-             unstable(end, end.viscous_n_s_per_m,
-                      holds ? ", along its surface where its friction holds" : ", along its surface");
-    });
+  schema::Scene judged_scene;
+  judged_scene.pieces = scene.pieces;
+  judged_scene.point_radius_m = scene.point_radius_m;
+  judged_scene.contact = scene.contact;
+  for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
+    const JudgedPiece judged = judged_piece(judged_scene, i, device, rate_hz, hand);
+    const auto note = [&](const std::string& where, double stiffness_n_per_m, double damping_n_s_per_m) {
+      notes.push_back(fmt::format(
+          "piece '{}' is unstable on this device with {}{}: {:.4g} N/m and {:.4g} N s/m act there, the limit "
+          "is {:.4g} N/m (computed, without the Coulomb friction of the device)",
+          judged.alone.name, hand ? "hand " + hand->name : "nothing held", where, stiffness_n_per_m,
+          damping_n_s_per_m, stiffness_limit_of(device, rate_hz, hand, damping_n_s_per_m, true)));
+    };
+    if (judged.growth > 1)
+      note(judged.with.empty() ? "" : fmt::format(", together with {}", fmt::join(judged.with, ", ")),
+           judged.total.stiffness_n_per_m, judged.total.damping_n_s_per_m);
+    if (judged.growth_along > 1)
+      note(judged.alone.static_friction > 0 ? ", along its surface where its friction holds"
+                                            : ", along its surface",
+           judged.alone.static_friction > 0 ? judged.alone.stiffness_n_per_m : 0,
+           judged.alone.viscous_n_s_per_m);
   }
   return notes;
 }

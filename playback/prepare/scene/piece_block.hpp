@@ -17,16 +17,11 @@ schema::Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const s
                                              const schema::Device& device, double rate_hz,
                                              const std::optional<schema::Hand>& hand);
 
-/// growth_per_tick() of this wall on an axis of the device, above 1 it is unstable: with spring, integral and
-/// a damper that acts on the difference of two places. A hand adds its mass, damping and stiffness. Coulomb
-/// friction is left out, and the force limit. Of all axes the largest; 0 if the device states no mass.
-double wall_growth(const schema::Piece& piece, const schema::Device& device, double rate_hz,
-                   const std::optional<schema::Hand>& hand);
-
 /// What makes the meshes of a scene small enough for this many bytes, in words.
 std::string remedy_for_meshes(const PreparedScene& scene, std::size_t room);
 
-/// Warnings, one line each: axes that the device does not have; walls beyond stiffness_limit_of(); transients
+/// Warnings, one line each: axes that the device does not have; pieces that are unstable
+/// (judged_piece()); transients
 /// that the limits of the device cut at kFastTap_mps.
 std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const schema::Device& device,
                                           double rate_hz, const std::optional<schema::Hand>& hand);

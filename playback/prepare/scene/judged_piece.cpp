@@ -1,31 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/design/judged_piece.hpp"
+#include "playback/prepare/scene/judged_piece.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
-#include "playback/prepare/scene/piece_block.hpp"
+#include "playback/stability/sampled_loop.hpp"
 
-namespace tacto::analysis {
+namespace tacto::playback {
 namespace {
 
 using schema::Piece;
 using schema::PieceShape;
 using schema::Scene;
-using Vector = std::array<double, 3>;
+using Vector3 = std::array<double, 3>;
 
 constexpr double kSameDirection = 1e-9;  // of cosines
 
-double dot_of(const Vector& a, const Vector& b) {
+double dot_of(const Vector3& a, const Vector3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-Vector normal_of(const Piece& plane) {
+Vector3 normal_of(const Piece& plane) {
   const double size = std::sqrt(dot_of(plane.direction, plane.direction));
   return {plane.direction[0] / size, plane.direction[1] / size, plane.direction[2] / size};
 }
 
-Vector place_of(const Piece& piece) {
+Vector3 place_of(const Piece& piece) {
   return {piece.x_m, piece.y_m, piece.z_m};
 }
 
@@ -59,7 +62,7 @@ Meeting meeting_of(const Piece& a, const Piece& b, double radius_m) {
   if (a.shape == PieceShape::plane && b.shape == PieceShape::plane) return meeting_of_planes(a, b, radius_m);
   if (b.shape == PieceShape::plane) return meeting_of(b, a, radius_m);
   if (b.shape != PieceShape::sphere) return Meeting::other;
-  const Vector centre = place_of(b);
+  const Vector3 centre = place_of(b);
   double distance_m = 0;
   if (is_half_space(a))
     distance_m = dot_of(normal_of(a), centre) - height_m(a, radius_m);
@@ -70,9 +73,13 @@ Meeting meeting_of(const Piece& a, const Piece& b, double radius_m) {
   return distance_m >= b.radius_m + radius_m ? Meeting::none : Meeting::other;
 }
 
-double growth_of(const Piece& piece, const DesignRequest& request) {
-  return playback::wall_growth(piece, request.device, request.rate_hz, request.hand);
-}
+struct OnDevice {
+  const schema::Device& device;
+  double rate_hz;
+  const std::optional<schema::Hand>& hand;
+
+  double growth(const Piece& piece) const { return wall_growth(piece, device, rate_hz, hand); }
+};
 
 void add_wall(Piece& sum, const Piece& other) {
   sum.stiffness_n_per_m += other.stiffness_n_per_m;
@@ -83,7 +90,7 @@ void add_wall(Piece& sum, const Piece& other) {
 
 // Of `same`, those that touch a hand which is as deep as the surface of `lowest`.
 JudgedPiece sum_down_to(const Piece& piece, const Piece& lowest, const std::vector<const Piece*>& same) {
-  JudgedPiece sum{piece, {}, {}, 0, Stability::stable};
+  JudgedPiece sum{piece, {}, {}};
   for (const Piece* other : same) {
     if (height_m(*other, 0) < height_m(lowest, 0)) continue;
     add_wall(sum.total, *other);
@@ -92,9 +99,7 @@ JudgedPiece sum_down_to(const Piece& piece, const Piece& lowest, const std::vect
   return sum;
 }
 
-}  // namespace
-
-JudgedPiece judged_piece(const Scene& scene, std::size_t index, const DesignRequest& request) {
+JudgedPiece judged_at(const Scene& scene, std::size_t index, const OnDevice& on) {
   const Piece& piece = scene.pieces[index];
   const bool adds = scene.contact == schema::PieceContact::add;
   std::vector<const Piece*> same;
@@ -115,7 +120,7 @@ JudgedPiece judged_piece(const Scene& scene, std::size_t index, const DesignRequ
   for (const Piece* lowest : depths) {
     if (height_m(*lowest, 0) > height_m(piece, 0)) continue;  // there the hand is above the piece
     JudgedPiece sum = sum_down_to(piece, *lowest, same);
-    sum.growth = growth_of(sum.total, request);
+    sum.growth = on.growth(sum.total);
     if (sum.growth >= worst.growth) worst = std::move(sum);
   }
   worst.alone = piece;
@@ -124,13 +129,52 @@ JudgedPiece judged_piece(const Scene& scene, std::size_t index, const DesignRequ
     if (!(piece.static_friction > 0)) along.stiffness_n_per_m = 0;
     along.damping_n_s_per_m = piece.viscous_n_s_per_m;
     along.integral_n_per_m_s = 0;
-    worst.growth_along = growth_of(along, request);
+    worst.growth_along = on.growth(along);
   }
-  if (worst.growth > 1 || worst.growth_along > 1)
-    worst.verdict = Stability::unstable;
-  else if (!unjudged.empty() && (adds || growth_of(damped, request) > 1))
-    worst.verdict = Stability::not_known, worst.unjudged = std::move(unjudged);
+  if (!worst.is_unstable() && (adds || on.growth(damped) > 1)) worst.unjudged = std::move(unjudged);
   return worst;
 }
 
-}  // namespace tacto::analysis
+}  // namespace
+
+double wall_growth(const Piece& piece, const schema::Device& device, double rate_hz,
+                   const std::optional<schema::Hand>& hand) {
+  const schema::Hand held = hand.value_or(schema::Hand());
+  double most = 0;
+  for (const schema::DeviceAxis& axis : device.axes)
+    if (axis.mass_kg > 0)
+      most = std::max(
+          most, growth_per_tick({axis.mass_kg + held.mass_kg, axis.viscous_n_s_per_m + held.damping_n_s_per_m,
+                                 held.stiffness_n_per_m},
+                                {1 / rate_hz, device.delay_s * rate_hz},
+                                {piece.stiffness_n_per_m,
+                                 piece.damping_n_s_per_m,
+                                 {},
+                                 piece.integral_n_per_m_s,
+                                 piece.integral_leak_per_s}));
+  return most;
+}
+
+// The least stiffness only where there is an integral: without one it is never the worse end.
+JudgedPiece judged_piece(const Scene& scene, std::size_t index, const schema::Device& device, double rate_hz,
+                         const std::optional<schema::Hand>& hand) {
+  const bool grows =
+      std::ranges::any_of(scene.pieces, [](const Piece& piece) { return piece.integral_n_per_m_s > 0; });
+  const auto rank = [](const JudgedPiece& judged) {
+    return std::tuple(judged.is_unstable(), !judged.unjudged.empty(),
+                      std::max(judged.growth, judged.growth_along));
+  };
+  JudgedPiece worst;
+  for (std::size_t end = 0; end < (grows ? 4U : 2U); ++end) {
+    Scene at = scene;
+    for (Piece& piece : at.pieces) {
+      const auto ends = slider_ends(piece);
+      piece = ends[std::min(end, ends.size() - 1)];
+    }
+    JudgedPiece judged = judged_at(at, index, {device, rate_hz, hand});
+    if (end == 0 || rank(judged) >= rank(worst)) worst = std::move(judged);
+  }
+  return worst;
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether a piece in space is stable on a force device, with the pieces that may act at the same place.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/device/device.hpp"
+#include "data-schema/device/hand.hpp"
+#include "data-schema/scene/scene.hpp"
+
+namespace tacto::playback {
+
+struct JudgedPiece {
+  schema::Piece total;                ///< its wall, or the sum of those that act along its direction
+  std::vector<std::string> with;      ///< the other pieces of that sum
+  std::vector<std::string> unjudged;  ///< if not empty, a stable sum with these is not known
+  double growth = 0;                  ///< wall_growth() of `total`
+  schema::Piece alone = {};           ///< as judged
+  double growth_along = 0;            ///< along the surface, where its friction holds; 0 without friction
+
+  bool is_unstable() const { return growth > 1 || growth_along > 1; }
+};
+
+/// growth_per_tick() of this wall on an axis of the device, above 1 it is unstable: with spring, integral and
+/// a damper that acts on the difference of two places. A hand adds its mass, damping and stiffness. Coulomb
+/// friction is left out, and the force limit. Of all axes the largest; 0 if the device states no mass.
+double wall_growth(const schema::Piece& piece, const schema::Device& device, double rate_hz,
+                   const std::optional<schema::Hand>& hand);
+
+/// A piece with all that may act at the same place, at the worst of the ends of all sliders (slider_ends()).
+/// `contact: add`: planes of the same direction add up, from the highest one down to the depth at which they
+/// grow the most; with pieces that may overlap in another way a stable sum is not known. `ghost`: stiffnesses
+/// do not add, because each wall holds its part of the way to the ghost; with the dampings of all pieces that
+/// may hold the ghost together, not perpendicular, a wall that would grow is not known. Friction that holds
+/// is a spring of the same stiffness along the surface, with the viscous friction; one that grows is
+/// unstable, up to where it slips. Viscous friction alone is a damper that may grow, too.
+JudgedPiece judged_piece(const schema::Scene& scene, std::size_t index, const schema::Device& device,
+                         double rate_hz, const std::optional<schema::Hand>& hand);
+
+}  // namespace tacto::playback
