@@ -175,11 +175,15 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
     if (judged.growth != 1)
       row.add(judged.growth < 1 ? "decay_time_s" : "growth_time_s",
               1 / (request.rate_hz * std::abs(std::log(judged.growth))));
-    if (judged.growth_along > 0)
-      row.add("along_surface", to_string(judged.growth_along > 1 ? Stability::unstable : Stability::stable))
+    if (judged.growth_along > 0) {
+      row.add("along_surface", to_string(judged.growth_along > 1 ? Stability::unstable : Stability::stable));
+      if (!judged.along_with.empty()) row.add("along_with", judged.along_with);
+      row.add("stiffness_along_n_per_m", judged.along.stiffness_n_per_m)
+          .add("damping_along_n_s_per_m", judged.along.damping_n_s_per_m)
           .add("limit_along_n_per_m",
                playback::stiffness_limit_of(request.device, request.rate_hz, request.hand,
-                                            judged.alone.viscous_n_s_per_m, true));
+                                            judged.along.damping_n_s_per_m, true));
+    }
     rows.push_back(std::move(row));
   }
   Report report;
@@ -189,10 +193,11 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
   report.add(
       "assumed",
       scene.contact == schema::PieceContact::add
-          ? "touched along an axis of the device; planes of the same direction add up, and pieces that "
-            "may overlap in another way are not computed"
-          : "each piece touched along an axis of the device; of pieces that hold the ghost together at "
-            "an angle, only the sum of their dampings is looked at");
+          ? "touched along an axis of the device; planes of the same direction add up, friction also with a "
+            "second plane at a right angle, and pieces that may overlap in another way are not computed"
+          : "each piece touched along an axis of the device; friction adds up with that of a second plane at "
+            "a right angle; of pieces that hold the ghost together at another angle, only the sums of their "
+            "dampings and of their frictions are looked at");
   if (unstable) report.ends_with(ErrorKind::unstable);
   return report;
 }

@@ -318,6 +318,53 @@ def design_adds_up_what_acts_together():
         assert {row["verdict"] for row in found.values()} == {verdict}, found
 
 
+def friction_of_several_pieces_adds_up():
+    def rows(code, *pieces, **members):
+        write_scene("rubs", *pieces, **members)
+        return {row["piece"]: row for row in run_json("design", "rubs.scene.json", "--device", "arm", code=code)["pieces"]}
+
+    def wall(name, direction=(0, 0, 1), place=(0, 0, 0), stiffness=900, friction=(1.5, 1), **members):
+        return piece(name, "plane", place, direction=list(direction), static_friction=friction[0], kinetic_friction=friction[1], **members) | {"stiffness_n_per_m": stiffness}
+
+    def along(row):
+        return row["along_surface"], row["stiffness_along_n_per_m"], row["damping_along_n_s_per_m"], row.get("along_with", [])
+
+    # Two planes of the same direction; with `ghost` the upper one alone holds.
+    assert growth_per_tick(1800, 2) < 1 < growth_per_tick(1800, 0) and growth_per_tick(900, 0) < 1
+    both = [wall(name, damping_n_s_per_m=1) for name in "ab"]
+    for name, row in rows(UNSTABLE, *both, contact="add").items():
+        assert along(row) == ("unstable", 1800, 0, ["b" if name == "a" else "a"]), row
+    for row in rows(0, *both).values():
+        assert along(row) == ("stable", 900, 0, []) and row["verdict"] == "stable", row
+    # What damps one damps both.
+    assert growth_per_tick(1800, 2) < 1
+    for row in rows(0, *(wall(name, damping_n_s_per_m=1, viscous_n_s_per_m=1) for name in "ab"), contact="add").values():
+        assert row["verdict"] == "stable" and row["along_surface"] == "stable", row
+    # Along the edge of two at a right angle; walls face to face are not touched together.
+    floor, left, right = wall("floor"), wall("left", (1, 0, 0), (-0.05, 0, 0)), wall("right", (-1, 0, 0), (0.05, 0, 0))
+    for contact in ("ghost", "add"):
+        found = rows(UNSTABLE, floor, left, contact=contact)
+        assert along(found["floor"]) == ("unstable", 1800, 0, ["left"]) and along(found["left"])[1] == 1800, found
+        write_scene("rubs", floor, left, contact=contact)
+        said = run("explain", "rubs.scene.json", "--device", "arm")[1]
+        assert "'floor'" in said and "'left'" in said and "1800" in said, said
+        found = rows(0, left, right, contact=contact)
+        assert {row["verdict"] for row in found.values()} == {"stable"}, found
+    # Without friction of the second one: `add` holds the hand also against its wall, a ghost does not move there.
+    smooth = wall("left", (1, 0, 0), (-0.05, 0, 0), friction=(0, 0))
+    assert along(rows(UNSTABLE, floor, smooth, contact="add")["floor"]) == ("unstable", 1800, 0, ["left"])
+    assert along(rows(0, floor, smooth)["floor"]) == ("stable", 900, 0, [])
+    # The hand's speed is damped in both.
+    assert growth_per_tick(900, 200) < 1 < growth_per_tick(900, 400) and growth_along(200) < 1
+    thick, damped = wall("floor", friction=(0, 0), viscous_n_s_per_m=200), wall("left", (1, 0, 0), friction=(0, 0), damping_n_s_per_m=200)
+    assert along(rows(UNSTABLE, thick, damped)["floor"]) == ("unstable", 900, 400, ["left"])
+    # At another angle it is not known.
+    found = rows(0, *(wall(name, (way, 0, 1)) for name, way in (("a", 2), ("b", -1))))
+    assert {row["verdict"] for row in found.values()} == {"not known"} and found["a"]["not_computed_with"] == ["b"], found
+    found = rows(0, *(wall(name, (way, 0, 1), stiffness=400) for name, way in (("a", 2), ("b", -1))))
+    assert growth_per_tick(800, 0) < 1 and {row["verdict"] for row in found.values()} == {"stable"}, found
+
+
 def explain_and_design_judge_walls():
     write_scene("walls", piece("soft", "plane", damping_n_s_per_m=4))
     said = run_json("explain", "walls.scene.json", "--device", "arm")
@@ -359,6 +406,6 @@ def what_cannot_be_is_refused():
 
 if __name__ == "__main__":
     for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit, a_dragged_hand_slips_and_sliders_move,
-                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together,
+                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
                  what_cannot_be_is_refused):
         tacto.in_folder(test)

@@ -38,7 +38,8 @@ double height_m(const Piece& plane, double point_radius_m) {
 }
 
 enum class Meeting {
-  none,    // at no place, or along perpendicular directions
+  none,    // at no place
+  across,  // planes at a right angle
   summed,  // planes of the same direction
   other
 };
@@ -49,7 +50,7 @@ bool is_half_space(const Piece& piece) {
 
 Meeting meeting_of_planes(const Piece& a, const Piece& b, double radius_m) {
   const double cosine = dot_of(normal_of(a), normal_of(b));
-  if (std::abs(cosine) < kSameDirection) return Meeting::none;
+  if (std::abs(cosine) < kSameDirection) return Meeting::across;
   if (!is_half_space(a) || !is_half_space(b)) return Meeting::other;
   const bool apart = height_m(a, radius_m) + height_m(b, radius_m) <= 0;
   if (cosine < kSameDirection - 1) return apart ? Meeting::none : Meeting::other;
@@ -88,50 +89,84 @@ void add_wall(Piece& sum, const Piece& other) {
   sum.integral_n_per_m_s += other.integral_n_per_m_s;
 }
 
-// Of `same`, those that touch a hand which is as deep as the surface of `lowest`.
-JudgedPiece sum_down_to(const Piece& piece, const Piece& lowest, const std::vector<const Piece*>& same) {
-  JudgedPiece sum{piece, {}, {}};
-  for (const Piece* other : same) {
-    if (height_m(*other, 0) < height_m(lowest, 0)) continue;
-    add_wall(sum.total, *other);
-    sum.with.push_back(other->name);
+bool rubs(const Piece& piece) {
+  return piece.static_friction > 0 || piece.viscous_n_s_per_m > 0;
+}
+
+// Along its surface, while it holds: a spring and a damper.
+Piece friction_of(const Piece& piece) {
+  Piece along = piece;
+  if (!(piece.static_friction > 0)) along.stiffness_n_per_m = 0;
+  along.damping_n_s_per_m = piece.viscous_n_s_per_m;
+  along.integral_n_per_m_s = 0;
+  return along;
+}
+
+void try_along(JudgedPiece& worst, const Piece& load, const std::vector<std::string>& with,
+               const OnDevice& on) {
+  const double growth = on.growth(load);
+  if (growth < worst.growth_along) return;
+  worst.growth_along = growth, worst.along = load, worst.along_with = with;
+}
+
+// A plane at a right angle: along the edge of both the frictions add up. Along the normal of the other one
+// its wall, with this friction; of a ghost with its damper only, because the ghost does not move there.
+void try_across(JudgedPiece& worst, const Piece& friction, const Piece& other, std::vector<std::string> with,
+                bool adds, const OnDevice& on) {
+  with.push_back(other.name);
+  if (rubs(other)) {
+    Piece edge = friction;
+    add_wall(edge, friction_of(other));
+    try_along(worst, edge, with, on);
   }
-  return sum;
+  Piece wall = other;
+  add_wall(wall, friction);
+  if (!adds) wall.stiffness_n_per_m = other.stiffness_n_per_m;
+  if (adds || friction.damping_n_s_per_m > 0) try_along(worst, wall, with, on);
 }
 
 JudgedPiece judged_at(const Scene& scene, std::size_t index, const OnDevice& on) {
   const Piece& piece = scene.pieces[index];
   const bool adds = scene.contact == schema::PieceContact::add;
-  std::vector<const Piece*> same;
+  std::vector<const Piece*> same, across;
   std::vector<std::string> unjudged;
-  Piece damped = piece;
+  Piece damped = piece, held = friction_of(piece);
   for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
     if (i == index) continue;
     const Piece& other = scene.pieces[i];
     const Meeting meeting = meeting_of(piece, other, scene.point_radius_m);
     if (meeting == Meeting::summed && adds) same.push_back(&other);
+    if (meeting == Meeting::across) across.push_back(&other);
     if (meeting != Meeting::other) continue;
     unjudged.push_back(other.name);
-    damped.damping_n_s_per_m += other.damping_n_s_per_m;
+    damped.damping_n_s_per_m += other.damping_n_s_per_m + other.viscous_n_s_per_m;
+    add_wall(held, friction_of(other));
   }
   std::vector<const Piece*> depths = same;
   depths.push_back(&piece);
   JudgedPiece worst;
+  worst.alone = piece;
   for (const Piece* lowest : depths) {
     if (height_m(*lowest, 0) > height_m(piece, 0)) continue;  // there the hand is above the piece
-    JudgedPiece sum = sum_down_to(piece, *lowest, same);
-    sum.growth = on.growth(sum.total);
-    if (sum.growth >= worst.growth) worst = std::move(sum);
+    // With those of the same direction that touch a hand which is as deep as the surface of `lowest`.
+    Piece total = piece, friction = friction_of(piece);
+    std::vector<std::string> with;
+    for (const Piece* other : same) {
+      if (height_m(*other, 0) < height_m(*lowest, 0)) continue;
+      add_wall(total, *other);
+      add_wall(friction, friction_of(*other));
+      with.push_back(other->name);
+    }
+    if (rubs(piece)) {
+      try_along(worst, friction, with, on);
+      for (const Piece* other : across) try_across(worst, friction, *other, with, adds, on);
+    }
+    const double growth = on.growth(total);
+    if (growth < worst.growth) continue;
+    worst.growth = growth, worst.total = std::move(total), worst.with = std::move(with);
   }
-  worst.alone = piece;
-  if (piece.static_friction > 0 || piece.viscous_n_s_per_m > 0) {
-    Piece along = piece;
-    if (!(piece.static_friction > 0)) along.stiffness_n_per_m = 0;
-    along.damping_n_s_per_m = piece.viscous_n_s_per_m;
-    along.integral_n_per_m_s = 0;
-    worst.growth_along = on.growth(along);
-  }
-  if (!worst.is_unstable() && (adds || on.growth(damped) > 1)) worst.unjudged = std::move(unjudged);
+  const bool may_grow = adds || on.growth(damped) > 1 || (rubs(piece) && on.growth(held) > 1);
+  if (!worst.is_unstable() && !unjudged.empty() && may_grow) worst.unjudged = std::move(unjudged);
   return worst;
 }
 

@@ -14,12 +14,14 @@
 namespace tacto::playback {
 
 struct JudgedPiece {
-  schema::Piece total;                ///< its wall, or the sum of those that act along its direction
-  std::vector<std::string> with;      ///< the other pieces of that sum
-  std::vector<std::string> unjudged;  ///< if not empty, a stable sum with these is not known
-  double growth = 0;                  ///< wall_growth() of `total`
-  schema::Piece alone = {};           ///< as judged
-  double growth_along = 0;            ///< along the surface, where its friction holds; 0 without friction
+  schema::Piece total;                  ///< its wall, or the sum of those that act along its direction
+  std::vector<std::string> with;        ///< the other pieces of that sum
+  std::vector<std::string> unjudged;    ///< if not empty, a stable sum with these is not known
+  double growth = 0;                    ///< wall_growth() of `total`
+  schema::Piece alone = {};             ///< as judged
+  schema::Piece along = {};             ///< spring and damper along the surface, where its friction holds
+  std::vector<std::string> along_with;  ///< the other pieces of that sum
+  double growth_along = 0;              ///< wall_growth() of `along`; 0 without friction
 
   bool is_unstable() const { return growth > 1 || growth_along > 1; }
 };
@@ -34,9 +36,12 @@ double wall_growth(const schema::Piece& piece, const schema::Device& device, dou
 /// `contact: add`: planes of the same direction add up, from the highest one down to the depth at which they
 /// grow the most; with pieces that may overlap in another way a stable sum is not known. `ghost`: stiffnesses
 /// do not add, because each wall holds its part of the way to the ghost; with the dampings of all pieces that
-/// may hold the ghost together, not perpendicular, a wall that would grow is not known. Friction that holds
-/// is a spring of the same stiffness along the surface, with the viscous friction; one that grows is
-/// unstable, up to where it slips. Viscous friction alone is a damper that may grow, too.
+/// may hold the ghost together, not at a right angle, a wall that would grow is not known.
+/// Friction that holds is a spring of the same stiffness along the surface, with the viscous friction, which
+/// is a damper by itself, too; that of planes which add up adds up, and that of two planes at a right angle
+/// along their edge. Along the normal of the other plane its wall has this friction beside it, for a ghost
+/// the damper only. One that grows is unstable, up to where it slips. With the friction of all pieces that
+/// may hold the ghost together at another angle, one that would grow is not known.
 JudgedPiece judged_piece(const schema::Scene& scene, std::size_t index, const schema::Device& device,
                          double rate_hz, const std::optional<schema::Hand>& hand);
 

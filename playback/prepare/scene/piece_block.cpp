@@ -249,21 +249,16 @@ std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const sche
   judged_scene.contact = scene.contact;
   for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
     const JudgedPiece judged = judged_piece(judged_scene, i, device, rate_hz, hand);
-    const auto note = [&](const std::string& where, double stiffness_n_per_m, double damping_n_s_per_m) {
+    const auto note = [&](const char* where, const Piece& load, const std::vector<std::string>& with) {
       notes.push_back(fmt::format(
-          "piece '{}' is unstable on this device with {}{}: {:.4g} N/m and {:.4g} N s/m act there, the limit "
-          "is {:.4g} N/m (computed, without the Coulomb friction of the device)",
-          judged.alone.name, hand ? "hand " + hand->name : "nothing held", where, stiffness_n_per_m,
-          damping_n_s_per_m, stiffness_limit_of(device, rate_hz, hand, damping_n_s_per_m, true)));
+          "piece '{}' is unstable on this device with {}{}{}{}: {:.4g} N/m and {:.4g} N s/m act there, the "
+          "limit is {:.4g} N/m (computed, without the Coulomb friction of the device)",
+          judged.alone.name, hand ? "hand " + hand->name : "nothing held", where,
+          with.empty() ? "" : ", together with ", fmt::join(with, ", "), load.stiffness_n_per_m,
+          load.damping_n_s_per_m, stiffness_limit_of(device, rate_hz, hand, load.damping_n_s_per_m, true)));
     };
-    if (judged.growth > 1)
-      note(judged.with.empty() ? "" : fmt::format(", together with {}", fmt::join(judged.with, ", ")),
-           judged.total.stiffness_n_per_m, judged.total.damping_n_s_per_m);
-    if (judged.growth_along > 1)
-      note(judged.alone.static_friction > 0 ? ", along its surface where its friction holds"
-                                            : ", along its surface",
-           judged.alone.static_friction > 0 ? judged.alone.stiffness_n_per_m : 0,
-           judged.alone.viscous_n_s_per_m);
+    if (judged.growth > 1) note("", judged.total, judged.with);
+    if (judged.growth_along > 1) note(", along its surface", judged.along, judged.along_with);
   }
   return notes;
 }
