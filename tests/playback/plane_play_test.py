@@ -171,6 +171,14 @@ def what_the_device_refuses_or_makes_unstable():
         report = play("wall.scene.json", "sim:planar", f"wall{stiffness}", "--finger-path", "still.csv")
         about = [one for one in report.get("warnings", []) if "tactograph design" in one]
         assert len(about) == warned and all("'wall'" in one and f"{stiffness} N/m" in one for one in about), report
+    # Beside too much damping no stiffness is small enough: --hold-stable is refused, and not recommended.
+    for layers in ([damper(5000)], [damper(5000), spring(20)]):
+        write_scene("thick", patch(layers=layers))
+        run("render", "thick.scene.json", "--finger-path", "still.csv", "--device", "sandpaper-1990", "--hold-stable", "-o", "thick.csv", code=UNSUITABLE)
+        said = run("explain", "thick.scene.json", "--device", "sandpaper-1990")[1]
+        assert "5000 N s/m" in said and "--hold-stable" not in said, said
+    write_scene("thick", patch(layers=[spring(9800)]))
+    assert "--hold-stable" in run("explain", "thick.scene.json", "--device", "sandpaper-1990")[1]
     run("play", "wall.scene.json", "-d", "sim:planar", "-o", "late", "--finger-path", "still.csv", "--onset", "20s", code=USAGE)
     assert not pathlib.Path("late.session").exists()
 

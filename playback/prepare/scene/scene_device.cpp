@@ -263,12 +263,17 @@ void note_instability(const PreparedScene& scene, const Device& device, double r
   const std::vector<PlaceLimit> limits = place_limits(patches, device, rate_hz, hand);
   const auto worst = std::ranges::max_element(limits, {}, &PlaceLimit::used);
   if (worst == limits.end() || worst->used() < 1) return;
+  // Beside too much damping no stiffness is small enough.
+  const char* const remedy =
+      worst->damping_n_s_per_m > 0 && worst->limit_n_per_m <= 0
+          ? "choose less damping"
+          : "'play' and 'render' with --hold-stable scale its stiffness down, and 'tactograph design' lists "
+            "what else would prevent it";
   notes.push_back(fmt::format(
       "{} is unstable on this device with {}: {:.4g} N/m and {:.4g} N s/m act there together, the "
-      "limit is {:.4g} N/m (computed); 'play' and 'render' with --hold-stable scale its stiffness down, and "
-      "'tactograph design' lists what else would prevent it",
+      "limit is {:.4g} N/m (computed); {}",
       largest_share(patches, worst->place.patches), hand ? "hand " + hand->name : "nothing held",
-      worst->load.stiffness_n_per_m, worst->damping_n_s_per_m, worst->limit_n_per_m));
+      worst->load.stiffness_n_per_m, worst->damping_n_s_per_m, worst->limit_n_per_m, remedy));
 }
 
 }  // namespace
