@@ -288,8 +288,7 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
   if (const auto transient = transient_of(piece)) {
     row.add("transient_peak_n_s_per_m", transient_peak_n_s_per_m(*transient));
     row.add("transient_stops_kg", transient_stops_kg(*transient));
-    row.add("transient_whole_to_mps",
-            transient_whole_to_mps(*transient, on.device, double{on.setup.rate_hz}));
+    row.add("transient_whole_to_mps", transient_whole_to_mps(piece, on.device, double{on.setup.rate_hz}));
   }
   if (piece.hand_surface) {
     const SlowSurface slow = slow_surface(*piece.hand_surface);

@@ -283,11 +283,18 @@ schema::Scene scene_with(const Transient& transient) {
 TEST(ContactTransientTest, WhatADeviceCutsIsSaid) {
   const schema::Device arm = *schema::read_device("arm");
   const auto whole_to = [&](const ContactTransient& t) {
-    return transient_whole_to_mps(*transient_of(piece_with(t)), arm, 1000);
+    return transient_whole_to_mps(piece_with(t), arm, 1000);
   };
-  EXPECT_NEAR(whole_to(kStudy) * peak_of(kStudy), 10, 1e-12);
+  // Without a wall the transient alone.
+  const auto alone_to = [&](const ContactTransient& t) {
+    schema::Piece piece = piece_with(t);
+    piece.stiffness_n_per_m = 0;
+    return transient_whole_to_mps(piece, arm, 1000);
+  };
+  EXPECT_NEAR(alone_to(kStudy) * peak_of(kStudy), 10, 1e-12);
   const ContactTransient steep = {20, 400, 400};
-  EXPECT_NEAR(whole_to(steep) * 20 * 2 * std::numbers::pi * 400, 20'000, 1e-8);
+  EXPECT_NEAR(alone_to(steep) * 20 * 2 * std::numbers::pi * 400, 20'000, 1e-8);
+  EXPECT_NEAR(whole_to(steep) * (20 * 2 * std::numbers::pi * 400 + 900), 20'000, 1e-8);
   for (const auto& [amplitude, notes] : {std::pair{64.0, 1U}, {32.0, 1U}, {16.0, 0U}}) {
     ContactTransient transient = kStudy;
     transient.amplitude_n_s_per_m = amplitude;

@@ -45,6 +45,12 @@ double frequency_hz(const Transient& transient) {
   return std::sqrt(std::max(0.0, squared)) / (2 * std::numbers::pi);
 }
 
+double largest_of(const schema::Piece& piece, double schema::Piece::*value) {
+  double most = 0;
+  for (const schema::Piece& end : slider_ends(piece)) most = std::max(most, end.*value);
+  return most;
+}
+
 }  // namespace
 
 SlowSurface slow_surface(const schema::HandSurface& model) {
@@ -116,14 +122,29 @@ double transient_stops_kg(const Transient& transient) {
          transient.square_per_s2;
 }
 
-// s'^2 + square s^2 never grows.
-double transient_whole_to_mps(const Transient& transient, const schema::Device& device, double rate_hz) {
+// s'^2 + square s^2 never grows. d is the greatest depth per speed: the contact began within the tick before.
+double transient_whole_to_mps(const schema::Piece& piece, const schema::Device& device, double rate_hz) {
+  const auto transient = transient_of(piece);
+  if (!transient) return INFINITY;
   double most_n = device.peak_force_n;
   for (const schema::DeviceAxis& axis : device.axes) most_n = std::min(most_n, axis.peak_force_n);
-  const double start = std::abs(transient.start_n_s_per_m),
-               steepest = std::hypot(transient.rise_n_per_m, std::sqrt(transient.square_per_s2) * start);
-  return std::min(most_n / transient_peak_n_s_per_m(transient),
-                  device.slew_n_per_s / std::max(start * rate_hz, steepest));
+  const auto [start, rise, decay, square] = *transient;
+  const Transient change{rise, -2 * decay * rise - square * start, decay, square};
+  const double stiffness = largest_of(piece, &schema::Piece::stiffness_n_per_m),
+               damping = largest_of(piece, &schema::Piece::damping_n_s_per_m),
+               integral = piece.integral_n_per_m_s, tick_s = 1 / rate_hz,
+               peak = transient_peak_n_s_per_m(*transient);
+  double largest = peak + damping, deep_s = tick_s;
+  for (double envelope = peak, t = 0; envelope > peak / 2; t += tick_s) {
+    const double s = force_at(*transient, t);
+    deep_s = t + tick_s;
+    largest = std::max(
+        largest, std::abs(s) + damping + stiffness * deep_s + integral * deep_s * (deep_s + tick_s) / 2);
+    envelope = std::hypot(s, force_at(change, t) / std::sqrt(square));
+  }
+  const double steepest =
+      std::max((std::abs(start) + damping) * rate_hz, std::hypot(rise, std::sqrt(square) * start));
+  return std::min(most_n / largest, device.slew_n_per_s / (steepest + stiffness + integral * deep_s));
 }
 
 }  // namespace tacto::playback

@@ -52,8 +52,13 @@ double transient_peak_n_s_per_m(const Transient& transient);
 /// w / (a^2 + w^2), from (3).
 double transient_stops_kg(const Transient& transient);
 
-/// Up to this speed of a contact no limit of the device cuts the transient by itself: its peak the peak force
-/// of each axis and of the vector, its start and its steepest rise the slew.
-double transient_whole_to_mps(const Transient& transient, const schema::Device& device, double rate_hz);
+/// Up to this speed v of a contact no limit of the device cuts the transient s of this piece with the spring,
+/// damper and integral of its wall, at the upper ends of their sliders, on a hand that goes on at v. At the
+/// ticks t = 0, T, ... until e^2 = s^2 + s'^2 / square is below that of half the peak:
+///     v (|s(t)| + B + K d + I d (d + T) / 2) <= the peak force of each axis and of the vector, d = t + T
+///     v (max((|s(0)| + B) / T, sqrt(s'(0)^2 + square s(0)^2)) + K + I d) <= the slew
+/// A hand that is slowed meets less; other pieces are left out. Infinity without a transient. Precondition:
+/// transient_table() is no error.
+double transient_whole_to_mps(const schema::Piece& piece, const schema::Device& device, double rate_hz);
 
 }  // namespace tacto::playback

@@ -15,20 +15,20 @@ namespace {
 using schema::Piece;
 using schema::PieceShape;
 using schema::Scene;
-using Vector = std::array<double, 3>;
+using Vector3 = std::array<double, 3>;
 
 constexpr double kSameDirection = 1e-9;  // of cosines
 
-double dot_of(const Vector& a, const Vector& b) {
+double dot_of(const Vector3& a, const Vector3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-Vector normal_of(const Piece& plane) {
+Vector3 normal_of(const Piece& plane) {
   const double size = std::sqrt(dot_of(plane.direction, plane.direction));
   return {plane.direction[0] / size, plane.direction[1] / size, plane.direction[2] / size};
 }
 
-Vector place_of(const Piece& piece) {
+Vector3 place_of(const Piece& piece) {
   return {piece.x_m, piece.y_m, piece.z_m};
 }
 
@@ -63,7 +63,7 @@ Meeting meeting_of(const Piece& a, const Piece& b, double radius_m) {
   if (a.shape == PieceShape::plane && b.shape == PieceShape::plane) return meeting_of_planes(a, b, radius_m);
   if (b.shape == PieceShape::plane) return meeting_of(b, a, radius_m);
   if (b.shape != PieceShape::sphere) return Meeting::other;
-  const Vector centre = place_of(b);
+  const Vector3 centre = place_of(b);
   double distance_m = 0;
   if (is_half_space(a))
     distance_m = dot_of(normal_of(a), centre) - height_m(a, radius_m);

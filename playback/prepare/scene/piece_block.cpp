@@ -154,11 +154,12 @@ std::optional<std::string> cut_of_transient(const Piece& piece, const schema::De
                                             double rate_hz) {
   const auto transient = transient_of(piece);
   if (!transient) return std::nullopt;
-  const double whole_to_mps = transient_whole_to_mps(*transient, device, rate_hz);
+  const double whole_to_mps = transient_whole_to_mps(piece, device, rate_hz);
   if (whole_to_mps >= kFastTap_mps) return std::nullopt;
   return fmt::format(
-      "the transient of piece '{}' is whole up to contacts of {:.3g} m/s; faster ones are cut by the limits "
-      "of the device: at {:g} m/s its peak is {:.3g} N (peak force {:g} N, slew {:g} N/s)",
+      "the transient of piece '{}' with its wall is whole up to contacts of {:.3g} m/s; faster ones are cut "
+      "by "
+      "the limits of the device: at {:g} m/s its own peak is {:.3g} N (peak force {:g} N, slew {:g} N/s)",
       piece.name, whole_to_mps, kFastTap_mps, kFastTap_mps * transient_peak_n_s_per_m(*transient),
       device.peak_force_n, device.slew_n_per_s);
 }
