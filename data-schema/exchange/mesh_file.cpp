@@ -127,7 +127,8 @@ Result<Mesh> read_mesh_file(const std::string& path, double unit_m) try {
   if (content->empty())
     return fail(ErrorKind::malformed, "is empty", path, "export it again as STL, OBJ or PLY");
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return fail(ErrorKind::unsuitable, "cannot start a process to read it", path);
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    return fail(ErrorKind::unsuitable, "cannot start a process to read it", path);
   const pid_t reader = ::fork();
   if (reader == 0) {
     constexpr rlim_t kLeast_s = 5, kBytesPerS = 1'000'000;
