@@ -47,7 +47,8 @@ double quest_level(const Levels& levels, const schema::ProtocolKey& key,
   const double quantile_75 = standard_quantile(Shape::normal, 0.75);
   const auto chance = [&](std::size_t stimulus, std::size_t parameters) {
     const double equal = most * (static_cast<double>(parameters % kEquals) / (kEquals - 1) - 0.5);
-    const double part = static_cast<double>(parameters / kEquals) / (kWidths - 1);
+    const std::size_t width = parameters / kEquals;
+    const double part = static_cast<double>(width) / (kWidths - 1);
     const double jnd = most * std::pow(kLeastWidth, 1 - part);
     return PsychometricFunction{Shape::normal, equal, jnd / quantile_75, kLapse / 2, {}}(levels[stimulus]);
   };
