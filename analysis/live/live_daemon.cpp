@@ -206,16 +206,16 @@ void LiveDaemon::take_watched(std::string_view line) {
     reply->fields.emplace_back("here", true);
     tell_all(about_ = schema::control_event_line("daemon", reply->fields));
   } else if (reply->event.empty()) {
-    keep_status(std::move(reply->fields));
+    keep_status(reply->fields);
     tell_all(status_);
   } else if (reply->event == "status") {
-    keep_status(std::move(reply->fields));
+    keep_status(reply->fields);
   } else if (reply->event == "state") {
     state_ = line;
   }
 }
 
-void LiveDaemon::keep_status(ControlFields fields) {
+void LiveDaemon::keep_status(const ControlFields& fields) {
   loaded_ = schema::control_text(fields, "loaded");
   status_ = schema::control_event_line("status", fields);
   state_.clear();

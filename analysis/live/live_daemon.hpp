@@ -47,7 +47,7 @@ class LiveDaemon {
   static void disconnect(Link& link);
   void begin_watching();
   void take_watched(std::string_view line);
-  void keep_status(schema::ControlFields fields);
+  void keep_status(const schema::ControlFields& fields);
   void watching_lost();
   void gone(const schema::Error& why);
   schema::Result<void> ask(Page& page, const schema::LiveRequest& request);
