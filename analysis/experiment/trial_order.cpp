@@ -50,7 +50,8 @@ std::vector<StudyTrial> orderings(const schema::Protocol& protocol, const schema
   for (int i = 1; i <= protocol.repetitions; ++i) {
     StudyTrial& trial = trials.emplace_back(StudyTrial{"all", i, 1, false, 1});
     const std::string text = hashed_text(protocol, participant, trial);
-    trial.arranged = sorted_by_sum(codes, [&](const std::string& code) { return text + "/" + code; });
+    trial.arranged =
+        sorted_by_sum(codes, [&](const std::string& code) { return fmt::format("{}/{}", text, code); });
   }
   return sorted_by_sum(std::move(trials),
                        [&](const StudyTrial& trial) { return hashed_text(protocol, participant, trial); });
