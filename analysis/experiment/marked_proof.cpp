@@ -58,6 +58,7 @@ class MarkedCounter {
 
   void operator()(const std::vector<schema::SessionTick>& ticks) {
     if (first_ns_ == kNoTick) first_ns_ = ticks.front().time_ns;
+    stored_to_ = ticks.back().tick + 1;
     for (const schema::SessionTick& tick : ticks) {
       MarkedInterval* const interval = order_.interval_of(tick.tick);
       if (interval == nullptr) continue;
@@ -68,6 +69,7 @@ class MarkedCounter {
   }
   void operator()(const schema::SessionLoss& loss) {
     const std::uint64_t end = loss.first_tick + loss.count;
+    stored_to_ = std::max(stored_to_, end);
     auto interval = std::ranges::partition_point(
         intervals_, [&](const MarkedInterval& each) { return each.to_tick <= loss.first_tick; });
     for (; interval != intervals_.end() && interval->from_tick < end; ++interval) {
@@ -78,23 +80,31 @@ class MarkedCounter {
   }
   template <class Other>
   void operator()(const Other& /*other*/) const {}
+  /// The tick after the last one that is stored, or known as lost.
+  std::uint64_t stored_to() const { return stored_to_; }
 
  private:
+  std::uint64_t stored_to_ = 0;
   static constexpr std::int64_t kNoTick = std::numeric_limits<std::int64_t>::min();
   std::vector<MarkedInterval>& intervals_;
   TickOrder order_;
   std::int64_t first_ns_ = kNoTick;
 };
 
-Result<bool> count_ticks(const std::string& name, std::vector<MarkedInterval>& intervals) {
+// A mark is stored at once, ticks a little later: of a session whose writer was killed, an interval with both
+// marks may lack its last ticks.
+Result<void> count_ticks(const std::string& name, std::vector<MarkedInterval>& intervals) {
   auto reader = schema::SessionReader::open(name);
   TACTO_TRY(reader);
   MarkedCounter counter(intervals);
   while (const auto block = reader->next()) std::visit(counter, *block);
+  const bool closed = reader->ending() == schema::SessionEnding::closed;
+  for (MarkedInterval& interval : intervals)
+    interval.facts.closed = closed || interval.to_tick <= counter.stored_to();
   // So that the times rise also over an interval without ticks.
   for (std::size_t i = 1; i < intervals.size(); ++i)
     if (intervals[i].facts.ticks == 0) intervals[i].from_s = intervals[i].to_s = intervals[i - 1].to_s;
-  return reader->ending() == schema::SessionEnding::closed;
+  return {};
 }
 
 // Of each interval the strokes that are completely in it.
@@ -161,13 +171,11 @@ Result<MarkedProof> prove_marks(const std::string& name, const schema::DeliveryL
   if (proof.intervals.empty())
     return fail(ErrorKind::unsuitable, "has no mark that begins an interval", reader->path(),
                 "set marks while it is recorded, for example with 'tactograph ctl mark \"trial 1\"'");
-  const auto closed = count_ticks(name, proof.intervals);
-  TACTO_TRY(closed);
+  TACTO_TRY(count_ticks(name, proof.intervals));
   TACTO_TRY(judge_strokes(name, proof.intervals, [&](double part) { tell(part / 2); }));
   TACTO_TRY(tally_limits(name, proof.intervals));
   for (MarkedInterval& interval : proof.intervals) {
     interval.facts.simulated = proof.simulated;
-    interval.facts.closed = *closed || interval.to_tick != std::numeric_limits<std::uint64_t>::max();
     decide(interval, limits);
   }
   const auto replayed = playback::replay_session(name, [&](double part) { tell((1 + part) / 2); });

@@ -75,12 +75,8 @@ bool ControlClient::send(const std::string& line) {
   return flush() && out_.size() <= kMostWaiting;
 }
 
-bool ControlClient::send_event(const std::string& line) {
-  if (out_.size() + line.size() > kEventsWait) {
-    ++dropped_events;
-    return flush();
-  }
-  return send(line);
+bool ControlClient::send_if_it_reads(const std::string& line) {
+  return out_.size() + line.size() > kEventsWait ? flush() : send(line);
 }
 
 }  // namespace tacto::playback

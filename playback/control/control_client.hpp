@@ -34,8 +34,8 @@ class ControlClient {
   /// Sends as much as the socket accepts and keeps the rest. False if the client has disconnected, or more
   /// than 256 KB are unsent.
   bool send(const std::string& line);
-  /// As send(), for an event: it is dropped and counted if the client reads too slowly.
-  bool send_event(const std::string& line);
+  /// As send(), but dropped if 64 KB are unsent.
+  bool send_if_it_reads(const std::string& line);
   bool flush();
   bool wants_to_send() const { return !out_.empty(); }
 
@@ -52,8 +52,7 @@ class ControlClient {
   bool for_stop = false;                 ///< it has a place that is reserved for `stop` and `disarm`
   std::optional<Time> leaves_at;         ///< time to send `last_line` and disconnect; not read until then
   std::string last_line;
-  std::uint64_t lines = 0;  ///< received
-  std::uint64_t dropped_events = 0;
+  std::uint64_t lines = 0;               ///< received
   std::optional<std::string> waits_for;  ///< the id of a request that is answered later
 
  private:

@@ -317,14 +317,16 @@ void ControlServer::serve(int timeout_ms, const Handler& handler) {
 }
 
 void ControlServer::publish(std::string_view event, const schema::ControlFields& fields) {
-  if (events_.size() < kMostEvents)
-    events_.push_back({schema::control_event_line(event, fields), event == "ticks"});
+  const bool ticks = event == "ticks", repeated = ticks || event == "status";
+  if (events_.size() < kMostEvents || !repeated)
+    events_.push_back({schema::control_event_line(event, fields), ticks, repeated});
 }
 
 void ControlServer::deliver() {
-  for (const auto& [line, ticks] : events_)
-    std::erase_if(clients_, [&, &text = line, only = ticks](ControlClient& client) {
-      return (only ? client.watches_ticks : client.watching) && !client.send_event(text);
+  for (const Event& event : events_)
+    std::erase_if(clients_, [&](ControlClient& client) {
+      if (!(event.ticks ? client.watches_ticks : client.watching)) return false;
+      return !(event.repeated ? client.send_if_it_reads(event.line) : client.send(event.line));
     });
   events_.clear();
 }

@@ -102,7 +102,7 @@ class ControlServer {
   std::uint64_t lines_ = 0;  // of clients that sent hello
   struct Event {
     std::string line;
-    bool ticks = false;
+    bool ticks = false, repeated = false;  // repeated: `status` or `ticks`, of which others follow
   };
   std::vector<Event> events_;
 };

@@ -118,6 +118,30 @@ TEST_F(ControlServing, WhoWatchesIsToldAndCanNotAsk) {
   EXPECT_EQ(handled_, std::vector{ControlVerb::watch}) << "the stop was not carried out";
 }
 
+TEST_F(ControlServing, WhoDoesNotReadLosesNoChangeOfState) {
+  const auto client = greeted();
+  client->say("{\"request\":\"watch\",\"ticks\":true}\n");
+  serve();
+  client->heard();
+  for (int i = 0; i < 3000; ++i)  // more than between two serve(), and 3 MB
+    server_->publish(i % 2 == 0 ? "ticks" : "status", {{"ticks", std::string(1000, 'A')}});
+  server_->publish("state", {{"state", std::string("playing")}});
+  serve();
+  for (int i = 0; i < 500; ++i) server_->publish("ticks", {{"ticks", std::string(1000, 'A')}});
+  server_->publish("state", {{"state", std::string("armed")}});
+  std::vector<std::string> states;
+  std::size_t others = 0;
+  for (int i = 0; i < 200; ++i) {
+    serve();
+    for (const std::string& line : client->heard())
+      line.find("\"state\"") != std::string::npos ? states.push_back(line) : void(++others);
+  }
+  EXPECT_LT(others, 1500U);
+  ASSERT_EQ(states.size(), 2U);
+  EXPECT_NE(states[0].find("playing"), std::string::npos);
+  EXPECT_NE(states[1].find("armed"), std::string::npos);
+}
+
 TEST_F(ControlServing, TicksAreForThoseWhoAskedForThem) {
   const auto plain = greeted(), curious = greeted();
   plain->say(kWatch);
