@@ -103,6 +103,7 @@ Report answers_report(const AnswersFit& all, const std::string& verdict) {
   std::vector<Report> rows;
   for (const FittedGroup& group : all.groups) rows.push_back(fit_row(all, group));
   report.add("fits", std::move(rows));
+  if (!all.not_fitted.empty()) report.add("not_fitted", all.not_fitted);
   if (all.over_people) report.add("over_people", std::vector<Report>{people_row(all, *all.over_people)});
   if (all.without_lapses)
     report.add("without_lapses", std::vector<Report>{people_row(all, *all.without_lapses)});

@@ -603,7 +603,7 @@ cli::Action declare_new_study(CLI::App& app) {
       "comparison, a real sample in one block and played in the other one, each of 100 trials or 15 "
       "minutes. amplitude: one texture at gains between 0 and 2 times that of the real sample, which is "
       "before "
-      "the participant; each is rated from -3 to 3 against it. ordering: all textures are felt freely, and "
+      "the participant; each is rated from -3 to 3 against it. ordering: all textures are explored freely, and "
       "put in order of roughness. adjustment: the gain of a texture is changed by keys while it is played, "
       "from a low start in odd trials and from a high one in even trials, until it is accepted. "
       "Label the real samples with the codes of STUDY.key.json, which neither operator nor participant "

@@ -114,7 +114,7 @@ bool ParticipantScreen::adjusts(int interval) const {
          interval == (protocol_.goal == schema::Goal::match ? 2 : 1);
 }
 
-// The number of a texture, or 0 for the order, once each was felt; none: the run ends.
+// The number of a texture, or 0 for the order, once each was explored; none: the run ends.
 std::optional<int> ParticipantScreen::wait_for_texture(const std::vector<int>& left) {
   welcome();
   show(protocol_.texts.begin);

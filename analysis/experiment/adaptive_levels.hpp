@@ -9,8 +9,8 @@
 
 namespace tacto::analysis {
 
-/// The code of the stimulus. Only attempts that count have an effect: what was not delivered is told to no
-/// method. QUEST+: a cumulative normal function with 21 points of subjective equality within half of the
+/// The code of the stimulus. Only attempts that count have an effect: what was not delivered is left
+/// out. QUEST+: a cumulative normal function with 21 points of subjective equality within half of the
 /// largest stretch to both sides, 16 JNDs from a twentieth of it to all of it (logarithmic), and 2 % lapses;
 /// the prior is flat. Precondition: two intervals, of a method that is not constant. Pure: a resumed run gets
 /// the same.

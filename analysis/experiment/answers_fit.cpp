@@ -21,18 +21,28 @@ Estimate steepness_of(const PsychometricFit& fit) {
   return {factor * value, factor * low, factor * high};
 }
 
-Result<std::vector<FittedGroup>> fit_groups(const AnswersTable& table, const PsychometricOptions& options,
-                                            const std::function<void(double)>& tell) {
+struct FittedGroups {
   std::vector<FittedGroup> groups;
+  std::vector<std::string> not_fitted;
+};
+
+Result<FittedGroups> fit_groups(const AnswersTable& table, const PsychometricOptions& options,
+                                const std::function<void(double)>& tell) {
+  FittedGroups fitted;
+  double done = 0;
   for (const auto& group : table.groups) {
     auto fit = fit_psychometric(group.rows, options);
-    if (!fit && !group.by.empty()) fit.error().where = group_name(group.by);
-    TACTO_TRY(fit);
-    const Estimate steepness = steepness_of(*fit);
-    groups.push_back({group.by, std::move(*fit), steepness});
-    tell(static_cast<double>(groups.size()) / static_cast<double>(table.groups.size()));
+    tell(++done / static_cast<double>(table.groups.size()));
+    if (fit) {
+      const Estimate steepness = steepness_of(*fit);
+      fitted.groups.push_back({group.by, std::move(*fit), steepness});
+      continue;
+    }
+    if (!group.by.empty()) fit.error().where = group_name(group.by);
+    fitted.not_fitted.push_back(fmt::format("{}: {}", group_name(group.by), fit.error().what));
+    if (!table.of_study || fitted.not_fitted.size() == table.groups.size()) return schema::forward_error(fit);
   }
-  return groups;
+  return fitted;
 }
 
 OverPeople over_people(const std::vector<FittedGroup>& groups) {
@@ -80,10 +90,17 @@ std::string group_name(const std::vector<std::string>& by) {
 
 Result<AnswersFit> fit_answers(AnswersTable table, const PsychometricOptions& options,
                                const std::function<void(double)>& tell) {
-  auto groups = fit_groups(table, options, tell);
-  TACTO_TRY(groups);
-  AnswersFit all{
-      std::move(table), options, options.guess ? "threshold" : "PSE", "exponent", "", *groups, {}, {}};
+  auto fitted = fit_groups(table, options, tell);
+  TACTO_TRY(fitted);
+  AnswersFit all{std::move(table),
+                 options,
+                 options.guess ? "threshold" : "PSE",
+                 "exponent",
+                 "",
+                 std::move(fitted->groups),
+                 std::move(fitted->not_fitted),
+                 {},
+                 {}};
   if (options.shape != Shape::weibull) {
     all.steepness_name = options.guess ? "width" : "JND";
     all.steepness_unit = all.table.unit;
@@ -93,8 +110,8 @@ Result<AnswersFit> fit_answers(AnswersTable table, const PsychometricOptions& op
   if (options.lapse) return all;
   PsychometricOptions without = options;
   without.lapse = 0;
-  if (const auto others = fit_groups(all.table, without, [](double) {}))
-    all.without_lapses = compared_people(*others);
+  if (const auto others = fit_groups(all.table, without, [](double) {}); others && others->not_fitted.empty())
+    all.without_lapses = compared_people(others->groups);
   return all;
 }
 

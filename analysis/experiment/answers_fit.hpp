@@ -40,12 +40,13 @@ struct AnswersFit {
   std::string threshold_name, steepness_name;  ///< "PSE", "JND" ...
   std::string steepness_unit;                  ///< that of the levels, or empty
   std::vector<FittedGroup> groups;
+  std::vector<std::string> not_fitted;       ///< "P01: why", of a study
   std::optional<OverPeople> over_people;     ///< if there are several groups
   std::optional<OverPeople> without_lapses;  ///< the same with the lapse fixed at 0, if it was fitted
 };
 
 /// Fits each group. The first column of `by` is the person, the others are conditions. Errors: those of
-/// fit_psychometric(), with the group. `tell` receives 0 to 1.
+/// fit_psychometric(), with the group; of a study only if no person can be fitted. `tell` receives 0 to 1.
 schema::Result<AnswersFit> fit_answers(AnswersTable table, const PsychometricOptions& options,
                                        const std::function<void(double)>& tell);
 

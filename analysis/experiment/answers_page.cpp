@@ -215,7 +215,9 @@ std::string answers_verdict(const AnswersFit& all) {
 }
 
 std::vector<ResultFigure> answers_figures(const AnswersFit& all) {
-  std::vector<ResultFigure> figures = {{"verdict", answers_verdict(all)}};
+  std::string verdict = answers_verdict(all);
+  if (!all.not_fitted.empty()) verdict += fmt::format("; {} not fitted", all.not_fitted.size());
+  std::vector<ResultFigure> figures = {{"verdict", std::move(verdict)}};
   if (all.groups.size() == 1)
     add_one(figures, all);
   else
@@ -232,6 +234,7 @@ std::vector<ResultFigure> answers_figures(const AnswersFit& all) {
     figures.push_back({"note", "--overdispersed widens the intervals for answers that scatter so"});
   for (const std::string& note : all_notes(all)) figures.push_back({"note", note});
   for (const std::string& each : all.table.reversals) figures.push_back({"reversals", each});
+  for (const std::string& each : all.not_fitted) figures.push_back({"not fitted", each});
   return figures;
 }
 

@@ -30,6 +30,7 @@ struct AnswersTable {
   std::vector<AnswerGroup<LevelCount>> groups;  ///< in the order of their texts, numbers by value
   std::string simulated;                        ///< by what, where an answer or a session is simulated
   std::vector<std::string> reversals = {};      ///< of staircases, their mean, in words
+  bool of_study = false;  ///< a person who cannot be fitted is left out, and does not prevent the others
 };
 
 /// Reads counts of answers against levels. Without names of columns, those that are not in `by` are, in this

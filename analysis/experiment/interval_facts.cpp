@@ -155,7 +155,7 @@ std::vector<std::string> reasons_against(const IntervalFacts& facts, const schem
 
 namespace {
 
-// Of an ordering: a stimulus was felt as it should be in one of its intervals, so the others do not count.
+// Of an ordering: one interval of a stimulus that was delivered is enough, so the others do not count.
 bool is_felt(const std::string& sha256, const std::vector<std::string>& all,
              const std::vector<std::vector<std::string>>& why) {
   for (std::size_t i = 0; i < why.size(); ++i)

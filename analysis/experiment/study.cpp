@@ -289,7 +289,7 @@ Result<schema::Protocol> ordering_protocol(const std::string& seed, const NamedT
       "bar "
       "to give the order.",
       kAnswerKeys.front(), protocol.choices.back().key);
-  protocol.texts.left = "Not felt yet, or not at the right speed";
+  protocol.texts.left = "Not explored yet, or not at the right speed";
   protocol.texts.question =
       "Press the numbers from the smoothest texture to the roughest one, then the space bar. Backspace takes "
       "one back.";

@@ -46,7 +46,7 @@ schema::Result<schema::Protocol> identification_protocol(const std::string& seed
 /// twice the force. Errors: usage, if there is not one texture; as identification_protocol.
 schema::Result<schema::Protocol> amplitude_protocol(const std::string& seed, const NamedTextures& textures);
 
-/// After Minsky et al. 1990: the textures are felt freely and put in order of roughness, three times.
+/// After Minsky et al. 1990: the textures are explored freely and put in order of roughness, three times.
 /// `intended`: the parameter by which they were made, by their names; empty: unknown. Path and gain as of an
 /// identification. Errors: as identification_protocol; usage: a texture without its number.
 schema::Result<schema::Protocol> ordering_protocol(const std::string& seed, const NamedTextures& textures,

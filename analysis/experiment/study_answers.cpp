@@ -116,6 +116,7 @@ Result<AnswersTable> study_answers(const std::string& name, bool unblind) {
   const auto runs = answered_runs(name, unblind);
   TACTO_TRY(runs);
   AnswersTable table;
+  table.of_study = true;
   std::vector<std::string> simulated;
   for (const Run& run : *runs) {
     table.groups.push_back(answers_of_run(run));

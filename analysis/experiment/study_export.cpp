@@ -32,7 +32,7 @@ constexpr Column kColumns[] = {
     {"presented", "name of the comparison", ""},
     {"answer_choice", "number of the standard that was answered", ""},
     {"correct", "1: the answer is the comparison, else 0", ""},
-    {"explorations", "number of textures that were felt, each of them once or more", ""},
+    {"explorations", "number of textures that were explored, each of them once or more", ""},
     {"order", "names of the textures in the order of the answer, from least to most", ""},
     {"series", "ascending: the setting began at a low gain; descending: at a high one", ""},
     {"start_ratio", "gain at its beginning over that of the protocol", "1"},

@@ -186,7 +186,7 @@ class LiveSteps {
     const auto ask = [&](const SettingNow& now) -> Result<std::optional<schema::Turn>> {
       if (!wanted) return request_.participant.turn(asked_at == AskedAt::pass);
       const double measured = request_.observer ? now.felt_ratio : now.ratio;
-      // Nothing is felt where ticks are missing, and then the attempt is not delivered.
+      // Where ticks are missing nothing was played, and then the attempt is not delivered.
       const schema::Turn turn =
           measured > 0 ? turn_towards(protocol, now.ratio, measured, *wanted) : schema::Turn::accept;
       // Between two settings that are equally near.
@@ -201,7 +201,7 @@ class LiveSteps {
     return goes_on;
   }
 
-  // How often each texture must be felt yet: 0 times if it was delivered, or failed too often.
+  // How often each texture has yet to be explored: 0 times if it was delivered, or failed too often.
   Result<std::optional<schema::JournalEntry>> explore(const Attempt& attempt) {
     IntervalsPlayed played;
     std::vector<int> tries(attempt.trial.arranged.size(), run_.study.protocol.most_attempts);
@@ -223,8 +223,9 @@ class LiveSteps {
       TACTO_TRY(goes_on);
       if (!*goes_on) return std::nullopt;
       TACTO_TRY(read_facts(attempt, i, played));
-      const bool felt = reasons_against(played.facts.back(), run_.study.protocol, played.sums.back()).empty();
-      tries[chosen] = felt ? 0 : std::max(tries[chosen] - 1, 0);
+      const bool delivered =
+          reasons_against(played.facts.back(), run_.study.protocol, played.sums.back()).empty();
+      tries[chosen] = delivered ? 0 : std::max(tries[chosen] - 1, 0);
     }
     return judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums, run_.study.protocol,
                            played.late);

@@ -29,8 +29,8 @@ struct Participant {
   std::function<bool(int interval)> go_ahead;
   /// Asks the question; none: the run ends. `number` is that of the answer in the run, from 0.
   std::function<schema::Result<std::optional<GivenAnswer>>(std::size_t number)> answer;
-  /// Of ordering: which texture is felt next, by its number among the choices; 0: the question may come,
-  /// which is possible if `left`, the textures that must be felt yet, is empty. None: the run ends.
+  /// Of ordering: which texture is explored next, by its number among the choices; 0: the question may come,
+  /// which is possible if `left`, the textures that have yet to be explored, is empty. None: the run ends.
   std::function<std::optional<int>(const std::vector<int>& left)> explore;
   /// Of adjustment, of a person: the next key; waits for it on request. None: no key, or the run ends.
   std::function<std::optional<schema::Turn>(bool wait)> turn;

@@ -65,7 +65,7 @@ class LiveDaemon {
   std::vector<Page*> pages_;
   Page* steers_ = nullptr;
   Link watching_, steering_;
-  std::deque<Page*> asked_;  // whose answers come next; null: nobody's
+  std::deque<Page*> asked_;  // whose answers come next; null: no page's
   bool played_ = false;      // the pages' last word: the drive has to fall when they leave
   std::chrono::steady_clock::time_point heard_;  // of the page that steers: its last request
   std::chrono::steady_clock::time_point next_try_;

@@ -56,7 +56,7 @@ Result<void> check_faults(const schema::MeshFaults& faults, std::size_t triangle
       remedies.emplace_back(
           "--repair merges vertices within a millionth of the size, which may close the holes");
     remedies.emplace_back(
-        "close the holes in a program for meshes; --open keeps them: the surface is then felt from its outer "
+        "close the holes in a program for meshes; --open keeps them: the surface then acts from its outer "
         "side, and a point passes through it from the other side");
   }
   if (words.empty()) return {};

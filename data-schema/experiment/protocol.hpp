@@ -21,7 +21,7 @@ struct StandardStimulus {
 /// other; which of them has the smaller period. identification: one of the comparisons is played, or lies on
 /// the bench as a real sample; which of the standards it is. amplitude: the standard is played, at a gain of
 /// each trial; how strong it is, re the real sample that is before the participant. ordering: all standards,
-/// each felt as often as the participant likes; their order, from least to most. adjustment: the first
+/// each explored as often as the participant likes; their order, from least to most. adjustment: the first
 /// standard is played, and the participant changes its gain until the goal is reached.
 enum class Task { two_interval, identification, amplitude, ordering, adjustment };
 
@@ -78,7 +78,7 @@ struct AnswerWord {
 struct ProtocolTexts {
   std::string welcome, begin, interval, question, end;
   std::string place;  ///< to the operator, before a real sample's label; in an identification only
-  std::string left;   ///< before the numbers of the textures that must be felt yet; in an ordering only
+  std::string left;   ///< before the numbers of the textures that have yet to be explored; in an ordering only
 };
 
 /// What the task does not have is empty.

@@ -14,7 +14,7 @@ namespace tacto::playback {
 /// For the thread that receives the ticks from the device or from the loop, never for the loop's thread.
 class TickStream {
  public:
-  /// While nobody watches, ticks are not kept.
+  /// While no client asks for ticks, none are kept.
   void turn(bool on);
   void take(const schema::SessionTick& tick);
   /// The members of the events for the ticks so far, which are then forgotten. A cell of 0.5 ms whose end is

@@ -2,6 +2,7 @@
 // Fits of psychometric functions: psignifit's published example, exact proportions, and answers that give
 // only a bound.
 #include "analysis/psychometrics/psychometric_fit.hpp"
+#include "analysis/experiment/answers_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -118,6 +119,25 @@ TEST(PsychometricFit, ABoundIsNoThreshold) {
   PsychometricOptions weibull;
   weibull.shape = Shape::weibull;
   EXPECT_FALSE(fit_psychometric({{0, 1, 10}, {1, 5, 10}, {2, 9, 10}}, weibull));
+}
+
+TEST(PsychometricFit, InAStudyAPersonWithABoundIsLeftOut) {
+  const std::vector<LevelCount> slope = {{1, 2, 20}, {2, 5, 20}, {3, 9, 20}, {4, 15, 20}, {5, 19, 20}},
+                                bound = {{1, 10, 10}, {2, 10, 10}};
+  AnswersTable table;
+  table.groups = {{{"P01"}, bound}, {{"P02"}, slope}, {{"P03"}, slope}};
+  const auto fitted = [&] { return fit_answers(table, {}, [](double) {}); };
+  EXPECT_EQ(fitted().error().where, "P01");
+  table.of_study = true;
+  const auto all = fitted();
+  ASSERT_TRUE(all);
+  ASSERT_EQ(all->groups.size(), 2U);
+  EXPECT_EQ(all->groups[0].by.front(), "P02");
+  ASSERT_EQ(all->not_fitted.size(), 1U);
+  EXPECT_TRUE(all->not_fitted[0].starts_with("P01: "));
+  EXPECT_EQ(all->over_people->conditions[0].people.size(), 2U);
+  table.groups.resize(1);
+  EXPECT_EQ(fitted().error().where, "P01");
 }
 
 }  // namespace

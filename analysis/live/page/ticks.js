@@ -6,7 +6,7 @@ export const SPECTRUM_LENGTH = 1024;
 const LONGEST_GAP = 5000;           // cells; after a longer one the trace begins again
 const FLAGS = {amplitude: 8, slew: 16, energy: 64, gated: 128, touching: 512};  // of ticks (WIRE.md)
 const LATE_BOUNDS = ['10us', '50us', '100us', '500us', '1000us'];
-export const SILENT_MS = 1500;      // armed, the daemon speaks 50 times a second
+export const SILENT_MS = 1500;      // an armed daemon sends 50 messages a second
 
 /** Of an event `ticks` (CONTROL.md): per tick its number, time (ns), encoder count of the first axis, flags, and value: the
  * drive in volts, or the force in newtons of a device with forces. `step`: ticks from one value to the next.

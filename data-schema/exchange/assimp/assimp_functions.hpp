@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The functions of the library assimp that tactograph calls. assimp knows 40 formats and depends on libraries
+// The functions of the library assimp that tactograph calls. assimp reads 40 formats and depends on libraries
 // of compression; so it is linked to a module, which is loaded at its first use.
 #pragma once
 
