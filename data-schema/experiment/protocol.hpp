@@ -78,7 +78,7 @@ struct AnswerWord {
 struct ProtocolTexts {
   std::string welcome, begin, interval, question, end;
   std::string place;  ///< to the operator, before a real sample's label; in an identification only
-  std::string left;   ///< before the numbers of the textures that have yet to be explored; in an ordering only
+  std::string left;  ///< before the numbers of the textures that have yet to be explored; in an ordering only
 };
 
 /// What the task does not have is empty.
