@@ -7,7 +7,9 @@ void add_mesh(cli::Report& report, const Mesh& mesh) {
   const MeshFigures figures = figures_of(mesh);
   const MeshFaults faults = faults_of(mesh);
   report.add("triangles", mesh.triangles.size()).add("vertices", mesh.vertices_m.size());
-  const char* const sizes[] = {"size_x_m", "size_y_m", "size_z_m"};
+  const char *const from[] = {"from_x_m", "from_y_m", "from_z_m"}, *const sizes[] = {"size_x_m", "size_y_m",
+                                                                                     "size_z_m"};
+  for (std::size_t i = 0; i < 3; ++i) report.add(from[i], figures.least_m[i]);
   for (std::size_t i = 0; i < 3; ++i) report.add(sizes[i], figures.most_m[i] - figures.least_m[i]);
   report.add("longest_edge_m", figures.longest_edge_m).add("closed", faults.open_edges == 0);
   if (faults.open_edges == 0)

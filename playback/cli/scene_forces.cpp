@@ -313,6 +313,8 @@ void add_fit(Report& report, const PreparedScene& scene, std::optional<std::size
   const std::size_t bytes = scene.bytes();
   const bool small = !room || bytes <= *room, fast = tick_s * rate_hz <= 1;
   report.add("fits", small && fast);
+  if (!room && !scene.meshes.empty())
+    report.add("memory", "not compared: --device-memory gives the room of the device");
   if (!small) {
     const std::string remedy = scene.remedy_for(*room);
     report.add("because", fmt::format("the scene needs {} bytes, the device has {}{}{}", bytes, *room,

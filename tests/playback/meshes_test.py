@@ -97,6 +97,9 @@ def three_formats_give_one_mesh():
     assert error_of("import", "cube.stl", "--unit", "mm", "-o", "stl", code=USAGE)  # it is there already
     run_json("import", "cube.stl", "--unit", "um", "-o", "stl", "--force")
     assert abs(run_json("info", "stl")["size_x_m"] - 2e-5) < 1e-12
+    write_obj("moved.obj", CUBE + [3, -2, 0.5], CUBE_FACES)
+    said = run_json("import", "moved.obj", "--unit", "mm", "-o", "moved")
+    assert [round(1e6 * said[f"from_{axis}_m"]) for axis in "xyz"] == [3000, -2000, 500], said
 
 
 def what_is_wrong_with_a_mesh_is_counted():
