@@ -301,7 +301,8 @@ schema::Result<std::string> surfaces_page(const SurfaceComparison& c) {
   const auto pictures = pictures_html(surfaces_pictures(c), c.simulated().words());
   TACTO_TRY(pictures);
   std::string body = fmt::format("<h1>{} against {}</h1>\n", escaped(c.b.name), escaped(c.a.name)) +
-                     answer(verdict_line(c)) + c.simulated().box() + figures_html(surfaces_figures(c));
+                     answer(verdict_line(c)) + c.simulated().box() +
+                     figures_html(surfaces_figures(c), {"verdict", "simulated"});
   for (const std::string& note : c.notes) body += fmt::format("<p class=\"note\">{}</p>\n", escaped(note));
   return html_document(fmt::format("{} against {}: {}", c.b.name, c.a.name, to_string(c.verdict)),
                        body + *pictures);

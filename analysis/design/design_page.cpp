@@ -298,15 +298,14 @@ schema::Result<std::string> design_page(const Design& design, const std::string&
   const auto drawn = pictures_html(pictures, design.simulated);
   TACTO_TRY(drawn);
   std::vector<schema::ResultFigure> figures = design_figures(design);
-  std::erase_if(figures, [](const auto& figure) {
-    return figure.name == "verdict" || figure.name.starts_with("remedy: ");
-  });
+  std::erase_if(figures, [](const auto& figure) { return figure.name.starts_with("remedy: "); });
   const DesignTables tables = design_tables(design);
   const auto every = [](std::string_view /*key*/) { return true; };
   std::string body = fmt::format("<h1>{}</h1>\n", escaped(scene + " on " + design.request.device.name)) +
                      simulated_box(design.simulated) + answer(design_verdict(design)) +
-                     figures_html(figures) + "<h2>Layers</h2>\n" + rows_table(tables.layers, is_verdict) +
-                     "<h2>Limits</h2>\n" + rows_table(tables.layers, is_layer_or_limit);
+                     figures_html(figures, {"verdict", "simulated"}) + "<h2>Layers</h2>\n" +
+                     rows_table(tables.layers, is_verdict) + "<h2>Limits</h2>\n" +
+                     rows_table(tables.layers, is_layer_or_limit);
   if (!tables.remedies.empty())
     body +=
         fmt::format(

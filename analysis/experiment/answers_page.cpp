@@ -322,7 +322,7 @@ schema::Result<std::string> findings_page(const std::string& file, const Finding
   TACTO_TRY(drawn);
   const std::string name = std::filesystem::path(file).filename().string();
   std::string body = fmt::format("<h1>Experiment: {}</h1>\n", escaped(name)) + answer(findings.verdict()) +
-                     simulated_box(findings.simulated) + figures_html(findings.figures) + *drawn;
+                     simulated_box(findings.simulated) + figures_html(findings.figures, {"verdict"}) + *drawn;
   if (!findings.groups.empty()) body += html_table(findings.groups);
   return html_document(fmt::format("{}: {}", name, findings.verdict()), body);
 }

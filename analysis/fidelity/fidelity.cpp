@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -64,9 +65,9 @@ class ScratchFolder {
 namespace fs = std::filesystem;
 
 schema::Result<ScratchFolder> ScratchFolder::make() {
-  std::error_code failure;
-  std::string path = (fs::temp_directory_path(failure) / "tactograph-XXXXXX").string();
-  if (!failure && mkdtemp(path.data()) != nullptr) return ScratchFolder(path);
+  const char* const wanted = std::getenv("TMPDIR");
+  std::string path = fs::path(wanted != nullptr && *wanted != '\0' ? wanted : "/tmp") / "tactograph-XXXXXX";
+  if (mkdtemp(path.data()) != nullptr) return ScratchFolder(path);
   return schema::fail(schema::ErrorKind::cannot_write, "no temporary folder can be made", path,
                       "set TMPDIR to a folder that can be written");
 }

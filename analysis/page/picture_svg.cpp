@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "analysis/page/html.hpp"
 
@@ -59,9 +60,13 @@ schema::Result<std::string> pictures_html(std::span<const schema::ResultPicture>
   return html;
 }
 
-std::string figures_html(std::span<const schema::ResultFigure> figures) {
-  return html_table(std::vector(figures.begin(), figures.end()),
-                    {{"", &schema::ResultFigure::name}, {"value", &schema::ResultFigure::value}});
+std::string figures_html(std::span<const schema::ResultFigure> figures,
+                         std::initializer_list<std::string_view> stated_above) {
+  std::vector<schema::ResultFigure> rows(figures.begin(), figures.end());
+  std::erase_if(rows, [&](const schema::ResultFigure& figure) {
+    return std::ranges::find(stated_above, figure.name) != stated_above.end();
+  });
+  return html_table(rows, {{"", &schema::ResultFigure::name}, {"value", &schema::ResultFigure::value}});
 }
 
 }  // namespace tacto::analysis

@@ -2,8 +2,10 @@
 // Draws the curves of results.
 #pragma once
 
+#include <initializer_list>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "data-schema/base/error.hpp"
 #include "data-schema/results/results.hpp"
@@ -19,7 +21,8 @@ spatial::LineFigure figure_of(const schema::ResultPicture& picture, const std::s
 schema::Result<std::string> pictures_html(std::span<const schema::ResultPicture> pictures,
                                           const std::string& simulated);
 
-/// Figures (numbers) as a table of two columns.
-std::string figures_html(std::span<const schema::ResultFigure> figures);
+/// Figures (numbers) as a table of two columns, without those that the page states above it.
+std::string figures_html(std::span<const schema::ResultFigure> figures,
+                         std::initializer_list<std::string_view> stated_above = {});
 
 }  // namespace tacto::analysis

@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`fidelity` names the limit behind an error in each row, and what was lost at each speed."""
+import os
+import pathlib
+
 import tacto
 
 
@@ -18,6 +21,11 @@ def the_limit_behind_an_error_is_named():
     assert row["limited_by"] == "drive limit" and lost["amplitude_limited_ticks"] > 0, limited
     # The ideal tray follows the drive, so its error is what the limit removed: 0.5 dB for the ways of counting.
     assert abs(row["error_db"] - lost["removed_db"]) < 0.5, (row, lost)
+    # A folder for temporary files that is not there.
+    folder, os.environ["TMPDIR"] = os.environ.get("TMPDIR", "/tmp"), "/nowhere"
+    refused = tacto.error_of("fidelity", "C", "--speed", "50mm/s", "-o", "C.html", code=7)
+    assert refused["where"].startswith("/nowhere/") and not pathlib.Path("C.html").exists(), refused
+    os.environ["TMPDIR"] = folder
 
 
 if __name__ == "__main__":

@@ -121,7 +121,7 @@ def everything_works_inside(folder, packages):
     recipe = re.search(r"^%post\n(.*?)^%", (TARBALL / "tactograph.def").read_text(), re.DOTALL | re.MULTILINE)[1]
     (folder / "root/inside.sh").write_text(INSIDE % recipe)
     done = subprocess.run(["unshare", "-mpf", f"--mount-proc={folder}/proc", "chroot", str(folder), "bash", "/root/inside.sh"],
-                          capture_output=True, text=True)
+                          env={"PATH": os.environ["PATH"], "HOME": "/root"}, capture_output=True, text=True)
     skip_without_mirror(done)
     assert done.returncode == 0 and done.stdout.endswith("all of it worked\n"), done.stdout[-4000:] + done.stderr[-2000:]
     exposure = float(re.search(r"exposure level for tactographd.service: ([0-9.]+)", done.stdout)[1])
