@@ -168,6 +168,7 @@ cli::Report report_on(const Imported& imported, const ImportRequest& request) {
   report.add("frames", header.frames).add("sample_rate_hz", header.sample_rate_hz);
   report.add("duration_s", duration_s(header)).add("clock", header.clock).add("gaps", header.gaps.size());
   if (imported.outliers > 0) report.add("outliers", outliers_of(imported, request));
+  if (!header.marks.empty()) report.add("marks", header.marks.size());
   report.add("channels", rows_of(imported));
   if (!header.warnings.empty()) report.add("warnings", header.warnings);
   report.add("files", std::vector{imported.recording.stem + ".wav", imported.recording.stem + ".json"});
