@@ -46,7 +46,7 @@ void declare_data(CLI::App& app, ImportRequest& request) {
       ->required();
   app.add_option("-o,--output", request.name,
                  "Name of the recording: NAME.wav and NAME.json; of a height map: NAME.height.nc, also from "
-                 "a profile if "
+                 "a profile or a whole X3P surface if "
                  "written in full; of a mesh: NAME.mesh.nc");
   app.add_option("--channel", request.channels,
                  "A channel, QUANTITY=COLUMN*SCALE+OFFSET and a unit (default: that of the column); repeat "
@@ -330,8 +330,8 @@ cli::Action declare_import(CLI::App& app) {
 
 const cli::Verb kImportVerb{
     "import",
-    "Convert a file of another program to a recording, a height profile to a texture, a PNG to a height map, "
-    "STL, OBJ or PLY to a mesh",
+    "Convert a file of another program to a recording, a height profile to a texture, a PNG or a surface to "
+    "a height map, STL, OBJ or PLY to a mesh",
     "tactograph import trial.csv -o trial --rate 10kHz --channel tangential_force=lateral_V*0.444444N"
     " --channel position=encoder_count*0.5um\n"
     "  tactograph import trial.csv -o trial --rate 10kHz --channel normal_force=2*-0.31+1.6647N --speed "
@@ -344,6 +344,7 @@ const cli::Verb kImportVerb{
     "  tactograph import edm.xml -o edm\n"
     "  tactograph import profile.csv -o profile --channel position=x*1mm --channel height=z*1um\n"
     "  tactograph import surface.x3p --row 120 -o surface\n"
+    "  tactograph import surface.x3p -o surface.height.nc\n"
     "  tactograph import plate.png --pitch 50um --height 200um -o plate\n"
     "  tactograph import part.stl --unit mm -o part",
     declare_import};
