@@ -86,8 +86,8 @@ void declare_data(CLI::App& app, ImportRequest& request) {
       ->type_name("UNIT");
   app.add_flag(
       "--repair", request.repair,
-      "Of a mesh: merge vertices within a millionth of its size, drop triangles without an area, turn "
-      "flipped ones; holes stay");
+      "Of a mesh: merge vertices within a millionth of its size, drop triangles that are there twice or have "
+      "no area, turn flipped ones; holes stay");
   app.add_flag("--open", request.open,
                "Of a mesh with holes: keep them; from its inner side a point passes through the surface");
   cli::add_quantity(app, "--speed", request.speed_mps, Dimension::speed,

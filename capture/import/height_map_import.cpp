@@ -233,7 +233,9 @@ Result<ImportedHeightMap> import_height_map(const ImportRequest& request,
   if (!request.notes.empty()) map->notes += (map->notes.empty() ? "" : "; ") + request.notes;
   map->created = schema::creation_time();
   map->creator = kCreator;
-  TACTO_TRY(schema::write_height_map(path, *map, existing));
+  auto written = schema::write_height_map(path, *map, existing);
+  if (!written && written.error().kind == ErrorKind::unsuitable) written.error().where = request.file;
+  TACTO_TRY(written);
   return ImportedHeightMap{std::move(*map), path};
 }
 
