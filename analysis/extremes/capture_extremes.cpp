@@ -198,7 +198,7 @@ class CountSource : public spatial::TouchSource {
   CountSource(schema::Channel position, std::vector<std::int32_t> codes)
       : position_(std::move(position)), codes_(std::move(codes)) {}
   const schema::Channel* channel(spatial::Track track) const override {
-    return track == spatial::Track::normal_force ? nullptr : &position_;
+    return track == spatial::Track::position || track == spatial::Track::value ? &position_ : nullptr;
   }
   schema::Result<void> read_stored(spatial::Track, std::size_t first, std::span<double> out) override {
     std::copy_n(codes_.begin() + static_cast<std::ptrdiff_t>(first), out.size(), out.begin());

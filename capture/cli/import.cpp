@@ -46,7 +46,7 @@ void declare_data(CLI::App& app, ImportRequest& request) {
       ->required();
   app.add_option("-o,--output", request.name,
                  "Name of the recording: NAME.wav and NAME.json; of a height map: NAME.height.nc, also from "
-                 "a profile if "
+                 "a profile or a whole X3P surface if "
                  "written in full; of a mesh: NAME.mesh.nc");
   app.add_option("--channel", request.channels,
                  "A channel, QUANTITY=COLUMN*SCALE+OFFSET and a unit (default: that of the column); repeat "
@@ -86,8 +86,8 @@ void declare_data(CLI::App& app, ImportRequest& request) {
       ->type_name("UNIT");
   app.add_flag(
       "--repair", request.repair,
-      "Of a mesh: merge vertices within a millionth of its size, drop triangles without an area, turn "
-      "flipped ones; holes stay");
+      "Of a mesh: merge vertices within a millionth of its size, drop triangles that are there twice or have "
+      "no area, turn flipped ones; holes stay");
   app.add_flag("--open", request.open,
                "Of a mesh with holes: keep them; from its inner side a point passes through the surface");
   cli::add_quantity(app, "--speed", request.speed_mps, Dimension::speed,
@@ -168,6 +168,7 @@ cli::Report report_on(const Imported& imported, const ImportRequest& request) {
   report.add("frames", header.frames).add("sample_rate_hz", header.sample_rate_hz);
   report.add("duration_s", duration_s(header)).add("clock", header.clock).add("gaps", header.gaps.size());
   if (imported.outliers > 0) report.add("outliers", outliers_of(imported, request));
+  if (!header.marks.empty()) report.add("marks", header.marks.size());
   report.add("channels", rows_of(imported));
   if (!header.warnings.empty()) report.add("warnings", header.warnings);
   report.add("files", std::vector{imported.recording.stem + ".wav", imported.recording.stem + ".json"});
@@ -329,8 +330,8 @@ cli::Action declare_import(CLI::App& app) {
 
 const cli::Verb kImportVerb{
     "import",
-    "Convert a file of another program to a recording, a height profile to a texture, a PNG to a height map, "
-    "STL, OBJ or PLY to a mesh",
+    "Convert a file of another program to a recording, a height profile to a texture, a PNG or a surface to "
+    "a height map, STL, OBJ or PLY to a mesh",
     "tactograph import trial.csv -o trial --rate 10kHz --channel tangential_force=lateral_V*0.444444N"
     " --channel position=encoder_count*0.5um\n"
     "  tactograph import trial.csv -o trial --rate 10kHz --channel normal_force=2*-0.31+1.6647N --speed "
@@ -343,6 +344,7 @@ const cli::Verb kImportVerb{
     "  tactograph import edm.xml -o edm\n"
     "  tactograph import profile.csv -o profile --channel position=x*1mm --channel height=z*1um\n"
     "  tactograph import surface.x3p --row 120 -o surface\n"
+    "  tactograph import surface.x3p -o surface.height.nc\n"
     "  tactograph import plate.png --pitch 50um --height 200um -o plate\n"
     "  tactograph import part.stl --unit mm -o part",
     declare_import};

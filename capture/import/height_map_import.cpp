@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <csetjmp>
 #include <cstddef>
 #include <cstdint>
@@ -171,6 +172,27 @@ Result<HeightMap> map_of_png(const ImportRequest& request) {
   return map;
 }
 
+// The whole surface of an X3P file. A map has one pitch: that of x, if the last row lies within a quarter of
+// it from its place.
+Result<HeightMap> map_of_surface(const ImportRequest& request) {
+  constexpr double kMostOff = 0.25;
+  auto surface = read_x3p_surface(request, schema::kMostHeights);
+  TACTO_TRY(surface);
+  const double apart_m = std::abs(surface->row_pitch_m - surface->pitch_m);
+  if (surface->rows > 1 && apart_m * static_cast<double>(surface->rows) > kMostOff * surface->pitch_m)
+    return fail(ErrorKind::unsuitable,
+                fmt::format("its points are {:.6g} m apart along x, and {:.6g} m along y", surface->pitch_m,
+                            surface->row_pitch_m),
+                request.file,
+                "a height map has one pitch: resample it in the program that made it; --row N takes a line");
+  HeightMap map;
+  map.rows = surface->rows, map.columns = surface->height_m.size() / surface->rows;
+  map.pitch_m = surface->pitch_m;
+  map.notes = fmt::format("{}; {}{}", surface->notes, surface->name, subtract_mean(surface->height_m));
+  map.height_m.assign(surface->height_m.begin(), surface->height_m.end());
+  return map;
+}
+
 Result<HeightMap> map_of_profile(const ImportRequest& request, const std::function<void(double)>& progress) {
   if (request.full_height_m || request.allow_8bit)
     return fail(ErrorKind::usage, "--height and --allow-8bit are for a PNG", request.file,
@@ -179,13 +201,15 @@ Result<HeightMap> map_of_profile(const ImportRequest& request, const std::functi
     return fail(ErrorKind::usage, "a height map is made from a greyscale PNG or a height profile",
                 request.file,
                 "of a table give --channel height=2*1um, and --pitch or --channel position=1*1mm");
+  if (is_x3p(request.file) && !request.row && !request.column && request.points.empty())
+    return map_of_surface(request);
   auto profile = read_height_profile(request, progress);
   TACTO_TRY(profile);
   HeightMap map;
   map.columns = profile->height_m.size(), map.rows = 1;
   map.pitch_m = profile->pitch_m;
+  map.surface = profile->surface, map.notes = profile->notes + subtract_mean(profile->height_m);
   map.height_m.assign(profile->height_m.begin(), profile->height_m.end());
-  map.surface = profile->surface, map.notes = profile->notes;
   return map;
 }
 
@@ -209,7 +233,9 @@ Result<ImportedHeightMap> import_height_map(const ImportRequest& request,
   if (!request.notes.empty()) map->notes += (map->notes.empty() ? "" : "; ") + request.notes;
   map->created = schema::creation_time();
   map->creator = kCreator;
-  TACTO_TRY(schema::write_height_map(path, *map, existing));
+  auto written = schema::write_height_map(path, *map, existing);
+  if (!written && written.error().kind == ErrorKind::unsuitable) written.error().where = request.file;
+  TACTO_TRY(written);
   return ImportedHeightMap{std::move(*map), path};
 }
 

@@ -25,7 +25,6 @@
 #include "data-schema/base/column_unit.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/base/quantity.hpp"
-#include "data-schema/exchange/x3p_file.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/texture/texture_wav.hpp"
 #include "data-schema/version.hpp"
@@ -405,24 +404,6 @@ Result<void> check_pitch(double pitch_m, const std::string& file) {
       "check the unit of the position, or of --pitch");
 }
 
-// Heights far from zero lose their roughness in the 32 bits of a texture: then their mean is subtracted, if
-// the step of a float at the largest height is above 1 % of the RMS about the mean.
-void subtract_mean(schema::Texture& texture) {
-  constexpr double kCoarse = 0.01;
-  std::vector<double>& heights = texture.signal.values;
-  const auto count = static_cast<double>(heights.size());
-  const double mean_m = std::accumulate(heights.begin(), heights.end(), 0.0) / count;
-  double squares = 0, largest_m = 0;
-  for (const double height_m : heights) {
-    squares += (height_m - mean_m) * (height_m - mean_m);
-    largest_m = std::max(largest_m, std::abs(height_m));
-  }
-  const double step_m = largest_m * std::numeric_limits<float>::epsilon();
-  if (squares == 0 || step_m <= kCoarse * std::sqrt(squares / count)) return;
-  for (double& height_m : heights) height_m -= mean_m;
-  texture.notes += fmt::format("; mean height of {} m subtracted", mean_m);
-}
-
 Result<schema::Texture> texture_of(const HeightProfile& profile, const ImportRequest& request) {
   const auto sum = schema::sha256_of_file(request.file);
   TACTO_TRY(sum);
@@ -442,7 +423,7 @@ Result<schema::Texture> texture_of(const HeightProfile& profile, const ImportReq
   texture.notes = fmt::format("measured profile, imported from {} (SHA-256 {})", file, *sum);
   for (const std::string& text : {profile.notes, request.notes})
     if (!text.empty()) texture.notes += "; " + text;
-  subtract_mean(texture);
+  texture.notes += subtract_mean(texture.signal.values);
   texture.created = schema::creation_time();
   texture.creator = kCreator;
   return texture;
@@ -565,7 +546,7 @@ struct Section {
   std::size_t first = 0, count = 0;
 };
 
-Result<Section> section_of(const ImportRequest& request, const schema::X3pLine& line) {
+Result<Section> section_of(const ImportRequest& request, const schema::X3pHeights& line) {
   if (request.points.empty()) return Section{0, line.height_m.size()};
   const std::string_view text = request.points;
   const auto dots = text.find("..");
@@ -581,7 +562,8 @@ Result<Section> section_of(const ImportRequest& request, const schema::X3pLine& 
               "--points", fmt::format("write FIRST..LAST, for example 1..{}", line.height_m.size()));
 }
 
-Result<void> refuse_holes(const ImportRequest& request, const schema::X3pLine& line, const Section& section) {
+Result<void> refuse_holes(const ImportRequest& request, const schema::X3pHeights& line,
+                          const Section& section) {
   std::size_t holes = 0;
   Section whole, longest;
   for (std::size_t i = section.first; i < section.first + section.count; ++i) {
@@ -599,9 +581,29 @@ Result<void> refuse_holes(const ImportRequest& request, const schema::X3pLine& l
                           longest.first + 1, longest.first + longest.count));
 }
 
+// Their number, and the rows and columns between which they are.
+Result<void> refuse_holes_of_surface(const ImportRequest& request, const schema::X3pHeights& surface) {
+  const std::size_t columns = surface.height_m.size() / surface.rows;
+  std::size_t holes = 0, first_row = surface.rows, last_row = 0, first_column = columns, last_column = 0;
+  for (std::size_t i = 0; i < surface.height_m.size(); ++i) {
+    if (!std::isnan(surface.height_m[i])) continue;
+    ++holes;
+    first_row = std::min(first_row, i / columns), last_row = std::max(last_row, i / columns);
+    first_column = std::min(first_column, i % columns), last_column = std::max(last_column, i % columns);
+  }
+  if (holes == 0) return {};
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format("{} of {} points have no height, in rows {} to {}, columns {} to {}", holes,
+                  surface.height_m.size(), first_row + 1, last_row + 1, first_column + 1, last_column + 1),
+      request.file,
+      "heights are not filled in here: fill them in the program that made it, or export a part "
+      "without holes");
+}
+
 Result<HeightProfile> read_profile_x3p(const ImportRequest& request) {
   TACTO_TRY(check_no_channels(request));
-  const auto line = schema::read_x3p(request.file, {request.row, request.column});
+  const auto line = schema::read_x3p(request.file, {request.row, request.column, std::nullopt});
   TACTO_TRY(line);
   const auto section = section_of(request, *line);
   TACTO_TRY(section);
@@ -639,6 +641,29 @@ double PrintedDigit::value() const {
 // width.
 bool is_x3p(const std::string& file) {
   return file.ends_with(".x3p") || file.ends_with(".X3P");
+}
+
+std::string subtract_mean(std::vector<double>& heights_m) {
+  constexpr double kCoarse = 0.01;
+  const auto count = static_cast<double>(heights_m.size());
+  const double mean_m = std::accumulate(heights_m.begin(), heights_m.end(), 0.0) / count;
+  double squares = 0, largest_m = 0;
+  for (const double height_m : heights_m) {
+    squares += (height_m - mean_m) * (height_m - mean_m);
+    largest_m = std::max(largest_m, std::abs(height_m));
+  }
+  const double step_m = largest_m * std::numeric_limits<float>::epsilon();
+  if (squares == 0 || step_m <= kCoarse * std::sqrt(squares / count)) return {};
+  for (double& height_m : heights_m) height_m -= mean_m;
+  return fmt::format("; mean height of {} m subtracted", mean_m);
+}
+
+Result<schema::X3pHeights> read_x3p_surface(const ImportRequest& request, std::uint64_t most_points) {
+  TACTO_TRY(check_no_channels(request));
+  auto surface = schema::read_x3p(request.file, {std::nullopt, std::nullopt, most_points});
+  TACTO_TRY(surface);
+  TACTO_TRY(refuse_holes_of_surface(request, *surface));
+  return surface;
 }
 
 bool is_profile_request(const ImportRequest& request) {

@@ -2,6 +2,7 @@
 // Import of a height profile, measured in space, as a texture of heights.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 #include "capture/import/import.hpp"
 #include "capture/table/source.hpp"
 #include "data-schema/base/error.hpp"
+#include "data-schema/exchange/x3p_file.hpp"
 #include "data-schema/texture/texture.hpp"
 
 namespace tacto::capture {
@@ -51,6 +53,14 @@ bool is_profile_request(const ImportRequest& request);
 /// kMostUnevenness, and for points of an X3P file without a height, with the longest section that has none.
 schema::Result<HeightProfile> read_height_profile(const ImportRequest& request,
                                                   const std::function<void(double)>& progress);
+
+/// Heights far from zero lose their roughness in 32 bits: then their mean is subtracted, if the step of a
+/// float at the largest height is above 1 % of the RMS about the mean. The note that says so, or "".
+std::string subtract_mean(std::vector<double>& heights_m);
+
+/// All points of an X3P file. Errors: usage (options of tables); as schema::read_x3p(); unsuitable, for
+/// points without a height, with their number, rows and columns.
+schema::Result<schema::X3pHeights> read_x3p_surface(const ImportRequest& request, std::uint64_t most_points);
 
 struct ImportedProfile {
   HeightProfile profile;

@@ -77,6 +77,7 @@ class Import {
   bool second_pass_needed() const;
   Result<void> second_pass(double from, double to);
   Result<void> name(const RowBlock& block, bool clock);
+  void place_marks(RecordingHeader& header) const;
   void add_warnings(RecordingHeader& header) const;
   std::uint64_t outliers() const;
   Result<Imported> close();
@@ -97,6 +98,8 @@ class Import {
   std::uint64_t rows_ = 0;
   ClockFinder clock_;
   std::optional<StreamClock> stream_clock_;
+  StreamMarks stream_marks_;
+  std::uint64_t frames_written_ = 0;
   bool clock_known_ = true, decimal_comma_ = false;
   std::vector<double> times_s_, interleaved_;
   std::optional<schema::RecordingWriter> writer_;
@@ -240,6 +243,9 @@ Result<void> Import::read_stream_clock() {
   header_.sample_rate_hz = clock->clock.rate_hz;
   header_.gaps = clock->clock.gaps;
   header_.clock = clock->words;
+  auto marks = find_stream_marks(request_.file, *plan_.source.xdf, *plan_.source.xdf_stream, *clock);
+  TACTO_TRY(marks);
+  stream_marks_ = std::move(*marks);
   stream_clock_ = std::move(*clock);
   return check_rate_of_times(header_.sample_rate_hz, request_.file);
 }
@@ -330,6 +336,7 @@ Result<void> Import::write_block(std::size_t rows) {
     const double* const stored = (k < measured_.size() ? measured_[k].stored : derived_->stored).data();
     for (std::size_t i = 0; i < rows; ++i) interleaved_[i * channels + k] = stored[i];
   }
+  frames_written_ += rows;
   return writer_->write(std::span<const double>(interleaved_));
 }
 
@@ -415,6 +422,23 @@ void add_stream_warnings(RecordingHeader& header, const Source& source, bool rat
     header.warnings.push_back("the rate is the one given; the times of the stream and its gaps are not read");
 }
 
+// Each marker at the nearest frame; in a gap at the one behind it.
+void Import::place_marks(RecordingHeader& header) const {
+  header.frames = frames_written_;
+  std::uint64_t outside = 0;
+  for (const auto& [at_s, label] : stream_marks_.marks) {
+    const double half_s = 0.5 / header.sample_rate_hz;
+    const std::uint64_t frame = schema::frame_at(header, at_s - half_s);
+    if (at_s < -half_s || frame == header.frames)
+      ++outside;
+    else
+      header.marks.push_back({frame, label});
+  }
+  if (outside > 0)
+    header.warnings.push_back(fmt::format("{} marker{} before the first or behind the last sample {} no mark",
+                                          outside, outside == 1 ? "" : "s", outside == 1 ? "gives" : "give"));
+}
+
 void Import::add_warnings(RecordingHeader& header) const {
   RecordingHeader source = header;  // the header before rows were left out
   if (request_.mask_outliers) source.gaps = gaps_of_times();
@@ -427,6 +451,10 @@ void Import::add_warnings(RecordingHeader& header) const {
         plan_.source.columns[*column]));
   if (plan_.source.xdf_stream) add_stream_warnings(header, plan_.source, request_.rate_hz.has_value());
   if (stream_clock_) std::ranges::copy(stream_clock_->warnings, std::back_inserter(header.warnings));
+  std::ranges::copy(stream_marks_.warnings, std::back_inserter(header.warnings));
+  if (plan_.source.xdf && !stream_clock_ &&
+      std::ranges::any_of(plan_.source.xdf->streams, &schema::XdfStream::is_text))
+    header.warnings.push_back("the times of the stream are not read, so the file's markers give no marks");
   for (const ChannelSpec& channel : plan_.channels)
     if (!channel.source.other_unit.empty())
       header.warnings.push_back(
@@ -465,6 +493,7 @@ Result<Imported> Import::close() {
     TACTO_TRY(check_rate_of_times(header.sample_rate_hz, request_.file));
   }
   header.source_sha256 = sum_.hexadecimal();
+  place_marks(header);
   add_warnings(header);
   auto recording = writer_->close();
   TACTO_TRY(recording);

@@ -42,6 +42,7 @@ Result<void> check_faults(const schema::MeshFaults& faults, std::size_t triangle
   const auto counted = [](std::size_t count, std::string_view what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
+  if (faults.doubled > 0) words.push_back(counted(faults.doubled, "triangle") + " that are there twice");
   if (faults.degenerate > 0) words.push_back(counted(faults.degenerate, "triangle") + " without an area");
   if (faults.flipped > 0) words.push_back(counted(faults.flipped, "flipped triangle"));
   if (faults.inside_out) words.emplace_back("its outer side inside");
@@ -49,6 +50,11 @@ Result<void> check_faults(const schema::MeshFaults& faults, std::size_t triangle
   if (faults.one_sided) {
     words.emplace_back("triangles without a common outer side");
     remedies.emplace_back("repair it in a program for meshes: each edge belongs to two triangles");
+  }
+  if (faults.odd_edges > 0 && !request.open) {
+    words.push_back(counted(faults.odd_edges, "edge") + " of three or more triangles");
+    remedies.emplace_back(
+        "remove the triangles that are too many in a program for meshes; --open keeps them");
   }
   if (faults.open_edges > 0 && !request.open) {
     words.push_back("holes with " + counted(faults.open_edges, "open edge"));
@@ -96,7 +102,9 @@ Result<ImportedMesh> import_mesh(const ImportRequest& request) {
   imported.mesh.notes = request.notes;
   imported.mesh.created = schema::creation_time();
   imported.mesh.creator = kCreator;
-  TACTO_TRY(schema::write_mesh(imported.path, imported.mesh, existing));
+  auto written = schema::write_mesh(imported.path, imported.mesh, existing);
+  if (!written && written.error().kind == ErrorKind::unsuitable) written.error().where = request.file;
+  TACTO_TRY(written);
   return imported;
 }
 

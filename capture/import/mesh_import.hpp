@@ -11,7 +11,7 @@ namespace tacto::capture {
 
 struct ImportedMesh {
   schema::Mesh mesh;
-  schema::MeshFaults faults;  ///< that are left: open edges
+  schema::MeshFaults faults;  ///< that are left: open and odd edges
   schema::MeshRepair repair;
   double merged_within_m = 0;  ///< of a repair
   std::string path;

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "capture/table/text_encoding.hpp"
 #include "data-schema/recording/recording.hpp"
 
 namespace tacto::capture {
@@ -22,6 +23,7 @@ using schema::Result;
 
 struct OffsetDrift {
   double drift_ppm = 0;                    ///< above zero: the stream's clock is fast
+  double ahead_s = 0;                      ///< of the line at the first pair, less that pair's own
   double lowest_ppm = 0, highest_ppm = 0;  ///< the 95 % interval of the drift
   double deviation_s = 0;                  ///< the median of the distances from the line
   bool is_certain() const { return lowest_ppm > 0 || highest_ppm < 0; }
@@ -68,12 +70,10 @@ std::vector<double> sorted_slopes(const std::vector<OffsetPoint>& points) {
   return slopes;
 }
 
-double median_distance(const std::vector<OffsetPoint>& points, double slope) {
+std::vector<double> without_slope(const std::vector<OffsetPoint>& points, double slope) {
   std::vector<double> left;
   for (const OffsetPoint& point : points) left.push_back(point.device_ahead_s - slope * point.host_s);
-  const double middle = median_of(left);
-  for (double& each : left) each = std::abs(each - middle);
-  return median_of(left);
+  return left;
 }
 
 // Theil-Sen: the median of the slopes through all pairs of offsets, so that up to 29 % of them may be wrong
@@ -90,9 +90,21 @@ std::optional<OffsetDrift> offset_drift(std::span<const schema::ClockPair> pairs
   const auto below = static_cast<std::ptrdiff_t>(std::floor((count - half_width) / 2));
   if (below < 0) return std::nullopt;
   const double slope = median_of(slopes);
-  return OffsetDrift{1e6 * slope, 1e6 * slopes[static_cast<std::size_t>(below)],
-                     1e6 * slopes[slopes.size() - 1 - static_cast<std::size_t>(below)],
-                     median_distance(points, slope)};
+  auto left = without_slope(points, slope);
+  const double ahead_s = median_of(left);
+  for (double& each : left) each = std::abs(each - ahead_s);
+  return OffsetDrift{1e6 * slope, ahead_s, 1e6 * slopes[static_cast<std::size_t>(below)],
+                     1e6 * slopes[slopes.size() - 1 - static_cast<std::size_t>(below)], median_of(left)};
+}
+
+// `fit` is offset_drift() of the pairs.
+RecorderClock recorder_clock(std::span<const schema::ClockPair> pairs,
+                             const std::optional<OffsetDrift>& fit) {
+  if (pairs.empty()) return {};
+  if (fit && fit->is_certain())
+    return {pairs[0].device_s + fit->ahead_s, pairs[0].host_s, 1 / (1 + 1e-6 * fit->drift_ppm)};
+  const double ahead_s = median_of(without_slope(points_of(pairs), 0));
+  return {pairs[0].device_s + ahead_s, pairs[0].host_s, 1};
 }
 
 constexpr std::string_view kWithoutTimes = "--rate imports its samples as even, without their times";
@@ -151,6 +163,7 @@ class Part {
 
 struct ScatteredClock {
   UniformClock clock;
+  double begin_s = 0;    // the line at the first sample
   double scatter_s = 0;  // RMS about the lines
 };
 
@@ -179,6 +192,7 @@ std::optional<ScatteredClock> ScatterFit::clock() const {
   const double period_s = xy / xx;
   if (!(period_s > 0)) return std::nullopt;  // also NaN: parts of one sample
   ScatteredClock found{{1 / period_s, {}},
+                       parts_.front().begin_s(period_s),
                        std::sqrt(std::max(0.0, yy - period_s * xy) / static_cast<double>(samples_))};
   std::uint64_t missing = 0;
   for (std::size_t k = 1; k < parts_.size(); ++k) {
@@ -210,6 +224,7 @@ class Search {
     const auto scattered = located || !scatter_ ? std::nullopt : scatter_->clock();
     if (located) {
       found_.clock = even_.clock();
+      found_.begin_s = first_s_;
       if (even_.pauses() > 0)
         found_.warnings.push_back(fmt::format(
             "{} of its pauses are no whole number of periods: their gaps are to the nearest sample",
@@ -236,6 +251,7 @@ class Search {
         if (last_s && (time_s - *last_s) * stream_.nominal_rate_hz > kLongestGap_samples)
           return was_reset(where_, *last_s, time_s - *last_s);
         if (scatter_) scatter_->add(time_s);
+        if (!last_s) first_s_ = time_s;
         last_s = time_s;
       }
       return {};
@@ -257,6 +273,7 @@ class Search {
 
   void use_scattered(const ScatteredClock& scattered) {
     found_.clock = scattered.clock;
+    found_.begin_s = scattered.begin_s;
     found_.warnings.push_back(fmt::format(
         "its times scatter by {:.3g} ms (RMS) about an even rate, so gaps shorter than {:g} s are not "
         "found",
@@ -275,6 +292,7 @@ class Search {
   void move_to_recorders_clock(std::span<const schema::ClockPair> pairs) {
     constexpr double kFastForACrystal_ppm = 100;
     const auto fit = offset_drift(pairs);
+    found_.begin_s = recorder_clock(pairs, fit).at(found_.begin_s);
     if (!fit || !fit->is_certain()) {
       found_.words = "times of the stream, by its own clock " +
                      (fit ? fmt::format("(its drift of {:.3g} ppm is not certain: {:.3g} to {:.3g} ppm)",
@@ -298,6 +316,7 @@ class Search {
   const schema::XdfStream& stream_;
   const std::function<void(double)>& progress_;
   std::string where_;
+  double first_s_ = 0;  // the time of the first sample
   ClockFinder even_;
   std::optional<ScatterFit> scatter_;
   StreamClock found_;
@@ -308,6 +327,36 @@ class Search {
 Result<StreamClock> find_stream_clock(const std::string& file, const schema::XdfStream& stream,
                                       const std::function<void(double)>& progress) {
   return Search(file, stream, progress).run();
+}
+
+Result<StreamMarks> find_stream_marks(const std::string& file, const schema::XdfContents& contents,
+                                      const schema::XdfStream& samples, const StreamClock& clock) {
+  StreamMarks found;
+  const auto texts = std::ranges::count_if(contents.streams, &schema::XdfStream::is_text);
+  for (const schema::XdfStream& stream : contents.streams) {
+    if (!stream.is_text()) continue;
+    const std::string where = fmt::format("stream '{}'", stream.name);
+    const auto pairs = clock_pairs(where, stream);
+    auto markers = schema::read_xdf_markers(file, stream);
+    if (!markers && markers.error().kind != ErrorKind::unsuitable) return schema::forward_error(markers);
+    if (!markers || !pairs) {
+      const schema::Error& error = markers ? pairs.error() : markers.error();
+      found.warnings.push_back(fmt::format("{} gives no marks: {}", where, error.what));
+      continue;
+    }
+    if ((pairs->empty() || samples.clock_offsets.empty()) && !markers->empty())
+      found.warnings.push_back(fmt::format(
+          "{}: without clock offsets of it and of the samples, their times are taken as of one clock",
+          where));
+    const RecorderClock recorder = recorder_clock(*pairs, offset_drift(*pairs));
+    for (const schema::XdfMarker& marker : *markers) {
+      const double at_s = recorder.at(marker.time_s) - clock.begin_s;
+      found.marks.push_back({std::isnan(at_s) ? INFINITY : at_s,
+                             to_utf8(texts > 1 ? stream.name + ": " + marker.label : marker.label)});
+    }
+  }
+  std::ranges::stable_sort(found.marks, {}, &StreamMark::at_s);
+  return found;
 }
 
 }  // namespace tacto::capture

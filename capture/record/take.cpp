@@ -71,18 +71,6 @@ Result<void> check_end(const schema::RecordingHeader& header, const RecordingPar
                       "give a part within the recording");
 }
 
-std::uint64_t frame_at(const schema::RecordingHeader& header, double time_s) {
-  std::uint64_t low = 0, high = header.frames;
-  while (low < high) {
-    const std::uint64_t middle = low + (high - low) / 2;
-    if (schema::frame_time_s(header, middle) < time_s)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
-}
-
 }  // namespace
 
 Result<RecordingPart> parse_recording_part(const std::string& text) {
@@ -142,8 +130,8 @@ Result<Take> take_from(const RecordingPart& part) {
   TACTO_TRY(check_source(*recording));
   const schema::RecordingHeader& header = recording->header;
   TACTO_TRY(check_end(header, part));
-  const std::uint64_t first = frame_at(header, part.from_s);
-  const std::uint64_t last = std::max(first, frame_at(header, part.to_s));
+  const std::uint64_t first = schema::frame_at(header, part.from_s);
+  const std::uint64_t last = std::max(first, schema::frame_at(header, part.to_s));
   TACTO_TRY(check_part(header, part.name, first, last));
   Take take{header, {}, {}};
   for (std::size_t i = 0; i < header.channels.size(); ++i) {

@@ -11,11 +11,11 @@ void add_mesh(cli::Report& report, const Mesh& mesh) {
                                                                                      "size_z_m"};
   for (std::size_t i = 0; i < 3; ++i) report.add(from[i], figures.least_m[i]);
   for (std::size_t i = 0; i < 3; ++i) report.add(sizes[i], figures.most_m[i] - figures.least_m[i]);
-  report.add("longest_edge_m", figures.longest_edge_m).add("closed", faults.open_edges == 0);
-  if (faults.open_edges == 0)
-    report.add("volume_m3", figures.volume_m3);
-  else
-    report.add("open_edges", faults.open_edges);
+  const bool closed = faults.open_edges + faults.odd_edges == 0;
+  report.add("longest_edge_m", figures.longest_edge_m).add("closed", closed);
+  if (closed) report.add("volume_m3", figures.volume_m3);
+  if (faults.open_edges > 0) report.add("open_edges", faults.open_edges);
+  if (faults.odd_edges > 0) report.add("edges_of_three_or_more_triangles", faults.odd_edges);
 }
 
 Result<cli::Report> describe_mesh(const std::string& path) {

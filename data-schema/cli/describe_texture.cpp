@@ -45,6 +45,8 @@ void add_source(Report& report, const TextureSource& source) {
   report.add("from_s", source.from_s).add("to_s", source.to_s);
   report.add("mean_speed_mps", source.mean_speed_mps);
   report.add("min_speed_mps", source.min_speed_mps).add("max_speed_mps", source.max_speed_mps);
+  add_text(report, "reduction", reduction_in_words(source));
+  if (source.waveform_correlation) report.add("waveform_correlation", *source.waveform_correlation);
   add_text(report, "method", source.method);
   add_text(report, "filter", source.filter);
   if (source.order != 0) report.add("order", source.order);

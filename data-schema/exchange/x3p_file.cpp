@@ -267,32 +267,40 @@ Result<Matrix> read_matrix(const MainXml& xml) {
   return matrix;
 }
 
-// The points of a line: their indices in the matrix.
-struct LineOfPoints {
+// The points of a line or of all rows: their indices in the matrix.
+struct ChosenPoints {
   std::string name;
   std::uint64_t first = 0, step = 1, count = 0;
   const char* axis = "CX";
+  std::uint64_t rows = 1;
 };
 
-Result<LineOfPoints> chosen_line(const MainXml& xml, const Matrix& matrix, const X3pChoice& choice) {
-  const auto& [row, column] = choice;
+Result<ChosenPoints> chosen_points(const MainXml& xml, const Matrix& matrix, const X3pChoice& choice) {
+  const auto& [row, column, most_points] = choice;
   if (!matrix.surface) {
-    if (!row && !column) return LineOfPoints{"the profile", 0, 1, matrix.columns, "CX"};
+    if (!row && !column) return ChosenPoints{"the profile", 0, 1, matrix.columns, "CX"};
     return fail(ErrorKind::usage, "is a profile: it has no rows to choose from", xml.archive.path(),
                 "omit --row and --column");
+  }
+  if (!row && !column && most_points) {
+    const std::uint64_t count = matrix.columns * matrix.rows;
+    if (count <= *most_points) return ChosenPoints{"the surface", 0, 1, count, "CX", matrix.rows};
+    return xml.unsuitable(fmt::format("has {} x {} points; at most {} are read of a whole surface",
+                                      matrix.columns, matrix.rows, *most_points),
+                          "export a part of it in the program that made it");
   }
   const std::string all =
       fmt::format("--row N (1 to {}) or --column N (1 to {})", matrix.rows, matrix.columns);
   if (row.has_value() == column.has_value())
     return fail(ErrorKind::usage, "is a surface, and a texture is one line of it", xml.archive.path(),
-                "give one of " + all);
+                "give one of " + all + "; -o NAME.height.nc makes a height map of the whole surface");
   const std::uint64_t number = row ? *row : *column, most = row ? matrix.rows : matrix.columns;
   if (number < 1 || number > most)
     return fail(ErrorKind::usage, fmt::format("there is no {} {}", row ? "row" : "column", number),
                 xml.archive.path(), "give one of " + all);
   const std::string name = fmt::format("{} {} of {}", row ? "row" : "column", number, most);
-  if (row) return LineOfPoints{name, (number - 1) * matrix.columns, 1, matrix.columns, "CX"};
-  return LineOfPoints{name, number - 1, matrix.columns, matrix.rows, "CY"};
+  if (row) return ChosenPoints{name, (number - 1) * matrix.columns, 1, matrix.columns, "CX"};
+  return ChosenPoints{name, number - 1, matrix.columns, matrix.rows, "CY"};
 }
 
 // Of a link inside the archive.
@@ -323,18 +331,23 @@ Result<std::string> read_points(MainXml& xml, const Matrix& matrix) {
   return points;
 }
 
-Result<X3pLine> read_line(MainXml& xml, const X3pChoice& choice) {
+Result<X3pHeights> read_heights(MainXml& xml, const X3pChoice& choice) {
   const auto matrix = read_matrix(xml);
   TACTO_TRY(matrix);
-  const auto points = chosen_line(xml, *matrix, choice);
+  const auto points = chosen_points(xml, *matrix, choice);
   TACTO_TRY(points);
-  X3pLine line;
-  line.name = points->name;
+  X3pHeights heights;
+  heights.name = points->name;
   const auto pitch_m = xml.pitch(points->axis);
   TACTO_TRY(pitch_m);
   const auto origin_m = xml.number_or(fmt::format("Record1/Axes/{}/Offset", points->axis).c_str(), 0);
   TACTO_TRY(origin_m);
-  line.pitch_m = *pitch_m, line.origin_m = *origin_m;
+  heights.pitch_m = *pitch_m, heights.origin_m = *origin_m, heights.rows = points->rows;
+  if (points->rows > 1) {
+    const auto row_pitch_m = xml.pitch("CY");
+    TACTO_TRY(row_pitch_m);
+    heights.row_pitch_m = *row_pitch_m;
+  }
   const auto stored = read_points(xml, *matrix);
   TACTO_TRY(stored);
   const auto mask = read_mask(xml, *matrix);
@@ -344,11 +357,11 @@ Result<X3pLine> read_line(MainXml& xml, const X3pChoice& choice) {
     const bool valid = mask->empty() || (static_cast<unsigned char>((*mask)[at / 8]) >> (at % 8) & 1U) != 0;
     const double height_m =
         matrix->type.number(stored->data() + at * matrix->type.bytes) * matrix->scale + matrix->offset_m;
-    line.height_m.push_back(valid && std::isfinite(height_m) ? height_m
-                                                             : std::numeric_limits<double>::quiet_NaN());
+    heights.height_m.push_back(valid && std::isfinite(height_m) ? height_m
+                                                                : std::numeric_limits<double>::quiet_NaN());
   }
-  line.notes = xml.notes;
-  return line;
+  heights.notes = xml.notes;
+  return heights;
 }
 
 std::string described(const MainXml& xml) {
@@ -373,7 +386,7 @@ Result<void> check_own_sum(MainXml& xml, std::string_view content) {
 
 }  // namespace
 
-Result<X3pLine> read_x3p(const std::string& path, const X3pChoice& choice) try {
+Result<X3pHeights> read_x3p(const std::string& path, const X3pChoice& choice) try {
   const auto archive = Archive::open(path);
   TACTO_TRY(archive);
   const auto name = main_xml_of(*archive);
@@ -391,7 +404,7 @@ Result<X3pLine> read_x3p(const std::string& path, const X3pChoice& choice) try {
     return fail(ErrorKind::malformed, "contains no Record1 and Record3 of ISO 25178-72", where);
   xml.notes = described(xml);
   TACTO_TRY(check_own_sum(xml, *content));
-  return read_line(xml, choice);
+  return read_heights(xml, choice);
 } catch (const std::bad_alloc&) {
   return fail(ErrorKind::unsuitable, "is too large for the memory", path);
 }

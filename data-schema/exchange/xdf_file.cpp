@@ -233,9 +233,10 @@ Result<void> add_stream(XdfChunks& chunks, XdfStream& stream) {
   stream.format = info->child_value("channel_format");
   const auto channels = number_in<std::uint64_t>(info->child_value("channel_count"));
   const auto rate_hz = number_in<double>(info->child_value("nominal_srate"));
-  if (stream.format == "string")
-    stream.refusal = "is text";
-  else if (number_format(stream.format) == nullptr)
+  if (channels && *channels <= kMostXdfChannels) stream.channels = *channels;
+  if (stream.is_text())
+    stream.refusal = "is text, which becomes marks of the recording of another stream";
+  else if (stream.format != "string" && number_format(stream.format) == nullptr)
     stream.refusal = fmt::format("has the unknown format '{}'", stream.format);
   else if (!channels || *channels == 0)
     stream.refusal = "has a channel_count that is not a whole number above 0";
@@ -243,7 +244,6 @@ Result<void> add_stream(XdfChunks& chunks, XdfStream& stream) {
     stream.refusal = fmt::format("has {} channels; at most {} are read", *channels, kMostXdfChannels);
   else if (!rate_hz || !(*rate_hz >= 0) || std::isinf(*rate_hz))
     stream.refusal = "has a nominal_srate that is not a rate in Hz, or 0";
-  if (channels && *channels <= kMostXdfChannels) stream.channels = *channels;
   if (rate_hz && std::isfinite(*rate_hz)) stream.nominal_rate_hz = *rate_hz;
   add_labels(stream, *info);
   return {};
@@ -305,6 +305,37 @@ Result<void> add_chunk(XdfChunks& chunks, XdfContents& contents, const std::stri
   return tag == kClockOffset ? add_clock_offset(chunks, *stream) : add_footer(chunks, *stream);
 }
 
+// The times of consecutive samples of a stream.
+class XdfTimes {
+ public:
+  explicit XdfTimes(const XdfStream& stream) : stream_(stream) {}
+
+  // Periods are counted from the last stated time: their sum would round at each sample.
+  Result<double> next(XdfChunks& chunks) {
+    const auto width = chunks.take<std::uint8_t>();
+    TACTO_TRY(width);
+    if (*width == sizeof(double)) {
+      const auto stamp_s = chunks.take<double>();
+      TACTO_TRY(stamp_s);
+      if (!std::isfinite(*stamp_s))
+        return chunks.broken(fmt::format("the time of sample {} is not finite", done_));
+      stamp_s_ = *stamp_s, after_stamp_ = 0, ++done_;
+      return stamp_s_;
+    }
+    if (*width != 0) return chunks.broken(fmt::format("a time has 0 or 8 bytes, not {}", *width));
+    if (done_ == 0 || !(stream_.nominal_rate_hz > 0))
+      return chunks.broken(fmt::format("sample {} of the stream '{}' has no time", done_, stream_.name));
+    ++done_;
+    return stamp_s_ + ++after_stamp_ / stream_.nominal_rate_hz;
+  }
+  std::uint64_t done() const { return done_; }
+
+ private:
+  const XdfStream& stream_;
+  std::uint64_t done_ = 0;
+  double stamp_s_ = 0, after_stamp_ = 0;  // the last stated time, and the samples since
+};
+
 // The samples of one stream, passed on in blocks.
 class XdfSamples {
  public:
@@ -315,16 +346,15 @@ class XdfSamples {
         format_(format),
         channels_(channels),
         take_(take),
-        raw_(stream.channels * format.bytes) {}
+        raw_(stream.channels * format.bytes),
+        sample_times_(stream) {}
 
   Result<void> read(XdfChunks& chunks) {
     const auto count = chunks.take_length();
     TACTO_TRY(count);
-    for (std::uint64_t i = 0; i < *count; ++i, ++done_) {
-      const auto time_s = time(chunks);
+    for (std::uint64_t i = 0; i < *count; ++i) {
+      const auto time_s = sample_times_.next(chunks);
       TACTO_TRY(time_s);
-      if (!std::isfinite(*time_s))
-        return chunks.broken(fmt::format("the time of sample {} is not finite", done_));
       times_s_.push_back(*time_s);
       TACTO_TRY(chunks.take(raw_.data(), raw_.size()));
       TACTO_TRY(add_numbers());
@@ -344,20 +374,6 @@ class XdfSamples {
   }
 
  private:
-  // Periods are counted from the last stated time: their sum would round at each sample.
-  Result<double> time(XdfChunks& chunks) {
-    const auto width = chunks.take<std::uint8_t>();
-    TACTO_TRY(width);
-    if (*width == sizeof(double)) {
-      const auto stamp_s = chunks.take<double>();
-      if (stamp_s) stamp_s_ = *stamp_s, after_stamp_ = 0;
-      return stamp_s;
-    }
-    if (*width != 0) return chunks.broken(fmt::format("a time has 0 or 8 bytes, not {}", *width));
-    if (done_ > 0 && stream_.nominal_rate_hz > 0) return stamp_s_ + ++after_stamp_ / stream_.nominal_rate_hz;
-    return chunks.broken(fmt::format("sample {} of the stream '{}' has no time", done_, stream_.name));
-  }
-
   Result<void> add_numbers() {
     for (const std::size_t k : channels_) {
       const char* const at = raw_.data() + k * format_.bytes;
@@ -366,7 +382,7 @@ class XdfSamples {
         return fail(ErrorKind::unsuitable,
                     fmt::format("{} is beyond 2^53 and has no exact double", number_from<std::int64_t>(at)),
                     fmt::format("{}: stream '{}', channel '{}', sample {}", path_, stream_.name,
-                                stream_.labels[k], done_),
+                                stream_.labels[k], sample_times_.done() - 1),
                     "let the sending program subtract an offset");
     }
     return {};
@@ -379,9 +395,54 @@ class XdfSamples {
   const XdfHandler& take_;
   std::vector<char> raw_;  // of one sample
   std::vector<double> times_s_, numbers_;
-  std::uint64_t done_ = 0;
-  double stamp_s_ = 0, after_stamp_ = 0;  // the last stated time, and the samples since
+  XdfTimes sample_times_;
 };
+
+Result<std::string> text_of(XdfChunks& chunks) {
+  const auto length = chunks.take_length();
+  TACTO_TRY(length);
+  if (*length > chunks.left())
+    return chunks.broken(fmt::format("a text of {} bytes does not fit into {}", *length, chunks.left()));
+  std::string text(*length, '\0');
+  TACTO_TRY(chunks.take(text.data(), text.size()));
+  return text;
+}
+
+Result<void> read_markers(XdfChunks& chunks, const XdfStream& stream, XdfTimes& times,
+                          std::vector<XdfMarker>& markers) {
+  const auto count = chunks.take_length();
+  TACTO_TRY(count);
+  for (std::uint64_t i = 0; i < *count; ++i) {
+    const auto time_s = times.next(chunks);
+    TACTO_TRY(time_s);
+    XdfMarker marker{*time_s, {}};
+    for (std::size_t k = 0; k < stream.channels; ++k) {
+      const auto text = text_of(chunks);
+      TACTO_TRY(text);
+      marker.label += (k == 0 ? "" : " ") + *text;
+    }
+    markers.push_back(std::move(marker));
+  }
+  if (chunks.left() > 0)
+    return chunks.broken(fmt::format("the chunk has {} bytes more than its samples", chunks.left()));
+  return {};
+}
+
+// Calls `take` for each chunk of samples of a stream, behind its number.
+template <class Take>
+Result<void> each_chunk(const std::string& path, const XdfStream& stream, Take take) {
+  auto chunks = XdfChunks::open(path);
+  TACTO_TRY(chunks);
+  for (;;) {
+    const auto more = chunks->next();
+    TACTO_TRY(more);
+    if (!*more) return {};
+    if (chunks->tag() != kSamples) continue;
+    const auto id = chunks->take<std::uint32_t>();
+    TACTO_TRY(id);
+    if (*id == stream.id) TACTO_TRY(take(*chunks));
+  }
+}
 
 }  // namespace
 
@@ -410,23 +471,30 @@ Result<XdfContents> xdf_contents(const std::string& path) {
 
 Result<void> read_xdf(const std::string& path, const XdfStream& stream, std::span<const std::size_t> channels,
                       const XdfHandler& take, const std::function<void(double)>& progress) {
-  auto chunks = XdfChunks::open(path);
-  TACTO_TRY(chunks);
   const NumberFormat* const format = number_format(stream.format);
   if (format == nullptr || !stream.refusal.empty())
     return fail(ErrorKind::unsuitable, stream.refusal, fmt::format("{}: stream '{}'", path, stream.name));
   XdfSamples samples(path, stream, *format, channels, take);
-  for (;;) {
-    const auto more = chunks->next();
-    TACTO_TRY(more);
-    if (!*more) return samples.pass_on();
-    if (chunks->tag() != kSamples) continue;
-    const auto id = chunks->take<std::uint32_t>();
-    TACTO_TRY(id);
-    if (*id != stream.id) continue;
-    TACTO_TRY(samples.read(*chunks));
-    progress(chunks->fraction());
-  }
+  TACTO_TRY(each_chunk(path, stream, [&](XdfChunks& chunks) -> Result<void> {
+    TACTO_TRY(samples.read(chunks));
+    progress(chunks.fraction());
+    return {};
+  }));
+  return samples.pass_on();
+}
+
+Result<std::vector<XdfMarker>> read_xdf_markers(const std::string& path, const XdfStream& stream) {
+  std::vector<XdfMarker> markers;
+  XdfTimes times(stream);
+  std::size_t bytes = 0, counted = 0;
+  TACTO_TRY(each_chunk(path, stream, [&](XdfChunks& chunks) -> Result<void> {
+    TACTO_TRY(read_markers(chunks, stream, times, markers));
+    for (; counted < markers.size(); ++counted) bytes += sizeof(XdfMarker) + markers[counted].label.size();
+    if (bytes <= kMostXdfMarkerBytes) return {};
+    return fail(ErrorKind::unsuitable, fmt::format("has more than {} MiB of text", kMostXdfMarkerBytes >> 20),
+                fmt::format("{}: stream '{}'", path, stream.name));
+  }));
+  return markers;
 }
 
 }  // namespace tacto::schema

@@ -28,7 +28,15 @@ struct XdfStream {
   std::uint64_t samples = 0;               ///< in the whole chunks
   std::optional<std::uint64_t> stated_samples;  ///< by its footer, the last chunk of a stream
   std::vector<XdfClockOffset> clock_offsets;
-  std::string refusal;  ///< why its samples are not read: "is text"; empty if they are
+  std::string refusal;  ///< why its samples are not read as numbers: "is text ..."; empty if they are
+
+  bool is_text() const { return format == "string" && channels > 0; }  ///< as read_xdf_markers() reads it
+};
+
+/// A sample of a stream of text.
+struct XdfMarker {
+  double time_s = 0;  ///< by the stream's clock
+  std::string label;  ///< of several channels with blanks between; bytes as in the file (XDF: UTF-8)
 };
 
 struct XdfContents {
@@ -36,8 +44,9 @@ struct XdfContents {
   std::string cut;  ///< where the file ends inside a chunk; empty if its last chunk is whole
 };
 
-/// The most channels of a stream.
+/// The most channels of a stream, and the most memory of its markers.
 inline constexpr std::size_t kMostXdfChannels = 4096;
+inline constexpr std::size_t kMostXdfMarkerBytes = std::size_t{64} << 20;
 
 bool is_xdf(std::string_view beginning);
 
@@ -58,5 +67,10 @@ using XdfHandler =
 /// which has no exact double. Memory: 1 MiB, for a file of any length.
 Result<void> read_xdf(const std::string& path, const XdfStream& stream, std::span<const std::size_t> channels,
                       const XdfHandler& take, const std::function<void(double)>& progress);
+
+/// The samples of a stream of text of xdf_contents(), in their order; times as of read_xdf(). Errors: as
+/// xdf_contents(); malformed, for a missing time; unsuitable, above kMostXdfMarkerBytes.
+/// Precondition: stream.is_text().
+Result<std::vector<XdfMarker>> read_xdf_markers(const std::string& path, const XdfStream& stream);
 
 }  // namespace tacto::schema

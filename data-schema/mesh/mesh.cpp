@@ -7,11 +7,12 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <set>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "data-schema/base/format_version.hpp"
+#include "data-schema/base/sha256.hpp"
 #include "data-schema/spectrogram/netcdf_file.hpp"
 
 namespace tacto::schema {
@@ -21,7 +22,8 @@ constexpr const char* kMeshKind = "mesh";
 constexpr std::string_view kMeshEnding = ".mesh.nc";
 constexpr std::size_t kMeshBlock = 1 << 14;  // vertices and triangles of a block in the file
 constexpr const char* kMeshRemedy =
-    "'tactograph import FILE --unit UNIT --repair' drops triangles without an area and turns flipped ones";
+    "'tactograph import FILE --unit UNIT --repair' drops triangles that are there twice or have no area, and "
+    "turns flipped ones";
 
 MeshVertex way_between(const MeshVertex& a, const MeshVertex& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
@@ -58,12 +60,27 @@ struct Side {
   bool same_edge(const Side& other) const { return low == other.low && high == other.high; }
 };
 
+// Of triangles of the same three vertices, all but the first.
+std::vector<bool> doubled_triangles(const Mesh& mesh) {
+  std::vector<std::pair<MeshTriangle, std::uint32_t>> sorted;
+  sorted.reserve(mesh.triangles.size());
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    sorted.emplace_back(mesh.triangles[i], i);
+    std::ranges::sort(sorted.back().first);
+  }
+  std::ranges::sort(sorted);
+  std::vector<bool> doubled(mesh.triangles.size());
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i].first == sorted[i - 1].first) doubled[sorted[i].second] = true;
+  return doubled;
+}
+
 // Sides of one edge follow each other.
-std::vector<Side> sides_of(const Mesh& mesh) {
+std::vector<Side> sides_of(const Mesh& mesh, const std::vector<bool>& doubled) {
   std::vector<Side> sides;
   sides.reserve(3 * mesh.triangles.size());
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (is_degenerate(mesh, mesh.triangles[i])) continue;
+    if (doubled[i] || is_degenerate(mesh, mesh.triangles[i])) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t from = mesh.triangles[i][k], to = mesh.triangles[i][(k + 1) % 3];
       sides.push_back({std::min(from, to), std::max(from, to), i, from < to});
@@ -100,14 +117,14 @@ struct Turns {
   std::vector<std::vector<std::uint32_t>> parts;  // their triangles
 };
 
-Turns turns_of(const Mesh& mesh) {
+Turns turns_of(const Mesh& mesh, const std::vector<Side>& sides) {
   struct Neighbour {
     std::uint32_t triangle;
     bool same;
   };
   const std::size_t count = mesh.triangles.size();
   std::vector<std::vector<Neighbour>> neighbours(count);
-  each_edge(sides_of(mesh), [&](std::span<const Side> edge) {
+  each_edge(sides, [&](std::span<const Side> edge) {
     if (edge.size() != 2) return;
     const bool same = edge[0].forward != edge[1].forward;
     neighbours[edge[0].triangle].push_back({edge[1].triangle, same});
@@ -245,6 +262,13 @@ std::vector<std::uint32_t> near_vertices(const Mesh& mesh, double merge_m) {
   return kept;
 }
 
+std::string mesh_sum(const Mesh& mesh) {
+  Sha256 sum;
+  sum.add({reinterpret_cast<const char*>(mesh.vertices_m.data()), std::span(mesh.vertices_m).size_bytes()});
+  sum.add({reinterpret_cast<const char*>(mesh.triangles.data()), std::span(mesh.triangles).size_bytes()});
+  return sum.hexadecimal();
+}
+
 Result<void> write_mesh_netcdf(const std::string& path, const std::string& named, const Mesh& mesh) {
   NetcdfWriter file(path);
   const std::size_t vertices = mesh.vertices_m.size(), triangles = mesh.triangles.size();
@@ -265,6 +289,7 @@ Result<void> write_mesh_netcdf(const std::string& path, const std::string& named
   file.attribute("Conventions", std::string("CF-1.10"));
   file.attribute("kind", std::string(kMeshKind));
   file.attribute("version", std::string(kFormatVersion));
+  file.attribute("sha256", mesh_sum(mesh));
   const std::pair<const char*, const std::string&> texts[] = {
       {"notes", mesh.notes}, {"source", mesh.source}, {"created", mesh.created}, {"creator", mesh.creator}};
   for (const auto& [name, text] : texts)
@@ -300,16 +325,20 @@ Result<void> read_mesh_numbers(NetcdfReader& file, const std::string& path, Mesh
 MeshFaults faults_of(const Mesh& mesh) {
   MeshFaults faults;
   for (const MeshTriangle& triangle : mesh.triangles) faults.degenerate += is_degenerate(mesh, triangle);
+  const std::vector<bool> doubled = doubled_triangles(mesh);
+  faults.doubled = static_cast<std::size_t>(std::ranges::count(doubled, true));
+  const std::vector<Side> sides = sides_of(mesh, doubled);
   bool unequal = false;
-  each_edge(sides_of(mesh), [&](std::span<const Side> edge) {
+  each_edge(sides, [&](std::span<const Side> edge) {
     const auto forward = static_cast<std::size_t>(std::ranges::count(edge, true, &Side::forward));
-    faults.open_edges += edge.size() % 2;
+    (edge.size() == 1 ? faults.open_edges : faults.odd_edges) += edge.size() % 2;
     unequal = unequal || (edge.size() % 2 == 0 && 2 * forward != edge.size());
   });
-  const Turns turns = turns_of(mesh);
+  const Turns turns = turns_of(mesh, sides);
   faults.flipped = turns.flipped;
   faults.one_sided = turns.one_sided || (unequal && turns.flipped == 0);
-  faults.inside_out = !unequal && faults.open_edges == 0 && !parts_inside_out(mesh, turns).empty();
+  faults.inside_out =
+      !unequal && faults.open_edges + faults.odd_edges == 0 && !parts_inside_out(mesh, turns).empty();
   return faults;
 }
 
@@ -340,14 +369,13 @@ MeshRepair repair(Mesh& mesh, double merge_m) {
   const std::size_t vertices = mesh.vertices_m.size(), triangles = mesh.triangles.size();
   renumber(mesh, near_vertices(mesh, merge_m));
   repair.merged = vertices - mesh.vertices_m.size();
-  std::set<MeshTriangle> known;
-  std::erase_if(mesh.triangles, [&](const MeshTriangle& triangle) {
-    MeshTriangle sorted = triangle;
-    std::ranges::sort(sorted);
-    return is_degenerate(mesh, triangle) || !known.insert(sorted).second;
-  });
+  const std::vector<bool> doubled = doubled_triangles(mesh);
+  std::vector<MeshTriangle> kept;
+  for (std::size_t i = 0; i < triangles; ++i)
+    if (!doubled[i] && !is_degenerate(mesh, mesh.triangles[i])) kept.push_back(mesh.triangles[i]);
+  mesh.triangles = std::move(kept);
   repair.dropped = triangles - mesh.triangles.size();
-  Turns turns = turns_of(mesh);
+  Turns turns = turns_of(mesh, sides_of(mesh, std::vector<bool>(mesh.triangles.size())));
   const auto turn = [&](std::size_t i) { std::swap(mesh.triangles[i][1], mesh.triangles[i][2]); };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     if (turns.turned[i]) turn(i);
@@ -385,6 +413,10 @@ Result<void> check_mesh(const Mesh& mesh, const std::string& where) {
   if (faults.degenerate > 0)
     return unsuitable(
         fmt::format("{} of its {} triangles have no area", faults.degenerate, mesh.triangles.size()),
+        kMeshRemedy);
+  if (faults.doubled > 0)
+    return unsuitable(
+        fmt::format("{} of its {} triangles are there twice", faults.doubled, mesh.triangles.size()),
         kMeshRemedy);
   if (faults.flipped > 0)
     return unsuitable(fmt::format("{} of its {} triangles are turned the other way than the others",
@@ -427,6 +459,11 @@ Result<Mesh> read_mesh(const std::string& name) {
     return fail(ErrorKind::malformed, fmt::format("its vertices are in '{}', not in m", file.units("vertex")),
                 path);
   TACTO_TRY(read_mesh_numbers(file, path, mesh));
+  if (const std::string sum = file.text("sha256"); !sum.empty() && sum != mesh_sum(mesh))
+    return fail(
+        ErrorKind::malformed,
+        "its vertices or triangles do not match its checksum (attribute sha256): a number was changed", path,
+        "import the mesh again; to keep the change, remove the attribute");
   mesh.notes = file.text("notes"), mesh.source = file.text("source");
   mesh.created = file.text("created"), mesh.creator = file.text("creator");
   TACTO_TRY(file.status(path));

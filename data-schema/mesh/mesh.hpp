@@ -29,11 +29,14 @@ struct Mesh {
 };
 
 /// What may be wrong with a mesh. An edge is between two vertices, in the directions of its triangles: on a
-/// closed surface as many go there as back.
+/// closed surface as many go there as back. Triangles without an area, and all but the first of those that
+/// are doubled, have no edges here.
 struct MeshFaults {
   std::size_t degenerate = 0;  ///< triangles without an area
+  std::size_t doubled = 0;     ///< triangles of the same three vertices as another one, either way round
   std::size_t flipped = 0;     ///< triangles turned the other way than most of those they are connected with
-  std::size_t open_edges = 0;  ///< edges of one triangle, or of an odd number of them: of holes
+  std::size_t open_edges = 0;  ///< edges of one triangle: of holes
+  std::size_t odd_edges = 0;   ///< edges of three triangles, or of a larger odd number
   bool one_sided = false;      ///< its triangles cannot be turned the same way, as those of a Moebius strip
   bool inside_out = false;     ///< closed, but the volume of a part is negative, or that of a cavity is not
 };
@@ -62,19 +65,21 @@ void merge_equal_vertices(Mesh& mesh);
 MeshRepair repair(Mesh& mesh, double merge_m);
 
 /// Errors, at `where`: unsuitable: no triangle, too many, a place that is not a number or larger than
-/// kLargestMesh_m apart, a triangle of vertices that are not there; faults_of() other than open edges.
+/// kLargestMesh_m apart, a triangle of vertices that are not there; faults_of() other than open and odd
+/// edges.
 Result<void> check_mesh(const Mesh& mesh, const std::string& where);
 
 /// NAME.mesh.nc of a stem or file name.
 std::string mesh_path(const std::string& name);
 
 /// netCDF-4: variables `vertex` (m, double precision, over `vertices` and `axes`) and `triangle` (numbers of
-/// vertices from 0, over `triangles` and `corners`), the texts as attributes. Errors: as check_mesh,
-/// PendingFiles.
+/// vertices from 0, over `triangles` and `corners`), the texts as attributes, and `sha256`, of the bytes of
+/// `vertex` and then of `triangle`, little-endian. Errors: as check_mesh, PendingFiles.
 Result<void> write_mesh(const std::string& path, const Mesh& mesh, Existing existing);
 
-/// By stem or NAME.mesh.nc. Errors: not_found; malformed: not netCDF, or of another kind, or without
-/// vertices; as check_mesh; unsupported_version.
+/// By stem or NAME.mesh.nc. Errors: not_found; malformed: not netCDF, or of another kind, without vertices,
+/// or of another sha256 than it states (another program need not state it); as check_mesh;
+/// unsupported_version.
 Result<Mesh> read_mesh(const std::string& name);
 
 /// Whether it is netCDF of that kind.

@@ -176,6 +176,9 @@ Result<std::vector<double>> read_stored(const Recording& recording, std::size_t 
 /// Time of a stored frame, gaps counted.
 double frame_time_s(const RecordingHeader& header, std::uint64_t frame);
 
+/// The first stored frame at or after a time; header.frames behind the last.
+std::uint64_t frame_at(const RecordingHeader& header, double time_s);
+
 /// From the first frame to a period after the last, gaps counted; 0 without frames.
 double duration_s(const RecordingHeader& header);
 

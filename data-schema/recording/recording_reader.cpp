@@ -125,6 +125,18 @@ double frame_time_s(const RecordingHeader& header, std::uint64_t frame) {
   return static_cast<double>(sequence) / header.sample_rate_hz;
 }
 
+std::uint64_t frame_at(const RecordingHeader& header, double time_s) {
+  std::uint64_t low = 0, high = header.frames;
+  while (low < high) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    if (frame_time_s(header, middle) < time_s)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 double duration_s(const RecordingHeader& header) {
   return header.frames == 0 ? 0 : frame_time_s(header, header.frames - 1) + 1 / header.sample_rate_hz;
 }

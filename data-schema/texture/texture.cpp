@@ -2,6 +2,7 @@
 #include "data-schema/texture/texture.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -238,6 +239,12 @@ std::string whole_rms_band(const Texture& texture) {
     return fmt::format("all samples, filtered to {:.4g}-{:.4g} /mm", 1e-3 * source.low_per_m.value_or(0),
                        1e-3 * *source.high_per_m);
   return fmt::format("all samples, filtered to {:.4g}-{:.4g} Hz", source.low_hz, source.high_hz);
+}
+
+std::string reduction_in_words(const TextureSource& source) {
+  if (source.axes.empty()) return {};
+  return fmt::format("{} of {}: the magnitude of the spectrum over time is kept, the waveform is not",
+                     source.reduction, fmt::join(source.axes, ", "));
 }
 
 Result<void> check_texture_free(const std::string& name, Existing existing) {

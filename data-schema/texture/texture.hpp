@@ -45,6 +45,12 @@ struct TextureSource {
   /// Of a band-pass along position, if that is the filter; then the band in Hz is all that was recorded.
   std::optional<double> low_per_m = std::nullopt, high_per_m = std::nullopt;
   int interpolated_frames = 0;  ///< missing frames of the section that were filled
+  /// Of several channels that became one signal: their names and the method, "dft321" (Landin 2010), which
+  /// keeps the magnitude of the spectrum and not the waveform. The correlation is that of the axes with the
+  /// texture along its best direction: 1 where the direction of the acceleration stays.
+  std::vector<std::string> axes = {};
+  std::string reduction = {};
+  std::optional<double> waveform_correlation = std::nullopt;
 };
 
 /// One of the strokes that were averaged.
@@ -123,6 +129,9 @@ Result<void> write_playback_gain(const std::string& name, const PlaybackGain& ga
 
 /// The samples to which an RMS applies: "all samples, filtered to 15-500 Hz", for reports.
 std::string whole_rms_band(const Texture& texture);
+
+/// "dft321 of ax, ay, az: keeps the magnitude of the spectrum, not the waveform"; empty for one channel.
+std::string reduction_in_words(const TextureSource& source);
 
 /// Checks that there is no texture of this name, or that it may be replaced. Errors: usage, naming the file.
 Result<void> check_texture_free(const std::string& stem, Existing existing = Existing::keep);

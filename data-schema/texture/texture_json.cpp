@@ -154,7 +154,7 @@ struct SourceText {
 constexpr SourceText kSourceTexts[] = {
     {"recording", &TextureSource::recording}, {"recording_sha256", &TextureSource::recording_sha256},
     {"method", &TextureSource::method},       {"filter", &TextureSource::filter},
-    {"edges", &TextureSource::edges},
+    {"edges", &TextureSource::edges},         {"reduction", &TextureSource::reduction},
 };
 
 struct SourceNumber {
@@ -198,6 +198,7 @@ constexpr SourceOption kSourceOptions[] = {
     {"low_per_m", &TextureSource::low_per_m},
     {"high_per_m", &TextureSource::high_per_m},
     {"normal_force_n", &TextureSource::normal_force_n},
+    {"waveform_correlation", &TextureSource::waveform_correlation},
 };
 
 Json source_body(const TextureSource& source) {
@@ -210,6 +211,7 @@ Json source_body(const TextureSource& source) {
   for (const auto& [name, member] : kSourceOptions)
     if (source.*member) body[name] = *(source.*member);
   if (source.finger_up) body["finger_up"] = true;
+  if (!source.axes.empty()) body["axes"] = source.axes;
   return body;
 }
 
@@ -223,6 +225,7 @@ TextureSource source_from(const Json& body) {
   for (const auto& [name, member] : kSourceOptions)
     if (body.contains(name)) source.*member = body[name].get<double>();
   source.finger_up = body.value("finger_up", false);
+  source.axes = body.value("axes", source.axes);
   return source;
 }
 

@@ -113,7 +113,9 @@ void declare_spatial(CLI::App& app, SpatialOptions& options) {
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   app.add_option("--channel", options.texture.channel,
-                 "Channel of the texture [tangential_force, else the only suitable one]");
+                 "Channel of the texture [tangential_force, else the only suitable one]. "
+                 "acceleration:dft321, or x,y,z:dft321 by their names: three axes as one signal with the "
+                 "magnitude of their spectra; the waveform is not kept");
   declare_stretch(app, options);
   declare_average(app, options);
   declare_filter(app, options);

@@ -70,7 +70,7 @@ std::string asked(const schema::Budget& budget) {
 }
 
 /// RMS of the recorded values minus the filtered ones, about its mean, over the RMS of the filtered ones in
-/// the same frames; each is the largest of all strokes.
+/// the same frames; each is the largest of all strokes, of three axes also of these.
 struct BandShare {
   double whole = 0;   ///< in all frames of a stroke
   double inside = 0;  ///< in their middle half, without the steps of the force at start and stop
@@ -88,7 +88,7 @@ double rms_share(std::span<const double> taken, std::span<const double> passed) 
   return all > 0 ? std::sqrt(square_sum(taken, mean) / all) : 0;
 }
 
-schema::Result<BandShare> share_of_stroke(const TouchRecord& record, FilteredTrack& filtered,
+schema::Result<BandShare> share_of_stroke(const TouchRecord& record, Track track, FilteredTrack& filtered,
                                           FrameRange frames) {
   const auto holds = [&](const FrameRange& piece) { return piece.contains(frames); };
   const auto piece = std::ranges::find_if(record.pieces(), holds);
@@ -98,7 +98,7 @@ schema::Result<BandShare> share_of_stroke(const TouchRecord& record, FilteredTra
   const auto passed = filtered.values(record.source(), *piece, frames);
   TACTO_TRY(passed);
   std::vector<double> taken(frames.size());
-  TACTO_TRY(record.source().read(Track::value, frames.begin, taken));
+  TACTO_TRY(record.source().read(track, frames.begin, taken));
   for (std::size_t i = 0; i < taken.size(); ++i) taken[i] -= (*passed)[i];
   const std::size_t quarter = taken.size() / 4, half = taken.size() - 2 * quarter;
   return BandShare{rms_share(taken, *passed),
@@ -109,13 +109,15 @@ schema::Result<BandShare> share_of_stroke(const TouchRecord& record, FilteredTra
 // missing inside a stroke; of check(filter, sample_rate_hz); of reading.
 schema::Result<BandShare> band_share(const TouchRecord& record, const TimeFilter& filter,
                                      std::span<const Stroke> strokes) {
-  FilteredTrack filtered(record.header().sample_rate_hz, filter, {});
   BandShare worst;
-  for (const Stroke& stroke : strokes) {
-    const auto share = share_of_stroke(record, filtered, stroke.frames);
-    TACTO_TRY(share);
-    worst.whole = std::max(worst.whole, share->whole);
-    worst.inside = std::max(worst.inside, share->inside);
+  for (const Track track : record.value_tracks()) {
+    FilteredTrack filtered(record.header().sample_rate_hz, filter, {}, track);
+    for (const Stroke& stroke : strokes) {
+      const auto share = share_of_stroke(record, track, filtered, stroke.frames);
+      TACTO_TRY(share);
+      worst.whole = std::max(worst.whole, share->whole);
+      worst.inside = std::max(worst.inside, share->inside);
+    }
   }
   return worst;
 }
@@ -431,8 +433,9 @@ class Run {
   void warn_of_recording(const TouchRecord& record) {
     const schema::RecordingHeader& header = record.header();
     for (const std::string& warning : header.warnings)
-      if (warning.starts_with(record.channel().name + ": "))
-        warn(fmt::format("{}: {}", record.where(), warning));
+      for (const Track track : record.value_tracks())
+        if (warning.starts_with(record.source().channel(track)->name + ": "))
+          warn(fmt::format("{}: {}", record.where(), warning));
     if (const std::size_t gaps = record.filled().size(); gaps > 0)
       warn(fmt::format("{}: {} missing frames in {} short gaps were interpolated", record.where(),
                        record.filled_in({0, header.frames}), gaps));

@@ -34,6 +34,8 @@ void add_texture_values(Report& row, const schema::Texture& texture) {
     row.add("valid_low_per_m", band.low_per_m).add("valid_high_per_m", band.high_per_m);
   else
     row.add("valid_throughout", "no frequency");
+  if (const auto& correlation = texture.source.waveform_correlation)
+    row.add("waveform_correlation", *correlation);
   row.add("position_moved_m", texture.source.position_moved_m);
 }
 
@@ -80,7 +82,11 @@ std::vector<Report> jump_rows(const TouchRecord& record) {
 
 Report head_of(const TouchRecord& record, const schema::Texture& texture) {
   Report report;
-  report.add("recording", record.where()).add("channel", record.channel().name);
+  report.add("recording", record.where());
+  if (texture.source.axes.empty())
+    report.add("channel", record.channel().name);
+  else
+    report.add("reduction", schema::reduction_in_words(texture.source));
   if (!texture.simulated.empty()) report.add("simulated", texture.simulated);
   report.add("grid_m", texture.signal.pitch_m);
   add_position(report, record);

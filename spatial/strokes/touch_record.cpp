@@ -35,7 +35,6 @@ bool is_whole(double value) {
   return value == std::round(value);
 }
 
-constexpr std::array kTracks = {Track::position, Track::value, Track::normal_force};
 constexpr std::size_t kBeside = 2;  // frames on each side of a gap
 
 struct Bridge {
@@ -88,8 +87,9 @@ Result<Bridge> filled(TouchSource& source, const schema::Gap& gap, std::size_t b
     for (std::size_t i = 1; i <= gap.count; ++i) {
       const auto x = static_cast<double>(i);
       bridge.values[static_cast<std::size_t>(track)].push_back(
-          track == Track::value ? schema::lagrange({-1, 0, missing + 1, missing + 2}, y, x)
-                                : std::lerp(y[1], y[2], x / (missing + 1)));
+          track == Track::position || track == Track::normal_force
+              ? std::lerp(y[1], y[2], x / (missing + 1))
+              : schema::lagrange({-1, 0, missing + 1, missing + 2}, y, x));
     }
   }
   return bridge;

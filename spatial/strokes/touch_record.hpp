@@ -147,6 +147,10 @@ class TouchRecord {
 
   const schema::RecordingHeader& header() const { return header_; }
   const schema::Channel& channel() const { return *source_->channel(Track::value); }
+  /// The tracks of the value: one, or the three axes that become one signal.
+  std::span<const Track> value_tracks() const {
+    return std::span(kValueTracks).first(source_->channel(Track::third_axis) == nullptr ? 1 : 3);
+  }
   const std::string& where() const { return where_; }  ///< the recording's stem, for messages
   TouchSource& source() const { return *source_; }
   const PositionFacts& facts() const { return facts_; }

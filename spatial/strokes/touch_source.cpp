@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ using schema::ErrorKind;
 using MaybeIndex = std::optional<std::size_t>;
 
 constexpr std::string_view kUsual = "tangential_force";  // the channel that becomes a texture
+constexpr std::string_view kReduced = ":dft321";         // behind the names of three axes
+constexpr std::string_view kReducedQuantity = "acceleration";
+constexpr std::size_t kAxes = 3;
 
 MaybeIndex channel_of(const schema::RecordingHeader& header, std::string_view quantity) {
   const auto found = std::ranges::find(header.channels, quantity, &schema::Channel::quantity);
@@ -39,29 +43,80 @@ std::string list_of(const schema::RecordingHeader& header, const std::vector<std
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-schema::Result<std::size_t> value_channel(const schema::Recording& recording, const std::string& value) {
+// The channels of a quantity, or those with names between commas.
+schema::Result<std::vector<std::size_t>> named_axes(const schema::RecordingHeader& header,
+                                                    std::string_view names) {
+  std::vector<std::size_t> axes;
+  if (names.find(',') == std::string_view::npos)
+    for (std::size_t i = 0; i < header.channels.size(); ++i)
+      if (header.channels[i].quantity == names) axes.push_back(i);
+  if (!axes.empty()) return axes;
+  for (std::size_t comma = 0; comma != std::string_view::npos;) {
+    comma = names.find(',');
+    const auto axis = schema::find_channel(header, names.substr(0, comma));
+    TACTO_TRY(axis);
+    axes.push_back(*axis);
+    if (comma != std::string_view::npos) names.remove_prefix(comma + 1);
+  }
+  return axes;
+}
+
+// The three axes of an acceleration that one signal is made of.
+schema::Result<std::vector<std::size_t>> reduced_axes(const schema::Recording& recording,
+                                                      std::string_view names) {
   const schema::RecordingHeader& header = recording.header;
-  if (!value.empty()) return schema::find_channel(header, value);
+  auto axes = named_axes(header, names);
+  TACTO_TRY(axes);
+  for (const std::size_t i : *axes)
+    if (const schema::Channel& axis = header.channels[i]; axis.quantity != kReducedQuantity)
+      return schema::fail(
+          ErrorKind::unsuitable,
+          fmt::format("{} is {} in {}, no {}", axis.name, axis.quantity, axis.unit, kReducedQuantity),
+          recording.stem, "dft321 takes the three axes of an accelerometer, all in m/s^2");
+  const std::set<std::size_t> different(axes->begin(), axes->end());
+  if (axes->size() == kAxes && different.size() == kAxes) return axes;
+  return schema::fail(
+      ErrorKind::unsuitable,
+      fmt::format("dft321 needs {} different axes, not {}", kAxes, list_of(header, *axes)), recording.stem,
+      axes->size() > kAxes ? "name three of them, as in --channel x,y,z:dft321"
+                           : "import all three axes, or make a texture of one: --channel NAME");
+}
+
+// One channel, or three axes.
+schema::Result<std::vector<std::size_t>> value_channels(const schema::Recording& recording,
+                                                        const std::string& value) {
+  const schema::RecordingHeader& header = recording.header;
+  if (value.ends_with(kReduced))
+    return reduced_axes(recording, std::string_view(value).substr(0, value.size() - kReduced.size()));
+  if (!value.empty()) {
+    const auto index = schema::find_channel(header, value);
+    TACTO_TRY(index);
+    return std::vector{*index};
+  }
   if (const auto usual = std::ranges::find(header.channels, kUsual, &schema::Channel::name);
       usual != header.channels.end())
-    return static_cast<std::size_t>(usual - header.channels.begin());
+    return std::vector{static_cast<std::size_t>(usual - header.channels.begin())};
   const auto found = texture_channels(header);
-  if (found.size() == 1) return found.front();
+  if (found.size() == 1) return found;
   if (found.empty())
     return schema::fail(ErrorKind::unsuitable,
                         fmt::format("has no channel that can become a texture, only {}", names_of(header)),
                         recording.stem, "import it with --channel tangential_force=COLUMN*SCALE");
+  const std::size_t axes = std::ranges::count(header.channels, kReducedQuantity, &schema::Channel::quantity);
   return schema::fail(ErrorKind::unsuitable,
                       fmt::format("has no tangential_force, but {} channels that can become a texture: {}",
                                   found.size(), list_of(header, found)),
                       recording.stem,
-                      fmt::format("choose one, as in --channel {}", header.channels[found.front()].name));
+                      fmt::format("choose one, as in --channel {}{}", header.channels[found.front()].name,
+                                  axes == kAxes ? ", or the three axes of the acceleration as one signal: "
+                                                  "--channel acceleration:dft321"
+                                                : ""));
 }
 
 class RecordingSource : public TouchSource {
  public:
   RecordingSource(schema::RecordingFrames frames, std::vector<schema::Channel> channels,
-                  std::array<MaybeIndex, 3> indices)
+                  std::array<MaybeIndex, kTracks.size()> indices)
       : frames_(std::move(frames)), channels_(std::move(channels)), indices_(indices) {}
 
   const schema::Channel* channel(Track track) const override {
@@ -75,11 +130,12 @@ class RecordingSource : public TouchSource {
  private:
   schema::RecordingFrames frames_;
   std::vector<schema::Channel> channels_;
-  std::array<MaybeIndex, 3> indices_;  // by Track
+  std::array<MaybeIndex, kTracks.size()> indices_;  // by Track
 };
 
+// Without values, the value is the position.
 schema::Result<std::unique_ptr<TouchSource>> open_source(const schema::Recording& recording,
-                                                         MaybeIndex value) {
+                                                         std::span<const std::size_t> values) {
   const MaybeIndex position = channel_of(recording.header, "position");
   if (!position)
     return schema::fail(
@@ -89,20 +145,23 @@ schema::Result<std::unique_ptr<TouchSource>> open_source(const schema::Recording
   TACTO_TRY(frames);
   return std::make_unique<RecordingSource>(
       std::move(*frames), recording.header.channels,
-      std::array{position, value ? value : position, channel_of(recording.header, "normal_force")});
+      std::array{position, values.empty() ? position : values[0],
+                 channel_of(recording.header, "normal_force"),
+                 values.size() == kAxes ? MaybeIndex(values[1]) : std::nullopt,
+                 values.size() == kAxes ? MaybeIndex(values[2]) : std::nullopt});
 }
 
 }  // namespace
 
 schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Recording& recording,
                                                                const std::string& value) {
-  const auto index = value_channel(recording, value);
-  TACTO_TRY(index);
-  return open_source(recording, *index);
+  const auto indices = value_channels(recording, value);
+  TACTO_TRY(indices);
+  return open_source(recording, *indices);
 }
 
 schema::Result<std::unique_ptr<TouchSource>> open_position_source(const schema::Recording& recording) {
-  return open_source(recording, std::nullopt);
+  return open_source(recording, {});
 }
 
 }  // namespace tacto::spatial

@@ -168,6 +168,7 @@ schema::Texture TextureAverager::described() const {
   };
   texture.direction = std::ranges::all_of(strokes_, same_way) ? strokes_.front().direction : 1;
   texture.source.normal_force_n.reset();
+  texture.source.waveform_correlation.reset();
   texture.created = schema::creation_time();
   return texture;
 }

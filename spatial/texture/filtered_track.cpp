@@ -6,8 +6,9 @@
 
 namespace tacto::spatial {
 
-FilteredTrack::FilteredTrack(double sample_rate_hz, const TimeFilter& filter, SpectralGain equaliser)
-    : sample_rate_hz_(sample_rate_hz), filter_(filter), equaliser_(std::move(equaliser)) {}
+FilteredTrack::FilteredTrack(double sample_rate_hz, const TimeFilter& filter, SpectralGain equaliser,
+                             Track track)
+    : sample_rate_hz_(sample_rate_hz), filter_(filter), equaliser_(std::move(equaliser)), track_(track) {}
 
 schema::Result<void> FilteredTrack::begin(FrameRange piece) {
   stream_.reset();
@@ -36,7 +37,7 @@ schema::Result<void> FilteredTrack::advance(TouchSource& source) {
   }
   const std::size_t size = std::min(kChunkFrames, piece_.end - next_);
   chunk_.resize(size);
-  if (auto done = source.read(Track::value, next_, chunk_); !done) return done;
+  if (auto done = source.read(track_, next_, chunk_); !done) return done;
   if (auto done = stream_->push(chunk_, kept_); !done) return done;
   next_ += size;
   return {};

@@ -16,7 +16,8 @@ namespace tacto::spatial {
 /// time are fast; a request before the last one filters its piece again from the beginning.
 class FilteredTrack {
  public:
-  FilteredTrack(double sample_rate_hz, const TimeFilter& filter, SpectralGain equaliser);
+  FilteredTrack(double sample_rate_hz, const TimeFilter& filter, SpectralGain equaliser,
+                Track track = Track::value);
 
   /// Filtered values of `frames`, which are inside `piece`, a section of `source` between two gaps; valid
   /// until the next call. All calls have the same source. Errors: of check(filter, sample_rate_hz); of
@@ -31,6 +32,7 @@ class FilteredTrack {
   double sample_rate_hz_;
   TimeFilter filter_;
   SpectralGain equaliser_;
+  Track track_;
   FrameRange piece_;
   std::optional<BlockTimeFilter> stream_;
   std::size_t next_ = 0;       // the frame to feed next

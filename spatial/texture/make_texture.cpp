@@ -51,7 +51,8 @@ schema::Result<void> TextureMaker::prepare() {
   }
   if (options_.space) options_.filter.method = FilterMethod::none;
   if (const auto equalised = choose_equaliser(); !equalised) return equalised;
-  filtered_.emplace(header.sample_rate_hz, options_.filter, equaliser_);
+  for (const Track track : record_.value_tracks())
+    filtered_.emplace_back(header.sample_rate_hz, options_.filter, equaliser_, track);
   return {};
 }
 
@@ -105,6 +106,19 @@ schema::Result<MonotonePath> TextureMaker::path_of(const Stroke& stroke, double 
   return path;
 }
 
+// Of three axes the one signal. Valid until the next call.
+schema::Result<std::span<const double>> TextureMaker::filtered(FrameRange piece, FrameRange frames) {
+  std::vector<std::span<const double>> axes;
+  for (FilteredTrack& track : filtered_) {
+    const auto values = track.values(record_.source(), piece, frames);
+    TACTO_TRY(values);
+    axes.push_back(*values);
+  }
+  if (axes.size() == 1) return axes.front();
+  reduced_ = dft321(axes);
+  return std::span<const double>(reduced_.values);
+}
+
 schema::Result<std::vector<double>> TextureMaker::resampled(const Stroke& stroke, const MonotonePath& path,
                                                             const SpaceGrid& grid) {
   const auto holds = [&](const FrameRange& piece) { return piece.contains(stroke.frames); };
@@ -115,7 +129,7 @@ schema::Result<std::vector<double>> TextureMaker::resampled(const Stroke& stroke
   const std::size_t margin = margin_of(options_.method);
   const std::size_t before = std::min(margin, stroke.frames.begin - piece->begin);
   const FrameRange frames{stroke.frames.begin - before, std::min(stroke.frames.end + margin, piece->end)};
-  const auto seen = filtered_->values(record_.source(), *piece, frames);
+  const auto seen = filtered(*piece, frames);
   TACTO_TRY(seen);
   std::vector<double> values(grid.count);
   resampler_(path, stroke.direction, grid, *seen, before, values);
@@ -245,6 +259,12 @@ void TextureMaker::describe(schema::Texture& texture, const Stroke& stroke, int 
   source.to_s = record_.to_s(stroke);
   source.stroke = number;
   source.method = name_of(options_.method);
+  if (filtered_.size() > 1) {
+    source.reduction = "dft321";
+    source.waveform_correlation = reduced_.waveform_correlation;
+    for (const Track track : record_.value_tracks())
+      source.axes.push_back(record_.source().channel(track)->name);
+  }
   describe_filter(source);
   source.equalised = static_cast<bool>(equaliser_);
   describe_position(source, stroke);

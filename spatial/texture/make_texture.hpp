@@ -3,12 +3,14 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "data-schema/base/error.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/texture/texture.hpp"
+#include "spatial/dsp/filter/dft321.hpp"
 #include "spatial/strokes/monotone_path.hpp"
 #include "spatial/strokes/touch_record.hpp"
 #include "spatial/texture/filtered_track.hpp"
@@ -24,7 +26,7 @@ namespace tacto::spatial {
 enum class Equalise { automatic, on, off };
 
 struct TextureOptions {
-  std::string channel;  ///< empty: tangential_force, otherwise the only one that can become a texture
+  std::string channel;  ///< as of open_touch_source()
   TimeFilter filter;
   /// If set, the band is in space: each texture is filtered along position, and nothing in time.
   std::optional<SpaceFilter> space;
@@ -63,6 +65,7 @@ class TextureMaker {
   schema::Result<void> check_duration(const Stroke& stroke) const;
   schema::Result<void> check_band(double usual_mps) const;
   schema::Result<MonotonePath> path_of(const Stroke& stroke, double shift_m) const;
+  schema::Result<std::span<const double>> filtered(FrameRange piece, FrameRange frames);
   schema::Result<std::vector<double>> resampled(const Stroke& stroke, const MonotonePath& path,
                                                 const SpaceGrid& grid);
   Band kept_band() const;
@@ -76,7 +79,8 @@ class TextureMaker {
   TouchRecord record_;
   TextureOptions options_;
   SpectralGain equaliser_;
-  std::optional<FilteredTrack> filtered_;
+  std::vector<FilteredTrack> filtered_;  // one, or one of each axis
+  Dft321 reduced_;                       // of the axes in the last section
   Resampler resampler_;
 };
 

@@ -9,6 +9,7 @@ import random
 import re
 import zipfile
 
+import netCDF4
 import numpy as np
 import tacto
 
@@ -52,7 +53,7 @@ def x3p(xml, points, mask=None, folder="", more=(), sums=True, packing=zipfile.Z
 
 def imported(content, *more, code=0):
     pathlib.Path("s.x3p").write_bytes(content)
-    words = ["import", "s.x3p", "-o", "s", "--force", *more]
+    words = ["import", "s.x3p", *([] if "-o" in more else ["-o", "s"]), "--force", *more]
     return tacto.run_json(*words) if code == 0 else tacto.error_of(*words, code=code)
 
 
@@ -144,6 +145,54 @@ def lines_and_options_that_do_not_fit():
     assert not list(pathlib.Path(".").glob("s.texture.*"))
 
 
+def square_xml(letter, points, *more, **others):
+    return main_xml(letter, points, *more, **others).replace(f"{PITCH_Y_M}".encode(), f"{PITCH_X_M}".encode())
+
+
+def a_whole_surface_is_a_height_map_of_a_scene():
+    for letter in TYPES:
+        matrix = stored_matrix(letter)
+        told = imported(x3p(square_xml(letter, matrix.tobytes()), matrix.tobytes()), "-o", "map.height.nc")
+        with netCDF4.Dataset("map.height.nc") as file:
+            assert np.array_equal(file["height"][:], (matrix.astype(float) * 1e-9 + 5e-7).astype(np.float32)), letter
+            assert file.pitch_m == PITCH_X_M and "T-1" in file.notes and "surface" in file.notes, file
+        assert (told["columns"], told["rows"]) == (COLUMNS, ROWS), told
+    rough_m = np.random.default_rng(3).normal(0, 20e-9, (ROWS, COLUMNS))
+    imported(x3p(square_xml("D", rough_m.tobytes(), scale=1, offset=0.05), rough_m.tobytes()), "-o", "map.height.nc")
+    with netCDF4.Dataset("map.height.nc") as file:
+        assert np.abs(file["height"][:] - (rough_m - rough_m.mean())).max() < 1e-14 and "mean height" in file.notes, file.notes
+    # z = 0.01 x over 19.5 mm; the force is -4 N times the slope. The spline's mirrored edges fade by 0.27 a sample, 15 samples away.
+    plane = np.tile(np.arange(COLUMNS, dtype="<f8") * 5e-4 * 0.01, (ROWS, 1))
+    xml = square_xml("D", plane.tobytes(), scale=1, offset=0).replace(str(PITCH_X_M).encode(), b"5e-4")
+    imported(x3p(xml, plane.tobytes()), "-o", "map.height.nc")
+    scene = {"kind": "scene", "version": "1.0", "name": "s", "patches": [
+        {"name": "p", "place": {"x_m": 0, "y_m": 0}, "size": {"width_m": 0.0195, "height_m": 0.0145},
+         "layers": [{"type": "height_map", "file": "map", "kappa_n": 4}]}]}
+    pathlib.Path("s.scene.json").write_text(json.dumps(scene))
+    tacto.run("validate", "s.scene.json")
+    pathlib.Path("hand.csv").write_text("time_s,x_mm,y_mm\n0,-2,0\n1,2,0\n")
+    tacto.run("render", "s.scene.json", "--finger-path", "hand.csv", "--device", "sandpaper-1990", "-o", "force.csv")
+    forces = np.genfromtxt("force.csv", delimiter=",", names=True)
+    assert np.allclose(forces["force_x_n"], -0.04, rtol=1e-3) and np.allclose(forces["force_y_n"], 0, atol=4e-5), forces
+    # A row, and a profile, are maps of one row; PRF has no pitch along y.
+    assert imported(x3p(main_xml("D", plane.tobytes()), plane.tobytes()), "-o", "map.height.nc", "--row", "3")["rows"] == 1
+    told = imported(x3p(main_xml("D", plane[0].tobytes(), feature="PRF", sizes=(COLUMNS, 1, 1)), plane[0].tobytes()), "-o", "map.height.nc")
+    assert (told["columns"], told["rows"]) == (COLUMNS, 1), told
+
+
+def a_surface_that_is_no_height_map_is_refused():
+    matrix = stored_matrix("F")
+    matrix[[4, 4, 11], [30, 5, 7]] = np.nan
+    error = imported(x3p(square_xml("F", matrix.tobytes()), matrix.tobytes()), "-o", "map.height.nc", code=UNSUITABLE)
+    assert re.findall(r"\d+", error["what"]) == ["3", str(ROWS * COLUMNS), "5", "12", "6", "31"], error
+    matrix = stored_matrix("F")
+    error = imported(x3p(main_xml("F", matrix.tobytes()), matrix.tobytes()), "-o", "map.height.nc", code=UNSUITABLE)
+    assert "2e-06" in error["what"] and "3e-06" in error["what"], error
+    imported(x3p(square_xml("F", matrix.tobytes()), matrix.tobytes()), "-o", "map.height.nc", "--pitch", "1um", code=USAGE)
+    imported(x3p(square_xml("F", matrix.tobytes(), sizes=(2**15, 2**14, 1)), matrix.tobytes()), "-o", "map.height.nc", code=UNSUITABLE)
+    assert not list(pathlib.Path(".").glob("map*"))
+
+
 def folders_foreign_files_and_checksums():
     matrix = stored_matrix("D")
     points = matrix.tobytes()
@@ -213,5 +262,5 @@ def judged(name, content, right):
 if __name__ == "__main__":
     for test in (each_type_along_rows_and_columns, heights_far_from_zero_keep_their_roughness, options_that_a_texture_does_not_store_are_refused,
                  holes_are_refused_with_the_longest_section, lines_and_options_that_do_not_fit,
-                 folders_foreign_files_and_checksums, what_is_not_read_is_named, cuts_and_damage_are_never_silent):
+                 a_whole_surface_is_a_height_map_of_a_scene, a_surface_that_is_no_height_map_is_refused, folders_foreign_files_and_checksums, what_is_not_read_is_named, cuts_and_damage_are_never_silent):
         tacto.in_folder(test)

@@ -18,7 +18,7 @@ import scipy.stats
 import tacto
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "fuzz"))
-from xdf_maker import boundary, chunk, clock_offset, file_header, footer, header, samples
+from xdf_maker import boundary, chunk, clock_offset, file_header, footer, header, samples, texts
 
 USAGE, MALFORMED, UNSUITABLE = 2, 4, 5
 ROWS = 3000
@@ -269,6 +269,62 @@ def a_reset_clock_is_refused_with_its_time():
     assert imported(one_stream(times_s, 1000, every=1), "--rate", "1kHz")["frames"] == 30_000
 
 
+def markers_become_marks_by_the_recorders_clock():
+    """Truth: three clocks with known offsets and rates; a marker belongs to the frame nearest to it by the recorder's clock."""
+    drift, other = 40e-6, -150e-6  # of the clocks of samples and markers against the recorder's
+    recorder_s = 2000 + np.arange(30_000) / 1000
+    own_s, markers_s = 500 + (recorder_s - 2000) * (1 + drift), lambda t: 9000 + (t - 2000) * (1 + other)
+    at_s = np.array([2000.0002, 2003.4567, 2011.9996, 2029.9991])
+    labels = [b"begin", "Stütze links".encode(), "Stütze rechts".encode("latin-1"), b""]
+    offsets = [(t, t) for t in np.arange(2000, 2030, 5.0)]
+    data = (file_header() + header(1, "F", 1, 1000, "int32") + header(2, "Markers", 1, 0, "string") +
+            b"".join(clock_offset(1, 500 + (t - 2000) * (1 + drift), t - 500 - (t - 2000) * (1 + drift)) for t, _ in offsets) +
+            b"".join(clock_offset(2, markers_s(t), t - markers_s(t)) for t, _ in offsets) +
+            texts(2, [[labels[1]], [labels[0]]], markers_s(at_s[[1, 0]])) + samples(1, np.arange(30_000, dtype="<i4").reshape(-1, 1), own_s) +
+            texts(2, [[label] for label in labels[2:]], markers_s(at_s[2:])) + footer(1, 30_000) + footer(2, 4))
+    told = imported(data)
+    expected = [(round((t - 2000) * 1000), label) for t, label in zip(at_s, ["begin", "Stütze links", "Stütze rechts", ""])]
+    assert [(mark["frame"], mark["label"]) for mark in sidecar("x")["marks"]] == expected, (sidecar("x")["marks"], expected)
+    assert told["marks"] == 4 and "warnings" not in told, told
+    rows = {row["name"]: row["not_imported"] for row in tacto.run_json("import", "trial.xdf")["streams"]}
+    assert "marks" in rows["Markers"] and not rows["F"], rows
+    told = imported(data, "--rate", "1kHz")
+    assert "marks" not in told and any("markers" in warning for warning in told["warnings"]), told
+    tacto.run("validate", "x")
+
+
+def marks_beside_gaps_and_outside():
+    kept = np.setdiff1d(np.arange(ROWS), np.arange(700, 710))
+    values = np.arange(kept.size, dtype="<i4").reshape(-1, 1)
+    values[1500] = 2_000_000_000  # sample 1510 of the stream's clock
+    head = (file_header() + header(1, "F", 1, 1000, "int32") + header(2, "A", 2, 0, "string") + header(3, "B", 1, 0, "string") +
+            samples(1, values, 50 + kept / 1000, every=1))
+    at_s = 50 + np.array([-0.0006, -0.0004, 0.6994, 0.705, 0.7095, 1.5, 2.9994, 2.9996])
+    told = imported(head + texts(2, [[b"x", b"%d" % i] for i in range(at_s.size)], at_s) + texts(3, [[b"y"]], [51.5]) + footer(1, kept.size))
+    marks = [(mark["frame"], mark["label"]) for mark in sidecar("x")["marks"]]
+    assert marks == [(0, "A: x 1"), (699, "A: x 2"), (700, "A: x 3"), (700, "A: x 4"), (1490, "A: x 5"), (1490, "B: y"), (2989, "A: x 6")], marks
+    assert sum("2 markers" in warning for warning in told["warnings"]) == 1, told
+    assert sum("clock offsets" in warning for warning in told["warnings"]) == 2, told
+    imported(head + texts(2, [[b"x", b"end"]], [52.0]) + footer(1, kept.size), "--mask-outliers")
+    document = sidecar("x")
+    frame = document["marks"][0]["frame"]  # time is kept, with one frame fewer before it
+    assert frame == 1989 and frame + sum(gap["count"] for gap in document["gaps"] if gap["frame"] <= frame) == 2000, document
+
+
+def damaged_markers_are_refused():
+    start = file_header() + header(1, "F", 1, 1000, "int32") + header(2, "M", 1, 0, "string")
+    end = samples(1, np.arange(ROWS, dtype="<i4").reshape(-1, 1), np.arange(ROWS) / 1000) + footer(1, ROWS)
+    head = struct.pack("<I", 2) + b"\1\1"
+    for content in (head + b"\x08" + bytes(8) + b"\1\7hello", head + b"\x08" + bytes(8) + b"\1\4hello", head + b"\0\1\5hello",
+                    head + b"\x08" + b"\xff" * 8 + b"\1\5hello", head + b"\x08" + bytes(8) + b"\x08" + b"\xff" * 8 + b"hello"):
+        assert imported(start + chunk(3, content) + end, code=MALFORMED)["where"].startswith("trial.xdf")
+        assert not pathlib.Path("x.wav").exists()
+    reset = clock_offset(2, 0, 5) + clock_offset(2, 5, -400)
+    told = imported(start + reset + texts(2, [[b"hello"]], [1]) + end)
+    assert "marks" not in told and any("reset" in warning for warning in told["warnings"]), told
+    imported(file_header() + header(2, "M", 0, 0, "string") + header(1, "F", 1, 1000, "int32") + end)
+
+
 def a_cut_file_is_read_to_its_last_whole_chunk_and_says_so():
     values = np.arange(ROWS).reshape(-1, 1)
     times_s = np.arange(ROWS) / 1000
@@ -321,5 +377,6 @@ if __name__ == "__main__":
     for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, times_that_are_not_stated_do_not_add_up_rounding, a_pause_of_any_length_is_a_gap, a_jump_beyond_any_file_is_refused, what_a_remedy_names_can_be_typed,
                  the_error_of_a_file_is_not_hidden_without_an_output, a_rate_that_no_wav_stores_is_named, scattered_times_are_fitted,
                  clock_offsets_give_the_recorders_rate, wrong_offsets_change_no_rate_and_noise_is_no_drift, a_reset_clock_is_refused_with_its_time,
+                 markers_become_marks_by_the_recorders_clock, marks_beside_gaps_and_outside, damaged_markers_are_refused,
                  a_cut_file_is_read_to_its_last_whole_chunk_and_says_so, damaged_files_are_refused):
         tacto.in_folder(test)

@@ -84,6 +84,39 @@ TEST(MeshTest, FlippedTrianglesInsideOutAndHoles) {
   EXPECT_TRUE(check_mesh(open, "m"));  // holes are a question of the import
 }
 
+TEST(MeshTest, TrianglesThatAreThereTwice) {
+  for (const bool turned : {false, true}) {  // the same way round, or as the inner side of a double surface
+    Mesh twice = unit_cube();
+    for (const MeshTriangle& t : unit_cube().triangles)
+      twice.triangles.push_back(turned ? MeshTriangle{t[1], t[0], t[2]} : MeshTriangle{t[2], t[0], t[1]});
+    const MeshFaults faults = faults_of(twice);
+    EXPECT_EQ(faults.doubled, 12U);
+    EXPECT_EQ(faults.open_edges + faults.odd_edges + faults.flipped, 0U);
+    EXPECT_FALSE(check_mesh(twice, "m"));
+    EXPECT_EQ(repair(twice, 0).dropped, 12U);
+    EXPECT_EQ(twice.triangles, unit_cube().triangles);
+    EXPECT_TRUE(check_mesh(twice, "m"));
+  }
+}
+
+TEST(MeshTest, AnEdgeOfThreeTrianglesIsNoHole) {
+  Mesh fin = unit_cube();
+  fin.vertices_m.push_back({2, 2, 2});
+  fin.triangles.push_back({5, 7, 8});
+  EXPECT_EQ(faults_of(fin).odd_edges, 1U);
+  EXPECT_EQ(faults_of(fin).open_edges, 2U);
+  // Two cubes with a common edge: four triangles, two each way.
+  Mesh touching = unit_cube();
+  for (const MeshVertex& v : unit_cube().vertices_m)
+    touching.vertices_m.push_back({v[0] + 1, v[1] + 1, v[2]});
+  for (const MeshTriangle& t : unit_cube().triangles)
+    touching.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  merge_equal_vertices(touching);
+  EXPECT_EQ(touching.vertices_m.size(), 14U);
+  EXPECT_EQ(faults_of(touching).odd_edges + faults_of(touching).open_edges, 0U);
+  EXPECT_TRUE(check_mesh(touching, "m"));
+}
+
 // A second cube of this size, moved along all axes.
 Mesh with_cube(double size, double moved, bool inside_out) {
   Mesh both = unit_cube();

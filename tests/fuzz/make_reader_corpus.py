@@ -53,6 +53,7 @@ def write_xdfs():
     import xdf_maker as xdf
     begin = xdf.file_header() + xdf.header(1, "F", 2, 1000, "int16", [("Fx", "N"), ("Fz", "N")]) + xdf.header(2, "M", 1, 0, "string")
     end = xdf.clock_offset(1, 5, 1) + xdf.boundary() + xdf.footer(1, 6)
+    begin += xdf.texts(2, [[b"go"], [b""]], [0.001, 0.0042])
     write("xdf", "int16", begin + xdf.samples(1, np.arange(12, dtype="<i2").reshape(6, 2), np.arange(6) / 1000, every=3) + end)
     begin = xdf.file_header() + xdf.header(1, "F", 1, 1000, "int64")
     write("xdf", "int64", begin + xdf.samples(1, 2**53 - 3 + np.arange(6, dtype="<i8").reshape(6, 1), np.arange(6) / 1000, every=1) + end)

@@ -40,6 +40,14 @@ def samples(number, values, times_s, every=1000):
     return chunks
 
 
+def texts(number, rows, times_s):
+    """Samples of a stream of text, each with a time; a row has a text (bytes) for each channel."""
+    content = struct.pack("<I", number) + varied(len(rows))
+    for row, time_s in zip(rows, times_s):
+        content += b"\x08" + struct.pack("<d", time_s) + b"".join(varied(len(text)) + text for text in row)
+    return chunk(3, content)
+
+
 def clock_offset(number, time_s, ahead_s):
     return chunk(4, struct.pack("<Idd", number, time_s, ahead_s))
 

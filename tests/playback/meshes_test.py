@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes on the command line: import of STL, OBJ and PLY, what is refused and repaired, `render` against all triangles in NumPy, `play` and `replay` to the bit, `explain`, `design`, `info`."""
+import hashlib
 import json
 import math
 import pathlib
@@ -132,6 +133,43 @@ def what_is_wrong_with_a_mesh_is_counted():
     said = run_json("import", "hole.stl", "--unit", "mm", "--open", "-o", "hole")
     assert said["closed"] is False and said["open_edges"] == 3 and "volume_m3" not in said, said
     assert error_of("import", "part.mesh.nc", "--unit", "mm", "-o", "again", code=USAGE)
+    # Every triangle twice, and once more as an inner side.
+    for name, more in (("twice", CUBE_FACES), ("lined", CUBE_FACES[:, ::-1])):
+        write_stl(f"{name}.stl", CUBE, np.vstack([CUBE_FACES, more]))
+        said = error_of("import", f"{name}.stl", "--unit", "mm", "-o", name, code=UNSUITABLE)
+        assert "12 triangles" in said["what"] and "--repair" in said["remedy"], said
+        said = run_json("import", f"{name}.stl", "--unit", "mm", "--repair", "-o", name)
+        assert said["dropped_triangles"] == 12 and said["triangles"] == 12 and said["closed"] is True, said
+    # A fin on an edge: it is no hole, but its own two edges are.
+    write_stl("fin.stl", np.vstack([CUBE, [2, 2, 2]]), np.vstack([CUBE_FACES, [5, 7, 8]]))
+    said = error_of("import", "fin.stl", "--unit", "mm", "-o", "fin", code=UNSUITABLE)
+    assert "1 edge of three or more triangles" in said["what"] and "2 open edges" in said["what"], said
+    said = run_json("import", "fin.stl", "--unit", "mm", "--open", "-o", "fin")
+    assert said["closed"] is False and said["edges_of_three_or_more_triangles"] == 1 and said["open_edges"] == 2, said
+    # What is found before writing names the file that was read.
+    write_stl("large.stl", CUBE * 20, CUBE_FACES)
+    assert error_of("import", "large.stl", "--unit", "m", "-o", "large", code=UNSUITABLE)["where"] == "large.stl"
+
+
+def a_changed_number_of_a_mesh_is_found():
+    write_stl("cube.stl", CUBE, CUBE_FACES)
+    for variable, change in (("vertex", lambda numbers: numbers + np.eye(8, 3) * 1e-12), ("triangle", lambda numbers: np.roll(numbers, 1, axis=1)), ("vertex", None)):
+        run_json("import", "cube.stl", "--unit", "mm", "-o", "part", "--force")
+        with netCDF4.Dataset("part.mesh.nc", "a") as file:
+            own = hashlib.sha256(np.asarray(file["vertex"], "<f8").tobytes() + np.asarray(file["triangle"], "<u4").tobytes())
+            assert file.sha256 == own.hexdigest(), file
+            if change:
+                file[variable][:] = change(np.asarray(file[variable]))
+            else:  # another program may state no checksum
+                file[variable][0, 0] = 1e-12
+                file.delncattr("sha256")
+        write_scene("part", "part")
+        if change:
+            assert error_of("info", "part.mesh.nc", code=MALFORMED)["where"] == "part.mesh.nc"
+            tacto.run("validate", "part.mesh.nc", code=MALFORMED)
+            tacto.run("explain", "part.scene.json", "--device", "arm", code=MALFORMED)
+        else:
+            tacto.run("info", "part.mesh.nc")
 
 
 def a_file_that_was_cut_is_refused():
@@ -202,5 +240,5 @@ def a_played_mesh_replays_to_the_bit():
 
 
 if __name__ == "__main__":
-    for test in (three_formats_give_one_mesh, what_is_wrong_with_a_mesh_is_counted, a_file_that_was_cut_is_refused, a_rendered_force_is_that_of_all_triangles, a_played_mesh_replays_to_the_bit):
+    for test in (three_formats_give_one_mesh, what_is_wrong_with_a_mesh_is_counted, a_changed_number_of_a_mesh_is_found, a_file_that_was_cut_is_refused, a_rendered_force_is_that_of_all_triangles, a_played_mesh_replays_to_the_bit):
         tacto.in_folder(test)

@@ -16,8 +16,8 @@ class ForceAndPosition : public TouchSource {
     force_.unit = "N";
   }
   const schema::Channel* channel(Track track) const override {
-    if (track == Track::normal_force) return nullptr;
-    return track == Track::position ? &position_ : &force_;
+    if (track == Track::position) return &position_;
+    return track == Track::value ? &force_ : nullptr;
   }
 
  private:
