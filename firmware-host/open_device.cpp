@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "firmware-host/comedi/comedi_device.hpp"
+#include "firmware-host/comedi/comedi_player.hpp"
 #include "firmware-host/replay/replay_device.hpp"
 #include "firmware-host/sim/device/sim_device.hpp"
 #include "firmware-host/sim/planar/planar_device.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 using schema::Result;
 
-constexpr std::string_view kSimScheme = "sim:", kReplayScheme = "replay:";
+constexpr std::string_view kSimScheme = "sim:", kReplayScheme = "replay:", kComediScheme = "comedi:";
 
 // The largest value of the key: over a day with the shortest and fastest strokes.
 constexpr std::string_view kStrokesWithoutEnd = "strokes=1000000";
@@ -48,9 +49,9 @@ struct Scheme {
   schema::Result<std::unique_ptr<Device>> (*open)(const std::string& uri, std::string_view parameters);
 };
 
-constexpr Scheme kSchemes[] = {{"usb:", open_usb_device},        {"tty:", open_tty_device},
-                               {"comedi:", open_comedi_device},  {kPlanarScheme, open_planar_device},
-                               {kArmScheme, open_planar_device}, {"sim:", open_sim_device},
+constexpr Scheme kSchemes[] = {{"usb:", open_usb_device},           {"tty:", open_tty_device},
+                               {kComediScheme, open_comedi_device}, {kPlanarScheme, open_planar_device},
+                               {kArmScheme, open_planar_device},    {"sim:", open_sim_device},
                                {"replay:", open_replay_device}};
 
 std::string schemes() {
@@ -79,6 +80,14 @@ schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri) {
       schema::ErrorKind::usage, fmt::format("'{}' is not a device that can be opened", uri), "device",
       fmt::format("the transports are: {} (for example usb: or sim:surface=C,speed=50mm/s or replay:oak)",
                   schemes()));
+}
+
+Result<std::unique_ptr<Device>> open_device_to_play(const std::string& uri, bool without_watchdog) {
+  if (uri.starts_with(kComediScheme))
+    return open_comedi_to_play(uri, std::string_view(uri).substr(kComediScheme.size()), without_watchdog);
+  if (!without_watchdog) return open_device(uri);
+  return schema::fail(schema::ErrorKind::usage, "--no-watchdog is for a data acquisition card (comedi:)", uri,
+                      "leave it out: a board has a watchdog of its own");
 }
 
 }  // namespace tacto::firmware_host

@@ -19,6 +19,11 @@ namespace tacto::firmware_host {
 /// not_found: no such device, or not permitted; the transducer's file; as WireDevice::open().
 schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri);
 
+/// As open_device(), but a data acquisition card is opened to play, instead of being sampled by its own clock
+/// (open_comedi_to_play()). Errors: besides, usage: `without_watchdog` for another device.
+schema::Result<std::unique_ptr<Device>> open_device_to_play(const std::string& uri,
+                                                            bool without_watchdog = false);
+
 struct DeviceToRecord {
   std::unique_ptr<Device> device;
   bool ends_by_itself = false;  ///< a replay: its stream ends with the recording

@@ -8,9 +8,12 @@
 
 #include "capture/cli/verbs.hpp"
 #include "data-schema/report/report.hpp"
+#include "data-schema/wiring/wiring.hpp"
 
 namespace tacto::capture {
 namespace {
+
+constexpr std::string_view kComedi = "comedi:";
 
 struct DoctorOptions {
   DoctorRequest request;
@@ -49,8 +52,13 @@ schema::Result<cli::Report> run_doctor(const DoctorOptions& options) {
   report.add("checks", std::move(rows));
   std::vector<cli::Report> wired;
   for (const schema::Channel& channel : diagnosis.channels)
-    if (options.request.device.starts_with("comedi:")) wired.push_back(row_of(channel));
-  if (!wired.empty()) report.add("wiring", std::move(wired));
+    if (options.request.device.starts_with(kComedi)) wired.push_back(row_of(channel));
+  if (!wired.empty()) {
+    report.add("wiring", std::move(wired));
+    const auto wiring = schema::read_wiring(options.request.device.substr(kComedi.size()));
+    if (wiring)
+      for (auto& [what, from] : schema::wired_for_playback(*wiring)) report.add(what, std::move(from));
+  }
   report.add("can_record", first_failure == nullptr).add("next", diagnosis.next);
   if (first_failure != nullptr)
     report.ends_with(first_failure->name == "disk" ? first_failure->fault : schema::ErrorKind::device);

@@ -135,6 +135,7 @@ void check_device(Device& device, const DoctorRequest& request, std::vector<Chec
   checks.push_back(check_disk(request.folder, bytes_per_s(said)));
   checks.push_back(check_temporary_files(request.folder));
   checks.push_back(check_calibration(said, request));
+  if (request.device.starts_with("comedi:")) checks.push_back(check_playing(request.device));
 }
 
 void check_without_device(const schema::Error& why, const DoctorRequest& request,

@@ -53,7 +53,7 @@ enum class Health { works, warns, fails, skipped };
 
 struct Check {
   std::string name;  ///< "device", "permission", "firmware", "round trip", "real time", "disk",
-                     ///< "temporary files", "calibration"
+                     ///< "temporary files", "calibration"; of a data acquisition card also "playing"
   Health health = Health::works;
   std::string found;
   std::string remedy;  ///< the instruction to the user; empty if nothing is wrong
@@ -81,6 +81,9 @@ Check check_disk(const std::string& folder, double bytes_per_s);
 /// Removes the temporary files of killed runs from the folder; warns of files whose run may still be active
 /// on another machine.
 Check check_temporary_files(const std::string& folder);
+/// Whether a data acquisition card can also play, and up to which rate. It is opened to play: its output is
+/// set to 0 V. Does not fail, as a recording needs none of it.
+Check check_playing(const std::string& uri);
 Check check_calibration(const firmware_host::Capabilities& capabilities, const DoctorRequest& request);
 /// Whether the error says that a device is present that this user has no permission to open.
 bool is_denied(const schema::Error& why);

@@ -14,6 +14,8 @@
 #include "data-schema/files/leftover_files.hpp"
 #include "data-schema/recording/live_recording.hpp"
 #include "firmware-host/core/wire/frame.hpp"
+#include "firmware-host/link/client.hpp"
+#include "firmware-host/open_device.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -193,6 +195,24 @@ Check check_temporary_files(const std::string& folder) {
   found += fmt::format("{}{} of runs that may still be active, here or on another machine, the first {}",
                        found.empty() ? "" : "; ", size_in_words(kept), kept.front().path);
   return judged("temporary files", found, "if no such run is active, remove them: rm " + kept.front().path);
+}
+
+Check check_playing(const std::string& uri) {
+  auto device = firmware_host::open_device_to_play(uri);
+  std::string lacking, remedy;
+  if (!device &&
+      device.error().kind == schema::ErrorKind::unsuitable) {  // perhaps only a watchdog is missing
+    lacking = "; " + device.error().what, remedy = device.error().remedy;
+    device = firmware_host::open_device_to_play(uri, true);
+  }
+  if (!device && device.error().kind == schema::ErrorKind::unsuitable)
+    return {"playing", Health::skipped, device.error().what, device.error().remedy};
+  if (!device) return {"playing", Health::warns, schema::message(device.error()), device.error().remedy};
+  const wire::Welcome& about = (*device)->conversation()->description().welcome;
+  return judged("playing",
+                fmt::format("{:g} to {:g} ticks per second{}", 1e-3 * about.least_rate_millihertz,
+                            1e-3 * about.most_rate_millihertz, lacking),
+                remedy);
 }
 
 Check check_calibration(const firmware_host::Capabilities& said, const DoctorRequest& request) {

@@ -156,6 +156,7 @@ Result<cli::Report> describe_wiring(const std::string& path) {
     inputs.push_back(std::move(row));
   }
   report.add("inputs", std::move(inputs));
+  for (auto& [what, from] : wired_for_playback(*wiring)) report.add(what, std::move(from));
   add_text(report, "notes", wiring->notes);
   return report;
 }

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "firmware-host/comedi/comedi_device.hpp"
 
-#include <comedilib.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <bit>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <utility>
 
-#include "data-schema/base/quantity.hpp"
-#include "data-schema/wiring/wiring.hpp"
+#include "firmware-host/comedi/comedi_card.hpp"
 #include "firmware-host/link/code_range.hpp"
 
 namespace tacto::firmware_host {
@@ -33,95 +29,23 @@ constexpr double kSameRate = 1e-6;   // relative; below any difference that a ca
 constexpr int kMostTests =
     5;  // comedi(7): a command is accepted after two; more if the driver adapts it again
 
-struct CloseComedi {
-  void operator()(comedi_t* card) const { comedi_close(card); }
-};
-using Card = std::unique_ptr<comedi_t, CloseComedi>;
-
 double host_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-Result<Card> open_card(const schema::Wiring& wiring) {
-  comedi_loglevel(0);  // otherwise the library prints errors itself
-  errno = 0;
-  Card card(comedi_open(wiring.card.c_str()));
-  if (card) return card;
-  const int why = errno;
-  if (why == EACCES || why == EPERM)
-    return fail(ErrorKind::not_found, "this user may not open the card", wiring.card,
-                "add the user to the group of the file ('iocard' in Debian), then log in again");
-  return fail(ErrorKind::not_found, fmt::format("no card can be opened: {}", std::strerror(why)), wiring.card,
-              "load the card's comedi driver with modprobe, or correct 'card' in the wiring; NI X series "
-              "(PCIe-63xx) have no comedi driver");
-}
-
-std::string in_volts(double from_v, double to_v) {
-  return fmt::format("{:g} to {:g} V", from_v, to_v);
-}
-
-Result<unsigned> range_index(comedi_t* card, unsigned subdevice, const schema::WiredInput& input) {
-  std::vector<std::string> known;
-  const int ranges = comedi_get_n_ranges(card, subdevice, input.input);
-  for (int i = 0; i < ranges; ++i) {
-    const comedi_range* const range =
-        comedi_get_range(card, subdevice, input.input, static_cast<unsigned>(i));
-    if (range == nullptr || range->unit != UNIT_volt) continue;
-    if (range->min == input.range_from_v && range->max == input.range_to_v) return static_cast<unsigned>(i);
-    known.push_back(in_volts(range->min, range->max));
-  }
-  return fail(
-      ErrorKind::unsuitable,
-      fmt::format("input {} has no range {}", input.input, in_volts(input.range_from_v, input.range_to_v)),
-      {}, fmt::format("its ranges are: {}", fmt::join(known, ", ")));
-}
-
-// Codes are stored left-justified in 32 bits, as those of all devices.
-struct InputCodes {
-  unsigned shift = 0;
-  std::int32_t justified(std::uint32_t code) const {
-    return std::bit_cast<std::int32_t>((code << shift) ^ 0x80000000U);
-  }
-};
-
-schema::Channel channel_of(const schema::WiredInput& input, double code_v, unsigned shift) {
-  const double per_volt = input.per_volt.value_or(1);
-  schema::Channel channel;
-  channel.name = input.name;
-  channel.quantity = input.quantity;
-  channel.unit = input.per_volt
-                     ? std::string(schema::si_symbol(schema::quantity_named(input.quantity)->dimension))
-                     : "V";
-  const double step_v = code_v / std::ldexp(1.0, static_cast<int>(shift));
-  channel.scale = per_volt * step_v;
-  channel.offset = per_volt * (input.range_from_v + std::ldexp(step_v, 31)) + input.at_zero_volt;
-  const double ends[] = {per_volt * input.range_from_v + input.at_zero_volt,
-                         per_volt * input.range_to_v + input.at_zero_volt};
-  channel.range_min = std::min(ends[0], ends[1]);
-  channel.range_max = std::max(ends[0], ends[1]);
-  channel.source = fmt::format("input {}, {}, {}", input.input, input.reference,
-                               in_volts(input.range_from_v, input.range_to_v));
-  return channel;
-}
-
-unsigned reference_of(const std::string& name) {
-  return name == "differential" ? AREF_DIFF : name == "common" ? AREF_COMMON : AREF_GROUND;
 }
 
 class ComediDevice final : public Device {
  public:
   static Result<std::unique_ptr<Device>> open(const std::string& uri, const schema::Wiring& wiring) {
-    auto card = open_card(wiring);
+    auto card = open_comedi_card(wiring);
     TACTO_TRY(card);
     auto device = std::make_unique<ComediDevice>();
     device->card_ = std::move(*card);
     Capabilities& about = device->about_;
     about.uri = uri;
-    about.name = fmt::format("{} at {}", comedi_get_board_name(device->card_.get()), wiring.card);
+    about.name = comedi_card_name(device->card_.get(), wiring);
     about.serial = wiring.name;  // a card has none; the calibration belongs to the wiring
-    const int version = comedi_get_version_code(device->card_.get());
-    about.firmware = fmt::format("comedi {}.{}.{}, driver {}", version >> 16, (version >> 8) & 255,
-                                 version & 255, comedi_get_driver_name(device->card_.get()));
+    about.firmware = fmt::format("comedi {}, driver {}", comedi_version(device->card_.get()),
+                                 comedi_get_driver_name(device->card_.get()));
     about.clock = "device";
     about.transducer = wiring.transducer;
     TACTO_TRY(device->find_inputs(wiring));
@@ -190,21 +114,12 @@ class ComediDevice final : public Device {
     subdevice_ = static_cast<unsigned>(found);
     if ((flags & SDF_LSAMPL) != 0) sample_bytes_ = sizeof(lsampl_t);
     comedi_set_read_subdevice(card_.get(), subdevice_);  // where the card has several
-    const int count = comedi_get_n_channels(card_.get(), subdevice_);
-    for (const schema::WiredInput& input : wiring.inputs) {
-      if (std::cmp_greater_equal(input.input, count))
-        return fail(ErrorKind::unsuitable, fmt::format("the card has no input {}", input.input), wiring.card,
-                    fmt::format("its inputs are 0 to {}", count - 1));
-      auto range = range_index(card_.get(), subdevice_, input);
-      if (!range) return fail(range.error().kind, range.error().what, wiring.card, range.error().remedy);
-      const lsampl_t most = comedi_get_maxdata(card_.get(), subdevice_, input.input);
-      if (most == 0 || !std::has_single_bit(std::uint64_t{most} + 1))
-        return fail(ErrorKind::unsuitable, fmt::format("codes of input {} end at {}", input.input, most),
-                    wiring.card, "a converter whose codes have no whole number of bits is not supported");
-      codes_.push_back({static_cast<unsigned>(std::countl_zero(std::uint32_t{most}))});
-      inputs_.push_back(CR_PACK(input.input, *range, reference_of(input.reference)));
-      about_.channels.push_back(
-          channel_of(input, (input.range_to_v - input.range_from_v) / most, codes_.back().shift));
+    for (const schema::WiredInput& wired : wiring.inputs) {
+      auto input = find_comedi_input(card_.get(), wiring, subdevice_, wired);
+      TACTO_TRY(input);
+      chanlist_.push_back(input->packed);
+      about_.channels.push_back(input->channel);
+      inputs_.push_back(std::move(*input));
     }
     return {};
   }
@@ -242,7 +157,7 @@ class ComediDevice final : public Device {
 
   comedi_cmd command() {
     comedi_cmd command = planned_;
-    command.chanlist = inputs_.data();
+    command.chanlist = chanlist_.data();
     command.chanlist_len = static_cast<unsigned>(inputs_.size());
     return command;
   }
@@ -280,16 +195,16 @@ class ComediDevice final : public Device {
       std::uint32_t code =
           0;  // of the host's byte order, which is little-endian on all that Debian calls amd64 and arm64
       std::memcpy(&code, waiting_.data() + i * sample_bytes_, sample_bytes_);
-      interleaved[i] = codes_[i % channels].justified(code);
+      interleaved[i] = inputs_[i % channels].justified(code);
     }
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(frames * frame_bytes));
     return frames;
   }
 
-  Card card_;
+  ComediCard card_;
   unsigned subdevice_ = 0;
-  std::vector<unsigned> inputs_;  // packed with range and reference
-  std::vector<InputCodes> codes_;
+  std::vector<ComediInput> inputs_;
+  std::vector<unsigned> chanlist_;  // of the inputs
   std::size_t sample_bytes_ = sizeof(sampl_t);
   comedi_cmd planned_{};
   Capabilities about_;
@@ -303,10 +218,7 @@ class ComediDevice final : public Device {
 }  // namespace
 
 Result<std::unique_ptr<Device>> open_comedi_device(const std::string& uri, std::string_view parameters) {
-  if (parameters.empty())
-    return fail(ErrorKind::usage, "names no wiring", uri,
-                "give for example comedi:bench, with bench.wiring.json");
-  const auto wiring = schema::read_wiring(std::string(parameters));
+  const auto wiring = read_comedi_wiring(uri, parameters);
   TACTO_TRY(wiring);
   return ComediDevice::open(uri, *wiring);
 }

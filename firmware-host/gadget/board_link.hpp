@@ -13,43 +13,26 @@
 
 namespace tacto::firmware_host {
 
-// A queue of bytes to the host, with the places of other events between them.
-
-/// The event after a burst's bytes. All but `none` and `end` simulate faults, in tests.
-enum class BurstEnd : std::uint8_t {
-  none,    ///< more bytes may follow in the same transfer
-  end,     ///< the transfer ends here
-  stall,   ///< the endpoint stalls
-  unplug,  ///< the device disconnects from the bus
-};
+// A queue of bytes to the host.
 
 struct Burst {
   std::vector<std::uint8_t> bytes;
-  BurstEnd end = BurstEnd::none;
   bool last = false;  ///< the queue is empty after it
 };
 
 /// One thread writes, another reads.
 class BurstQueue {
  public:
-  void put(std::span<const std::uint8_t> bytes, BurstEnd end = BurstEnd::none);
-  /// The next bytes, up to `most` bytes or the first end; empty if nothing arrives within `wait`.
+  void put(std::span<const std::uint8_t> bytes);
+  /// The next bytes, at most `most`; empty if nothing arrives within `wait`.
   Burst take(std::size_t most, std::chrono::milliseconds wait);
   void clear();
   std::size_t waiting() const;
 
  private:
-  struct End {
-    std::uint64_t at = 0;  // number of all bytes before it
-    BurstEnd end = BurstEnd::none;
-  };
-  bool something() const { return !bytes_.empty() || !ends_.empty(); }
-
   mutable std::mutex mutex_;
   std::condition_variable came_;
   std::deque<std::uint8_t> bytes_;
-  std::deque<End> ends_;
-  std::uint64_t put_ = 0, taken_ = 0;
 };
 
 /// For the thread of the board; none of the calls but wait_until() waits.
@@ -58,7 +41,7 @@ class BoardLink {
   using Clock = std::chrono::steady_clock;
   virtual ~BoardLink() = default;
 
-  virtual void send(std::span<const std::uint8_t> bytes, BurstEnd end) = 0;
+  virtual void send(std::span<const std::uint8_t> bytes) = 0;
   /// The number of bytes that the cable has not taken yet.
   virtual std::size_t waiting() const = 0;
   /// Appends the received bytes.

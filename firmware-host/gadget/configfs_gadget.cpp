@@ -85,10 +85,6 @@ Result<std::string> choose_port(const std::string& target) {
                       fmt::format("the device ports are: {}", fmt::join(ports, ", ")));
 }
 
-Result<void> set_connected(const std::string& port, bool connected) {
-  return put(kPorts / port / "soft_connect", connected ? "connect" : "disconnect");
-}
-
 ConfigfsGadget::ConfigfsGadget(fs::path folder, std::string port)
     : folder_(std::move(folder)), port_(std::move(port)), instance_("tactograph-" + port_) {}
 

@@ -46,7 +46,4 @@ class ConfigfsGadget {
   std::string port_, instance_;
 };
 
-/// Disconnects from the bus, like an unplugged cable, or connects again. Errors: device.
-schema::Result<void> set_connected(const std::string& port, bool connected);
-
 }  // namespace tacto::firmware_host

@@ -73,35 +73,34 @@ void say(const std::string& words) {
   cli::write_message(fmt::format("tactograph-gadget: {}\n", words));
 }
 
-void run_loop(GadgetBoard& board, BoardLink& link, const GadgetHooks& hooks) {
-  const auto wrapped = hooks.wrap ? hooks.wrap(link) : nullptr;
-  GadgetLoop(board, wrapped ? *wrapped : link, say).run([] { return stop_asked != 0; });
+void run_loop(GadgetBoard& board, BoardLink& link) {
+  GadgetLoop(board, link, say).run([] { return stop_asked != 0; });
 }
 
 // Plugged in during this function. The link is destroyed after unplugging, so that it cannot block.
 Result<void> run_plugged(ConfigfsGadget& gadget, GadgetBoard& board, FunctionFs files,
-                         const GadgetOptions& options, const std::string& port, const GadgetHooks& hooks) {
-  UsbLink link(std::move(files), {port, hooks.stop_reading_after, say});
+                         const GadgetOptions& options, const std::string& port) {
+  UsbLink link(std::move(files), say);
   if (const auto bound = gadget.bind(); !bound) return bound;
   say(fmt::format("{} with serial {} on {}", options.board, board.serial(), port));
-  run_loop(board, link, hooks);
+  run_loop(board, link);
   gadget.unbind();
   return {};
 }
 
-Result<void> run_on_pty(GadgetBoard& board, const GadgetOptions& options, const GadgetHooks& hooks) {
+Result<void> run_on_pty(GadgetBoard& board, const GadgetOptions& options) {
   const auto link = PtyLink::open(options.pty);
   TACTO_TRY(link);
   stop_on_signals();
   say(fmt::format("{} with serial {}: tty:{}", options.board, board.serial(), options.pty));
-  run_loop(board, **link, hooks);
+  run_loop(board, **link);
   return {};
 }
 
-Result<void> run(const GadgetOptions& options, const GadgetHooks& hooks) {
+Result<void> run(const GadgetOptions& options) {
   auto board = make_gadget_board(options.board, options.serial);
   TACTO_TRY(board);
-  if (!options.pty.empty()) return run_on_pty(**board, options, hooks);
+  if (!options.pty.empty()) return run_on_pty(**board, options);
   const auto port = choose_port(options.udc);
   TACTO_TRY(port);
   auto gadget = ConfigfsGadget::create(
@@ -110,16 +109,16 @@ Result<void> run(const GadgetOptions& options, const GadgetHooks& hooks) {
   auto files = open_functionfs(gadget->instance());
   TACTO_TRY(files);
   stop_on_signals();
-  return run_plugged(*gadget, **board, std::move(*files), options, *port, hooks);
+  return run_plugged(*gadget, **board, std::move(*files), options, *port);
 }
 
-int run_with(std::span<const char* const> arguments, const GadgetHooks& hooks) {
+int run_with(std::span<const char* const> arguments) {
   const auto options = parse_gadget_options(arguments);
   if (options && options->help) {
     fmt::print("{}", gadget_help());
     return 0;
   }
-  const Result<void> done = options ? run(*options, hooks) : schema::forward_error(options);
+  const Result<void> done = options ? run(*options) : schema::forward_error(options);
   if (done) return 0;
   say(schema::message(done.error()));
   return schema::exit_code(done.error().kind);
@@ -159,10 +158,10 @@ It runs until Ctrl-C or SIGTERM, also after it was unplugged. On USB it needs ro
       usb::kTestVendor, usb::kTestProduct);
 }
 
-int run_gadget(std::span<const char* const> arguments, const GadgetHooks& hooks) {
+int run_gadget(std::span<const char* const> arguments) {
   schema::open_closed_descriptors();
   try {
-    return run_with(arguments, hooks);
+    return run_with(arguments);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "tactograph-gadget: %s\n", error.what());
     return 1;

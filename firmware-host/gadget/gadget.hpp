@@ -4,15 +4,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <memory>
-#include <optional>
 #include <span>
 #include <string>
 
 #include "data-schema/base/error.hpp"
 #include "firmware-host/core/firmware/usb_identity.hpp"
-#include "firmware-host/gadget/board_link.hpp"
 
 namespace tacto::firmware_host {
 
@@ -31,13 +27,7 @@ struct GadgetOptions {
 schema::Result<GadgetOptions> parse_gadget_options(std::span<const char* const> arguments);
 std::string gadget_help();
 
-/// What the program of the tests changes, which simulates faults of a device.
-struct GadgetHooks {
-  std::function<std::unique_ptr<BoardLink>(BoardLink& link)> wrap;  ///< the board gets this link instead
-  std::optional<std::uint64_t> stop_reading_after;                  ///< as UsbLink::Settings
-};
-
 /// The program, without its name in `arguments`; returns its exit code.
-int run_gadget(std::span<const char* const> arguments, const GadgetHooks& hooks = {});
+int run_gadget(std::span<const char* const> arguments);
 
 }  // namespace tacto::firmware_host

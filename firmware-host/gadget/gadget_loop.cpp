@@ -33,7 +33,7 @@ void GadgetLoop::exchange() {
   link_.take_received(board_.from_host());
   if (board_.from_host().size() > before) drive_.heard();
   board_.poll();
-  if (!board_.to_host().empty()) link_.send(board_.to_host(), BurstEnd::none);
+  if (!board_.to_host().empty()) link_.send(board_.to_host());
   board_.to_host().clear();
 }
 

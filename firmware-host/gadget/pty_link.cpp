@@ -54,12 +54,9 @@ PtyLink::~PtyLink() {
   ::unlink(path_.c_str());
 }
 
-void PtyLink::send(std::span<const std::uint8_t> bytes, BurstEnd end) {
+void PtyLink::send(std::span<const std::uint8_t> bytes) {
   to_host_.insert(to_host_.end(), bytes.begin(), bytes.end());
   write_some();
-  if (end != BurstEnd::unplug) return;
-  board_end_ = FileDescriptor();
-  to_host_.clear();
 }
 
 void PtyLink::write_some() {

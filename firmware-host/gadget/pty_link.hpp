@@ -12,8 +12,7 @@
 
 namespace tacto::firmware_host {
 
-/// For one thread. Bytes that the host does not read wait here. BurstEnd::unplug closes the port for good, as
-/// if the board were unplugged; the other ends have no meaning on a serial line.
+/// For one thread. Bytes that the host does not read wait here.
 class PtyLink final : public BoardLink {
  public:
   /// `path` becomes a symbolic link to the port, and is removed at the end. Errors: cannot_write: it exists,
@@ -23,7 +22,7 @@ class PtyLink final : public BoardLink {
   PtyLink& operator=(const PtyLink&) = delete;
   ~PtyLink() override;
 
-  void send(std::span<const std::uint8_t> bytes, BurstEnd end) override;
+  void send(std::span<const std::uint8_t> bytes) override;
   std::size_t waiting() const override { return to_host_.size(); }
   void take_received(std::vector<std::uint8_t>& bytes) override;
   void wait_until(Clock::time_point time) override;

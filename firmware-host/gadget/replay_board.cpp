@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -37,25 +36,6 @@ Result<void> check(const schema::Recording& recording) {
   return {};
 }
 
-double or_none(const std::optional<double>& value) {
-  return value.value_or(std::numeric_limits<double>::quiet_NaN());
-}
-
-wire::Channel channel_of(const schema::Channel& stored) {
-  wire::Channel channel;
-  put_text(channel.name, stored.name);
-  put_text(channel.quantity, stored.quantity);
-  put_text(channel.unit, stored.unit);
-  put_text(channel.source, stored.source);
-  put_text(channel.calibrated, stored.calibrated);
-  channel.scale = stored.scale;
-  channel.offset = stored.offset;
-  channel.range_min = or_none(stored.range_min);
-  channel.range_max = or_none(stored.range_max);
-  channel.native_rate_hz = or_none(stored.native_rate_hz);
-  return channel;
-}
-
 std::string name_of(const schema::Recording& recording) {
   return "replay of " + std::filesystem::path(recording.stem).filename().string();
 }
@@ -79,12 +59,6 @@ wire::Welcome replay_welcome(const schema::Recording& recording, const std::stri
     welcome.slew_limit_v_per_s = not_above(transducer->slew_limit_v_per_s);
   }
   return welcome;
-}
-
-std::vector<wire::Channel> replay_channels(const schema::RecordingHeader& header) {
-  std::vector<wire::Channel> channels;
-  for (const schema::Channel& stored : header.channels) channels.push_back(channel_of(stored));
-  return numbered(std::move(channels));
 }
 
 std::vector<wire::Note> replay_notes(const schema::Recording& recording) {
@@ -118,7 +92,7 @@ ReplayBoard::ReplayBoard(schema::Recording recording, schema::WavReader reader, 
       reader_(std::move(reader)),
       loop_(loop),
       welcome_(replay_welcome(recording_, serial)),
-      channels_(replay_channels(recording_.header)),
+      channels_(wire_channels(recording_.header.channels)),
       notes_(replay_notes(recording_)),
       frame_(channels_.size()) {
   if (const auto position = schema::find_channel(recording_.header, "position")) position_ = *position;

@@ -165,9 +165,9 @@ Result<FunctionFs> open_functionfs(const std::string& instance) {
   return open_files(mount);
 }
 
-UsbLink::UsbLink(FunctionFs files, Settings settings)
+UsbLink::UsbLink(FunctionFs files, std::function<void(const std::string&)> say)
     : files_(std::move(files)),
-      settings_(std::move(settings)),
+      say_(std::move(say)),
       events_thread_([this] { watch_events(); }),
       send_thread_([this] { send_bursts(); }),
       receive_thread_([this] { receive_bursts(); }) {}
@@ -177,8 +177,8 @@ UsbLink::~UsbLink() {
   for (std::thread* thread : {&events_thread_, &send_thread_, &receive_thread_}) thread->join();
 }
 
-void UsbLink::send(std::span<const std::uint8_t> bytes, BurstEnd end) {
-  if (up_) to_host_.put(bytes, end);
+void UsbLink::send(std::span<const std::uint8_t> bytes) {
+  if (up_) to_host_.put(bytes);
 }
 
 void UsbLink::take_received(std::vector<std::uint8_t>& bytes) {
@@ -222,20 +222,20 @@ void UsbLink::come_up() {
   const bool known = ::ioctl(files_.in.get(), FUNCTIONFS_ENDPOINT_DESC, &endpoint) == 0;
   packet_ = known ? endpoint.wMaxPacketSize : usb::kHighSpeedPacket;
   up_ = true;
-  settings_.say(fmt::format("a host has configured the device, {} speed", speed_of(packet_)));
+  say_(fmt::format("a host has configured the device, {} speed", speed_of(packet_)));
 }
 
 void UsbLink::go_down(const char* why) {
   if (!up_.exchange(false)) return;
   to_host_.clear();
-  settings_.say(why);
+  say_(why);
 }
 
 // FunctionFS stalls a request that is answered in the wrong direction.
 void UsbLink::refuse_setup(bool in) const {
   const ssize_t refused =
       in ? ::read(files_.events.get(), nullptr, 0) : ::write(files_.events.get(), nullptr, 0);
-  if (refused >= 0) settings_.say("an unknown request was not refused");
+  if (refused >= 0) say_("an unknown request was not refused");
 }
 
 void UsbLink::send_bursts() {
@@ -244,8 +244,6 @@ void UsbLink::send_bursts() {
     if (!burst.bytes.empty() && !send_burst(burst)) {
       to_host_.clear();
       std::this_thread::sleep_for(kPollInterval);
-    } else if (burst.end > BurstEnd::end) {
-      do_end(burst.end);
     }
   }
 }
@@ -255,18 +253,7 @@ bool UsbLink::send_burst(const Burst& burst) {
   const auto size = static_cast<ssize_t>(burst.bytes.size());
   if (::write(files_.in.get(), burst.bytes.data(), burst.bytes.size()) != size) return false;
   const bool whole_packets = burst.bytes.size() % packet_ == 0;
-  const bool ends = burst.end == BurstEnd::end || (burst.end == BurstEnd::none && burst.last);
-  return !whole_packets || !ends || ::write(files_.in.get(), burst.bytes.data(), 0) == 0;
-}
-
-// FunctionFS halts an endpoint that is used in the wrong direction.
-void UsbLink::do_end(BurstEnd end) {
-  std::uint8_t byte = 0;
-  if (end == BurstEnd::stall && ::read(files_.in.get(), &byte, 1) >= 0)
-    settings_.say("the endpoint did not stall");
-  if (end != BurstEnd::unplug) return;
-  if (const auto gone = set_connected(settings_.port, false); !gone)
-    settings_.say(schema::message(gone.error()));
+  return !whole_packets || !burst.last || ::write(files_.in.get(), burst.bytes.data(), 0) == 0;
 }
 
 // A host that sends faster than the board reads has to wait.
@@ -278,14 +265,12 @@ bool UsbLink::input_is_full() {
 // If no host has configured the device, the endpoint returns an error at once.
 void UsbLink::receive_bursts() {
   std::array<std::uint8_t, kTransfer> bytes{};
-  for (std::uint64_t transfers = 0; !stopping_;) {
-    const bool deaf = settings_.stop_reading_after && transfers >= *settings_.stop_reading_after;
-    const ssize_t got = deaf || input_is_full() ? -1 : ::read(files_.out.get(), bytes.data(), bytes.size());
+  while (!stopping_) {
+    const ssize_t got = input_is_full() ? -1 : ::read(files_.out.get(), bytes.data(), bytes.size());
     if (got < 0) {
       std::this_thread::sleep_for(kPollInterval);
       continue;
     }
-    ++transfers;
     const std::lock_guard lock(mutex_);
     from_host_.insert(from_host_.end(), bytes.begin(), bytes.begin() + got);
     fresh_ = true;

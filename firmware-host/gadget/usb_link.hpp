@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -43,19 +42,14 @@ schema::Result<FunctionFs> open_functionfs(const std::string& instance);
 /// one.
 class UsbLink final : public BoardLink {
  public:
-  struct Settings {
-    std::string port;                                 ///< the device port's name
-    std::optional<std::uint64_t> stop_reading_after;  ///< for tests: reads only this number of transfers
-    std::function<void(const std::string&)> say;      ///< events as text for the user; called from any thread
-  };
-
-  UsbLink(FunctionFs files, Settings settings);
+  /// `say` gets events as text for the user, from any thread.
+  UsbLink(FunctionFs files, std::function<void(const std::string&)> say);
   UsbLink(const UsbLink&) = delete;
   UsbLink& operator=(const UsbLink&) = delete;
   /// Precondition: the gadget is unbound, so that no thread blocks.
   ~UsbLink() override;
 
-  void send(std::span<const std::uint8_t> bytes, BurstEnd end) override;
+  void send(std::span<const std::uint8_t> bytes) override;
   std::size_t waiting() const override { return to_host_.waiting(); }
   void take_received(std::vector<std::uint8_t>& bytes) override;
   void wait_until(Clock::time_point time) override;
@@ -68,12 +62,11 @@ class UsbLink final : public BoardLink {
   void refuse_setup(bool in) const;
   void send_bursts();
   bool send_burst(const Burst& burst);
-  void do_end(BurstEnd end);
   bool input_is_full();
   void receive_bursts();
 
   FunctionFs files_;
-  Settings settings_;
+  std::function<void(const std::string&)> say_;
   std::atomic<bool> stopping_ = false, up_ = false;
   std::atomic<std::size_t> packet_ = 0;  // bytes, at the current speed
   BurstQueue to_host_;

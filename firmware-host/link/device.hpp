@@ -35,6 +35,7 @@ struct Capabilities {
   /// transducer, which is not part of the device.
   std::vector<schema::Channel> channels;
   std::optional<schema::Transducer> transducer;
+  std::string transducer_file;        ///< for read_transducer(), of a device that speaks the wire
   std::string surface;                ///< the surface on the tray, if the device reports it
   std::vector<std::string> warnings;  ///< of the device; each recording stores them, too
 };

@@ -77,6 +77,7 @@ Result<Capabilities> capabilities_of(const Description& description, std::string
     auto transducer = schema::read_transducer(name);
     TACTO_TRY(transducer);
     capabilities.transducer = std::move(*transducer);
+    capabilities.transducer_file = name;
   }
   capabilities.uri = std::move(uri);
   capabilities.name = description.welcome.name;

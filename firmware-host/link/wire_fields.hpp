@@ -9,8 +9,10 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "data-schema/recording/recording.hpp"
 #include "firmware-host/core/wire/device_messages.hpp"
 
 namespace tacto::firmware_host {
@@ -41,19 +43,39 @@ inline std::uint32_t millihertz(double rate_hz) {
   return static_cast<std::uint32_t>(std::llround(rate_hz * 1e3));
 }
 
+/// Sets the index in each message of a list.
+template <class Message>
+std::vector<Message> numbered(std::vector<Message> messages) {
+  for (std::size_t i = 0; i < messages.size(); ++i) messages[i].index = static_cast<std::uint8_t>(i);
+  return messages;
+}
+
+/// The channels of a board in this process.
+inline std::vector<wire::Channel> wire_channels(const std::vector<schema::Channel>& channels) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<wire::Channel> messages;
+  for (const schema::Channel& channel : channels) {
+    wire::Channel& message = messages.emplace_back();
+    put_text(message.name, channel.name);
+    put_text(message.quantity, channel.quantity);
+    put_text(message.unit, channel.unit);
+    put_text(message.source, channel.source);
+    put_text(message.calibrated, channel.calibrated);
+    message.scale = channel.scale;
+    message.offset = channel.offset;
+    message.range_min = channel.range_min.value_or(kNone);
+    message.range_max = channel.range_max.value_or(kNone);
+    message.native_rate_hz = channel.native_rate_hz.value_or(kNone);
+  }
+  return numbered(std::move(messages));
+}
+
 /// What the axis of this name (x, y, z) moves along, and the reverse.
 inline wire::AxisAlong along_of(std::string_view name) {
   return name == "x" ? wire::AxisAlong::x : name == "y" ? wire::AxisAlong::y : wire::AxisAlong::z;
 }
 inline std::string name_of(wire::AxisAlong along) {
   return along == wire::AxisAlong::x ? "x" : along == wire::AxisAlong::y ? "y" : "z";
-}
-
-/// Sets the index in each message of a list.
-template <class Message>
-std::vector<Message> numbered(std::vector<Message> messages) {
-  for (std::size_t i = 0; i < messages.size(); ++i) messages[i].index = static_cast<std::uint8_t>(i);
-  return messages;
 }
 
 }  // namespace tacto::firmware_host

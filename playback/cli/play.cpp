@@ -40,8 +40,9 @@ struct PlayVerbOptions {
 
 void declare_what(CLI::App& app, PlayOptions& o) {
   app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
-  app.add_option("-d,--device", o.device_uri,
-                 "Device: usb:, sim:surface=C, sim:planar,device=sandpaper-1990,hand=minsky-radial ...")
+  app.add_option(
+         "-d,--device", o.device_uri,
+         "Device: usb:, comedi:NAME, sim:surface=C, sim:planar,device=sandpaper-1990,hand=minsky-radial ...")
       ->required();
   app.add_option("--transducer", o.transducer, "A preset or NAME.transducer.json; default: the device's own");
   cli::declare_unfit_transducer(app, o.program.unfit_transducer);
@@ -66,6 +67,9 @@ void declare_loop(CLI::App& app, PlayVerbOptions& verb) {
       cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Tick rate of the drive");
   cli::add_choice<bool>(app, "--loop", o.loop_here, {{"device", false}, {"host", true}},
                         "What closes the loop: the device, or the real-time thread of this computer (host)");
+  app.add_flag("--no-watchdog", o.without_watchdog,
+               "On comedi:, play without the watchdog of the wiring: the card keeps its last voltage if this "
+               "program dies. The session keeps this option");
   app.add_flag_callback(
       "--no-look-ahead", [&o] { o.prepare.look_ahead = false; },
       "Read the texture at the finger's present position, without compensation of the inverse's delay");
@@ -139,6 +143,8 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, const cli::
   add_power(report, o.session, {o.prepare.band.low_hz, outcome.passes_to_hz});
   add_played(report, outcome);
   if (outcome.decision) add_decision(report, *outcome.decision, explain);
+  if (o.without_watchdog)
+    cli::warn("played without a watchdog: a card keeps its last voltage if the program dies");
   cli::warn_grouped(outcome.notes);
   if (outcome.off_note) cli::warn(*outcome.off_note);
   return add_end(std::move(report), outcome);
@@ -240,8 +246,8 @@ cli::Action declare_play(CLI::App& app) {
       app.get_footer() +
       "\nCtrl-C ends the playback before its time: the drive falls to zero within 10 ms without a step, "
       "the session is complete, and the report is that of any other end (exit code 0). A second "
-      "Ctrl-C ends the program at once; then the device ramps to zero by itself, and 'session' and "
-      "'replay' read the session up to its last ticks.");
+      "Ctrl-C ends the program at once; then the device ramps to zero by itself (a card on comedi: needs its "
+      "watchdog for this), and 'session' and 'replay' read the session up to its last ticks.");
   return [options, &app]() -> Result<Report> {
     TACTO_TRY(check_scene_options(app, *options));
     return run_play(*options);

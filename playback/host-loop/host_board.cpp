@@ -133,10 +133,10 @@ core::Hal HostBoard::hal() {
     of(b).age_ = 0;
   };
   hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
-    return of(b).from_player_.take({bytes, size});
+    return of(b).link_.to_core.take({bytes, size});
   };
   hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
-    return of(b).to_player_.put({bytes, size});
+    return of(b).link_.from_core.put({bytes, size});
   };
   hal.restart = [](void*) noexcept {};
   return hal;

@@ -19,6 +19,7 @@
 #include "firmware-host/core/kernel/ring.hpp"
 #include "firmware-host/link/client.hpp"
 #include "firmware-host/link/hosted_board.hpp"
+#include "firmware-host/link/memory_transport.hpp"
 #include "playback/host-loop/tray_samples.hpp"
 
 namespace tacto::playback {
@@ -131,35 +132,6 @@ class SensorTrack {
   std::uint32_t first_ = 0, next_ = 0;  // of the player's thread
 };
 
-/// Bytes from one thread to another, without a lock. For one writing thread and one reading thread; neither
-/// waits. Safe in the tick.
-template <std::size_t kSize>
-class ByteRing {
-  static_assert((kSize & (kSize - 1)) == 0);
-
- public:
-  /// Returns how many bytes had space.
-  std::size_t put(std::span<const std::uint8_t> bytes) noexcept {
-    const std::size_t head = head_.load(std::memory_order_relaxed);
-    const std::size_t room = kSize - (head - tail_.load(std::memory_order_acquire));
-    const std::size_t count = std::min(room, bytes.size());
-    for (std::size_t i = 0; i < count; ++i) bytes_[(head + i) % kSize] = bytes[i];
-    head_.store(head + count, std::memory_order_release);
-    return count;
-  }
-  std::size_t take(std::span<std::uint8_t> bytes) noexcept {
-    const std::size_t tail = tail_.load(std::memory_order_relaxed);
-    const std::size_t count = std::min(head_.load(std::memory_order_acquire) - tail, bytes.size());
-    for (std::size_t i = 0; i < count; ++i) bytes[i] = bytes_[(tail + i) % kSize];
-    tail_.store(tail + count, std::memory_order_release);
-    return count;
-  }
-
- private:
-  std::array<std::uint8_t, kSize> bytes_{};
-  std::atomic<std::size_t> head_{0}, tail_{0};
-};
-
 /// The drive of a tick, and the tick's time.
 struct TimedDrive {
   std::int64_t time_ns = 0;
@@ -201,8 +173,7 @@ class HostBoard {
       codes_[i].store(codes[i], std::memory_order_relaxed);
     coded_.store(true, std::memory_order_release);
   }
-  ByteRing<65536>& from_player() noexcept { return from_player_; }
-  ByteRing<262144>& to_player() noexcept { return to_player_; }
+  firmware_host::CoreLink& link() noexcept { return link_; }
   core::Ring<TimedDrive, 1024>& drives() noexcept { return drives_; }
   bool wants_drive() const noexcept { return wants_drive_.load(std::memory_order_acquire); }
   /// For one of the last 16,384 ticks since arming.
@@ -227,8 +198,7 @@ class HostBoard {
   CountTrack counts_;
   SensorTrack sensor_;
   std::atomic<bool> enabled_{false}, wants_drive_{false}, coded_{false};
-  ByteRing<65536> from_player_;
-  ByteRing<262144> to_player_;
+  firmware_host::CoreLink link_;
   core::Ring<TimedDrive, 1024> drives_;
   std::array<std::atomic<std::int32_t>, kLatenesses> lateness_{};
   std::array<std::atomic<std::int64_t>, kLatenesses> dues_{};

@@ -10,7 +10,9 @@
 
 #include "data-schema/base/statistics.hpp"
 #include "firmware-host/link/awake_cores.hpp"
+#include "firmware-host/link/memory_transport.hpp"
 #include "firmware-host/link/realtime_priority.hpp"
+#include "firmware-host/link/tick_clock.hpp"
 #include "firmware-host/link/wire_fields.hpp"
 #include "firmware-host/link/wire_words.hpp"
 #include "playback/host-loop/tray_samples.hpp"
@@ -19,6 +21,7 @@
 namespace tacto::playback {
 namespace {
 
+using firmware_host::TickClock;
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
@@ -29,32 +32,6 @@ constexpr double kQueueS = 4e-3;  // drives queued on the device, for as long as
 constexpr float kDeviceReleaseS = 0.01F;
 constexpr int kLooks = 100;
 constexpr double kQueueShare = 0.2, kFollowS = 0.5, kMostLonger = 5e-3;
-
-// The player's transport: bytes in memory.
-class LoopTransport final : public firmware_host::Transport {
- public:
-  explicit LoopTransport(HostBoard& board) : board_(board) {}
-  Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override {
-    for (const double end_s = now_s() + timeout_s;;) {
-      if (const std::size_t got = board_.to_player().take(bytes); got > 0) return got;
-      if (now_s() >= end_s) return std::size_t{0};
-      std::this_thread::sleep_for(std::chrono::microseconds(200));
-    }
-  }
-  Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s) override {
-    for (const double end_s = now_s() + timeout_s; !bytes.empty();) {
-      bytes = bytes.subspan(board_.from_player().put(bytes));
-      if (!bytes.empty() && now_s() >= end_s)
-        return fail(ErrorKind::device, "the real-time thread accepts no data", "host loop");
-      if (!bytes.empty()) std::this_thread::sleep_for(std::chrono::microseconds(200));
-    }
-    return {};
-  }
-  double now_s() override { return 1e-9 * static_cast<double>(TickClock::now_ns()); }
-
- private:
-  HostBoard& board_;
-};
 
 Result<std::size_t> position_channel(const firmware_host::Description& about) {
   for (std::size_t i = 0; i < about.channels.size(); ++i)
@@ -114,7 +91,7 @@ HostLoop::~HostLoop() {
 }
 
 std::unique_ptr<firmware_host::Transport> HostLoop::transport() {
-  return std::make_unique<LoopTransport>(*board_);
+  return std::make_unique<firmware_host::MemoryTransport>(board_->link(), "host loop");
 }
 
 std::string HostLoop::latency_words() const {

@@ -13,7 +13,6 @@
 #include "firmware-host/link/transport.hpp"
 #include "playback/host-loop/host_board.hpp"
 #include "playback/host-loop/loop_view.hpp"
-#include "playback/host-loop/tick_clock.hpp"
 #include "playback/host-loop/time_histogram.hpp"
 
 namespace tacto::playback {

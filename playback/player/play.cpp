@@ -50,7 +50,7 @@ Result<void> check_play_options(const std::optional<double>& time_s, const std::
 
 Result<std::string> transducer_for(const PlayOptions& options, const firmware_host::Capabilities& about) {
   if (!options.transducer.empty()) return options.transducer;
-  if (about.transducer) return about.transducer->name;
+  if (about.transducer) return about.transducer_file;
   return fail(ErrorKind::usage, "the device does not report its transducer", about.uri,
               "name it with --transducer");
 }
@@ -245,10 +245,12 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   if (options.finger_path)
     script = FingerScript{*options.finger_path, options.path_repeated,
                           options.loop_here || options.begins_at.has_value()};
-  auto device = open_player_device(options.device_uri, script);
+  auto device = open_player_device(options.device_uri, script, options.without_watchdog);
   TACTO_TRY(device);
   PlayerOptions player_options;
   player_options.full_queue = device->full_queue();
+  if (options.without_watchdog)
+    player_options.note = "--no-watchdog: the card keeps its last voltage if the program dies";
   const auto here = loop_of(options, *device, player_options);
   TACTO_TRY(here);
   const auto player = Player::make(*here ? *here->client : *device->client, device->uri, player_options);
@@ -263,7 +265,7 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
     outcome.rests_from_s = rest_from(options.finger_path->duration_s(), outcome.asked_s);
   TACTO_TRY((*player)->load(std::move(*program)));
   TACTO_TRY((*player)->gain(options.gain));
-  if (*here) lock_memory();
+  if (device->device->is_real_time()) lock_memory();  // a real-time thread of this process may tick
   const Playing playing{*device, *here, **player, {}, options.begins_at, options.steer};
   TACTO_TRY(play_through(playing, options.session, stop_asked, progress, outcome));
   if (*here) outcome.looped = looped_by(*here->loop);

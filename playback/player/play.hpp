@@ -22,6 +22,8 @@ struct PlayOptions {
   std::optional<double> time_s;           ///< default: as long as the finger's path, or 10 s
   double gain = 1;
   bool loop_here = false;  ///< closed by this computer, on a device that keeps time
+  /// Of a data acquisition card: plays without the watchdog of its wiring. The session keeps this.
+  bool without_watchdog = false;
   PrepareOptions prepare;  ///< rate, inverse, delay ...; gain, ends, encoder and limits are set later
   std::string session;     ///< its file
   /// On a device that keeps time, play begins at this time, or as soon as the texture is on the device. An

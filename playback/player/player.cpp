@@ -269,6 +269,7 @@ Result<void> Player::arm(const std::string& session_path) {
     return done;
   }
   session_path_ = session_path;
+  if (!options_.note.empty()) recorder_->event({0, steady_ns(), options_.note});
   if (forces_)
     for (const HeldLayer& layer : forces_->held) recorder_->event({0, steady_ns(), held_words(layer)});
   if (const auto streams = options_.loop != nullptr ? Result<void>() : tray_.begin_stream(); !streams)

@@ -33,6 +33,7 @@ struct PlayerOptions {
   double most_late = 0.2;    ///< part of the ticks within a second; a larger part is a fault
   bool tell_limits = false;  ///< live, by a second kernel on the recorder's thread (live_limits.hpp)
   LoopView* loop = nullptr;  ///< of a loop on this computer; none: the device closes it
+  std::string note;          ///< an event of each session, at its beginning; empty: none
 };
 
 struct PlayerStatus {

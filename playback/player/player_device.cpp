@@ -98,9 +98,10 @@ struct ScriptedDevice {
   std::function<void()> begin_path;
 };
 
-Result<ScriptedDevice> open_scripted(const std::string& uri, const FingerScript& script) {
-  if (!uri.starts_with(kSimScheme)) {
-    TACTO_TRY(firmware_host::open_device(uri));
+Result<ScriptedDevice> open_scripted(const std::string& uri, const FingerScript& script,
+                                     bool without_watchdog) {
+  if (!uri.starts_with(kSimScheme) || without_watchdog) {
+    TACTO_TRY(firmware_host::open_device_to_play(uri, without_watchdog));
     return fail(ErrorKind::unsuitable, "only an emulated finger follows a path", uri,
                 "leave the finger's path out, or play on sim:");
   }
@@ -117,9 +118,10 @@ Result<ScriptedDevice> open_scripted(const std::string& uri, const FingerScript&
   return scripted;
 }
 
-Result<ScriptedDevice> open_with(const std::string& uri, const std::optional<FingerScript>& script) {
-  if (script) return open_scripted(uri, *script);
-  auto device = firmware_host::open_device(uri);
+Result<ScriptedDevice> open_with(const std::string& uri, const std::optional<FingerScript>& script,
+                                 bool without_watchdog) {
+  if (script) return open_scripted(uri, *script, without_watchdog);
+  auto device = firmware_host::open_device_to_play(uri, without_watchdog);
   TACTO_TRY(device);
   return ScriptedDevice{std::move(*device), {}};
 }
@@ -158,8 +160,9 @@ Result<std::optional<FingerScript>> read_finger_script(const std::string& file) 
   return std::optional(FingerScript{std::move(*path), true});
 }
 
-Result<PlayerDevice> open_player_device(const std::string& uri, const std::optional<FingerScript>& script) {
-  auto opened = open_with(uri, script);
+Result<PlayerDevice> open_player_device(const std::string& uri, const std::optional<FingerScript>& script,
+                                        bool without_watchdog) {
+  auto opened = open_with(uri, script, without_watchdog);
   TACTO_TRY(opened);
   auto& device = opened->device;
   firmware_host::Client* const client = device->conversation();

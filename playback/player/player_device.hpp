@@ -55,11 +55,12 @@ struct PlayerDevice {
   FullQueue full_queue() const { return device->is_real_time() ? FullQueue::lose : FullQueue::wait; }
 };
 
-/// Opens by URI (see open_device), and locks a device that other programs could open too. A script is for
-/// `sim:` only. Errors: as open_device; unsuitable: a device without playback (a replay), a script for a real
-/// one; another program plays on it.
+/// Opens by URI (see open_device_to_play), and locks a device that other programs could open too. A script is
+/// for `sim:` only. Errors: as open_device_to_play; unsuitable: a device without playback (a replay), a
+/// script for a real one; another program plays on it.
 schema::Result<PlayerDevice> open_player_device(const std::string& uri,
-                                                const std::optional<FingerScript>& script);
+                                                const std::optional<FingerScript>& script,
+                                                bool without_watchdog = false);
 
 /// A force device, as its file describes it, or as it describes itself.
 struct ForceDevice {

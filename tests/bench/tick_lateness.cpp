@@ -8,12 +8,14 @@
 
 #include "firmware-host/link/awake_cores.hpp"
 #include "firmware-host/link/realtime_priority.hpp"
-#include "playback/host-loop/tick_clock.hpp"
+#include "firmware-host/link/tick_clock.hpp"
 #include "playback/host-loop/time_histogram.hpp"
 #include "tests/firmware-host/kernel_workload.hpp"
 
 namespace tacto::playback {
 namespace {
+
+using firmware_host::TickClock;
 
 struct Lateness {
   TimeHistogram late, work;

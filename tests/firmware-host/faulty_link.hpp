@@ -6,10 +6,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "data-schema/base/error.hpp"
@@ -80,26 +84,36 @@ inline schema::Result<FaultPlan> parse_fault_plan(std::string_view text) {
   return plan;
 }
 
+/// What happens to the cable itself; it depends on the kind of link. The bytes before it have been sent.
+/// After `unplug` the inner link is not used any more.
+struct CableFaults {
+  std::function<void()> stall, unplug;
+};
+
 /// Passes frames from the board to a link, with the faults of a plan.
 class FaultyLink final : public firmware_host::BoardLink {
  public:
-  FaultyLink(BoardLink& inner, const FaultPlan& plan) : inner_(inner), plan_(plan) {}
+  FaultyLink(BoardLink& inner, const FaultPlan& plan, CableFaults cable = {})
+      : inner_(inner), plan_(plan), cable_(std::move(cable)) {}
 
   /// Precondition: whole frames.
-  void send(std::span<const std::uint8_t> frames, firmware_host::BurstEnd) override {
+  void send(std::span<const std::uint8_t> frames) override {
     while (!frames.empty()) {
       const std::size_t size = wire::kHeaderSize + header_of(frames).length + wire::kCheckSize;
       send_frame(frames.first(size));
       frames = frames.subspan(size);
     }
   }
-  std::size_t waiting() const override { return inner_.waiting(); }
-  void take_received(std::vector<std::uint8_t>& bytes) override { inner_.take_received(bytes); }
-  void wait_until(Clock::time_point time) override { inner_.wait_until(time); }
+  std::size_t waiting() const override { return gone_ ? 0 : inner_.waiting(); }
+  void take_received(std::vector<std::uint8_t>& bytes) override {
+    if (!gone_) inner_.take_received(bytes);
+  }
+  void wait_until(Clock::time_point time) override {
+    if (gone_) return std::this_thread::sleep_until(time);
+    inner_.wait_until(time);
+  }
 
  private:
-  using BurstEnd = firmware_host::BurstEnd;
-
   static wire::FrameHeader header_of(std::span<const std::uint8_t> frame) {
     wire::FrameHeader header;
     wire::read_header(frame.data(), header);
@@ -111,9 +125,18 @@ class FaultyLink final : public firmware_host::BoardLink {
   bool falls_on(const std::optional<std::uint64_t>& every) const { return every && samples_ % *every == 0; }
 
   void send_frame(std::span<const std::uint8_t> frame) {
-    if (plan_.silent_after && frames_ >= *plan_.silent_after) return;
-    if (frames_ == plan_.unplug_after) inner_.send(frame.first(frame.size() / 2), BurstEnd::unplug);
-    if (frames_ == plan_.stall_after) inner_.send({}, BurstEnd::stall);
+    if (gone_ || (plan_.silent_after && frames_ >= *plan_.silent_after)) return;
+    if (frames_ == plan_.unplug_after) {
+      inner_.send(frame.first(frame.size() / 2));
+      let_out();
+      cable_.unplug();
+      gone_ = true;
+      return;
+    }
+    if (frames_ == plan_.stall_after) {
+      let_out();
+      cable_.stall();
+    }
     ++frames_;
     std::vector<std::uint8_t> bytes(frame.begin(), frame.end());
     if (plan_.major) claim_version(bytes);
@@ -144,16 +167,26 @@ class FaultyLink final : public firmware_host::BoardLink {
   }
 
   void emit(std::span<const std::uint8_t> bytes) {
-    if (!plan_.packet) return inner_.send(bytes, BurstEnd::none);
+    if (!plan_.packet) return inner_.send(bytes);
     while (!bytes.empty()) {
       const std::size_t size = std::min<std::size_t>(bytes.size(), *plan_.packet);
-      inner_.send(bytes.first(size), BurstEnd::end);
+      let_out();
+      inner_.send(bytes.first(size));
       bytes = bytes.subspan(size);
     }
   }
 
+  // A link ends its transfer when nothing waits. A second at most: the host may not read.
+  void let_out() {
+    const auto latest = Clock::now() + std::chrono::seconds(1);
+    while (inner_.waiting() > 0 && Clock::now() < latest)
+      inner_.wait_until(Clock::now() + std::chrono::milliseconds(1));
+  }
+
   BoardLink& inner_;
   FaultPlan plan_;
+  CableFaults cable_;
+  bool gone_ = false;
   std::uint64_t frames_ = 0, samples_ = 0;
 };
 

@@ -20,9 +20,7 @@ namespace tacto::tests {
 class BootingLink final : public firmware_host::BoardLink {
  public:
   BootingLink(BoardLink& inner, int hellos) : inner_(inner), hellos_(hellos) {}
-  void send(std::span<const std::uint8_t> bytes, firmware_host::BurstEnd end) override {
-    inner_.send(bytes, end);
-  }
+  void send(std::span<const std::uint8_t> bytes) override { inner_.send(bytes); }
   std::size_t waiting() const override { return inner_.waiting(); }
   void wait_until(Clock::time_point time) override { inner_.wait_until(time); }
   void take_received(std::vector<std::uint8_t>& bytes) override {
@@ -51,7 +49,7 @@ class PtyBoard {
         board_(firmware_host::make_gadget_board(board, "").value()),
         link_(firmware_host::PtyLink::open(path).value()),
         booting_(*link_, deaf_hellos),
-        faulty_(booting_, parse_fault_plan(faults).value()),
+        faulty_(booting_, parse_fault_plan(faults).value(), {[] {}, [this] { link_.reset(); }}),
         thread_([this] {
           firmware_host::GadgetLoop(*board_, faulty_, [](const std::string&) {}).run([this] {
             return stop_.load();

@@ -15,8 +15,10 @@ GOOD = {
         {"input": 0, "quantity": "tangential_force", "range_v": [-5, 5], "reference": "differential"},
         {"input": 2, "quantity": "position", "range_v": [-10, 10], "reference": "ground", "per_volt": 0.002, "at_zero_volt": 0.01},
     ],
+    "output": {"output": 0, "range_v": [-10, 10]}, "watchdog": {"line": 2, "subdevice": 3},
     "transducer": "wiertlewski2011",
 }
+ENCODER = {"counter": 1, "step_m": 1e-6}
 
 # What is changed (None removes it), where the error has to be, and the exit code.
 REFUSED = [
@@ -32,6 +34,13 @@ REFUSED = [
     (("inputs", 0, "at_zero_volt"), 1, "#/inputs/0/at_zero_volt", 5),
     (("inputs",), [], "#/inputs", 4),
     (("transducer",), None, "#/inputs/0", 5),
+    (("output", "range_v"), [-10, 2], "#/output/range_v", 5),
+    (("output", "range_v"), [0, 10], "#/output/range_v", 5),
+    (("output", "output"), -1, "#/output/output", 4),
+    (("output", "limit_v"), 5, "#/output", 4),
+    (("encoder",), ENCODER, "#/inputs/1/name", 5),
+    (("encoder",), {**ENCODER, "step_m": 0}, "#/encoder/step_m", 4),
+    (("watchdog", "line"), None, "#/watchdog", 4),
     (("transducer",), "nosuch", "nosuch", 3),
     (("rate_hz",), 0, "#/rate_hz", 4),
     (("card",), "comedi0", "#/card", 4),
@@ -66,7 +75,9 @@ def each_fault_has_its_place():
 
 def described_and_valid():
     write(GOOD)
-    inputs = tacto.run_json("info", "bench")["inputs"]
+    said = tacto.run_json("info", "bench")
+    inputs = said["inputs"]
+    assert said["drive"].split(",")[0] == "output 0" and said["watchdog"] == "line 2 of subdevice 3" and "encoder" not in said, said
     assert [(row["input"], row["channel"], row["range_to_v"]) for row in inputs] == [(0, "tangential_force", 5), (2, "position", 10)], inputs
     assert inputs[1]["sensor"].split() == ["0.002", "m/V,", "0.01", "m", "at", "0", "V"], inputs
     tacto.run("validate", "bench")

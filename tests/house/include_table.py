@@ -41,7 +41,7 @@ MAY_INCLUDE = {
     "firmware-host/boards": "",
     "firmware-host/boards/stm32f405": "firmware-host/core/{firmware wire}",
     "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
-    "firmware-host/comedi": "data-schema/{base wiring} firmware-host/link",
+    "firmware-host/comedi": "data-schema/{base recording wiring} firmware-host/{core/firmware link}",
     "firmware-host/core/firmware": "firmware-host/{core/kernel core/scene core/wire}",
     "firmware-host/core/kernel": "firmware-host/core/wire",
     "firmware-host/core/scene": "firmware-host/core/{kernel wire}",
@@ -62,7 +62,7 @@ MAY_INCLUDE = {
     "firmware-host/usb": "data-schema/base firmware-host/{core/firmware link}",
     "capture/calibrate": "capture/record data-schema/{base calibration recording transducer} firmware-host/link",
     "capture/cli":
-        "capture/{calibrate doctor import record table} data-schema/{base cli command files height kinds recording report} "
+        "capture/{calibrate doctor import record table} data-schema/{base cli command files height kinds recording report wiring} "
         "firmware-host/{. sim/device}",
     "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. core/wire link}",
     "capture/import": "capture/{calibrate record table} data-schema/{base calibration exchange files height mesh recording texture}",

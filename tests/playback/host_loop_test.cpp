@@ -23,6 +23,8 @@
 namespace tacto::playback {
 namespace {
 
+using firmware_host::TickClock;
+
 static_assert(noexcept(std::declval<HostBoard&>().tick(0, 0)));
 
 TEST(TimeHistogram, TellsQuantilesWithinAnEighth) {
@@ -222,13 +224,13 @@ class HostBoardTicks : public testing::Test {
   void say(const Message& message) {
     std::array<std::uint8_t, wire::kMaxFrame> frame;
     const std::size_t size = wire::encode_frame(message, said_++, frame.data(), frame.size());
-    board_->from_player().put(std::span(frame).first(size));
+    board_->link().to_core.put(std::span(frame).first(size));
     board_->rest(1'000'000);
   }
   /// Makes a tick and returns its drive.
   float tick(std::int64_t late_ns) {
     board_->tick(1'000'000 + ticked_++ * kPeriodNs, late_ns);
-    while (board_->to_player().take(sink_) > 0) {
+    while (board_->link().from_core.take(sink_) > 0) {
     }
     const float drive_v = board_->drives().front()->drive_v;
     board_->drives().pop();

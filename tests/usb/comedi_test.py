@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Recording from a data acquisition card: libcomedi on the kernel's module comedi_test, whose inputs are computed. Its
-sawtooth must be that of its formula in each frame; lost samples, another program and another rate must be reported.
+"""Recording from a data acquisition card, and playing on it: libcomedi on the kernel's module comedi_test, whose inputs are
+computed. Its sawtooth must be that of its formula in each frame; lost samples, another program and another rate must be
+reported. What is played comes back at the input of the same number (waveform_ai_insn_read() of the module).
 """
 import json
 import pathlib
@@ -12,6 +13,7 @@ import soundfile
 
 import tacto
 import virtual_machine
+from play_test import write_grating
 
 AMPLITUDE_UV, PERIOD_US, MOST = 1_000_000, 100_000, 65535  # the defaults of drivers/comedi/drivers/comedi_test.c
 
@@ -29,6 +31,9 @@ def make_wirings():
     pathlib.Path("wirings").mkdir()
     wiring("saw", [wired(0, "tangential_force", volts=5, per_volt=2.0), wired(1, "position", per_volt=0.004, at_zero_volt=0.02)])
     wiring("fast", [wired(0, "signal", name=f"s{i}", per_volt=1) for i in range(4)], rate_hz=20000)
+    loop = [{"input": 0, "quantity": "position", "range_v": [-10, 10], "reference": "ground", "per_volt": 1e-4}]
+    wiring("loop", loop, output={"output": 0, "range_v": [-10, 10]}, transducer="wiertlewski2011")
+    write_grating("wirings/oak")
     wiring("none", [wired(0, "signal", per_volt=1)], card="/dev/comedi15")
 
 
@@ -88,6 +93,23 @@ def lost_samples_end_the_recording(results):
     tacto.run("validate", results / "stopped")
 
 
+def what_was_written_is_read_back(results):
+    """The session replays to the bit, and each tick's count is the code that the tick before has written. The emulated
+    machine may be too slow for the clock: then the playback has ended in a fault, and the ticks before it are judged."""
+    code, said = ((results / f"looped.{end}").read_text().strip() for end in ("code", "err"))
+    print("loop:", code, said)
+    assert code in ("0", "8"), said
+    assert tacto.run_json("replay", results / "looped")["same_to_the_bit"]
+    tacto.run("session", results / "looped", "-o", "looped.csv")
+    table = np.genfromtxt("looped.csv", delimiter=",", names=True)
+    codes = np.round((table["drive_v"] + 10) * MOST / 20)
+    assert len(codes) > 100 and np.ptp(codes) > 20, (len(codes), np.ptp(codes))
+    assert np.array_equal(table["encoder_count"][1:], codes[:-1] - 32768)
+    playing = next(row for row in json.loads((results / "loop_doctor.json").read_text())["checks"] if row["check"] == "playing")
+    assert playing["state"] == "warning" and "ticks per second" in playing["found"], playing
+    print("doctor:", playing["found"])
+
+
 def refusals(results):
     for name, code in (("second", 8), ("none", 3)):
         error = error_of(results, name)
@@ -105,6 +127,7 @@ def recorded():
     a_card_records(results)
     another_rate_is_reported(results)
     lost_samples_end_the_recording(results)
+    what_was_written_is_read_back(results)
     refusals(results)
 
 

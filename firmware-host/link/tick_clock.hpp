@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstdint>
 
-namespace tacto::playback {
+namespace tacto::firmware_host {
 
 /// Periods by CLOCK_MONOTONIC, without drift. wait() sleeps until 50 us before the due time, or 40 % of the
 /// period if that is less (the kernel throttles real-time threads at 95 %), and waits busily for the rest. A
@@ -54,4 +54,4 @@ class TickClock {
   std::int64_t period_ns_ = 1, spin_ns_ = 0, due_ns_ = 0, longer_ns_ = 0;
 };
 
-}  // namespace tacto::playback
+}  // namespace tacto::firmware_host
