@@ -68,7 +68,10 @@ void add_test(Report& row, double deviance, std::size_t freedom, double p) {
 Report fit_row(const AnswersFit& all, const FittedGroup& group) {
   Report row;
   add_by(row, all.table.columns.by, group.by);
-  add_estimate(row, all.options.guess ? "threshold" : "pse", group.fit.threshold);
+  if (all.options.threshold)
+    row.add("pse", *all.options.threshold).add("pse_is_fixed", true);
+  else
+    add_estimate(row, all.options.guess ? "threshold" : "pse", group.fit.threshold);
   add_estimate(row, all.steepness_name == "JND" ? "jnd" : all.steepness_name, group.steepness);
   row.add("lapse", group.fit.function.lapse);
   if (!all.options.lapse) row.add("lapse_high", group.fit.lapse_high);
@@ -357,12 +360,12 @@ Report adjustment_report(const AdjustmentAnswers& all, const std::string& verdic
   if (!all.simulated.empty()) report.add("simulated", all.simulated);
   if (all.abandoned > 0) report.add("abandoned", all.abandoned);
   if (all.ratio) add_estimate(report, "ratio", *all.ratio);
-  if (all.ratio) report.add("rms_m", all.unit_rms_m * all.ratio->value);
+  if (all.ratio) report.add("rms_m", all.unit_rms_m * all.ratio->value).add("rms_band", all.band);
   if (all.hysteresis_db) add_estimate(report, "hysteresis_db", *all.hysteresis_db);
   std::vector<Report> people;
   for (const AdjustedPerson& each : all.people) {
     Report& row = people.emplace_back();
-    row.add("participant", each.participant);
+    row.add("participant", each.participant).add("bounds", each.bounds);
     if (each.means.middle) add_estimate(row, "ratio", *each.means.middle);
     add_series(row, "ascending", each.means.ascending);
     add_series(row, "descending", each.means.descending);
@@ -424,7 +427,9 @@ cli::Action declare_analyse(CLI::App& app) {
   cli::declare_force(app, options->fit.existing);
   app.footer(
       "The trials that were delivered and answered, of all participants. Of two intervals: the JND is the "
-      "Weber fraction, re the standard's period.\nOf an identification: success and transmitted information "
+      "Weber fraction, re the standard's period; where all stretches have one sign (a staircase) the PSE is "
+      "0 and "
+      "not fitted.\nOf an identification: success and transmitted information "
       "of "
       "real and of virtual comparisons, each person analysed and then the mean taken; information is "
       "corrected for its bias by the jackknife, with the plug-in value and that of Miller and Madow beside "
@@ -443,7 +448,9 @@ cli::Action declare_analyse(CLI::App& app) {
       "of "
       "the ratios that were accepted, in ascending and in descending series, with Student's 95 % interval; "
       "the "
-      "middle of both, and their difference with an interval after Welch.");
+      "middle of both, and their difference with an interval after Welch. A setting at an end of the range "
+      "is "
+      "a bound, and counted.");
   CLI::App* const verb = app.get_parent();
   return [options, verb] { return run_analyse(*options, verb->count("--json") > 0); };
 }

@@ -61,7 +61,7 @@ constexpr const char* kDeviceHelp =
 constexpr const char* kAnswersHelp =
     "File with an answer on each line, its word or its key, and between them the labels (K3) of the real "
     "samples that the operator places; of ordering the numbers from least to most (2 1 3); of adjustment the "
-    "ratio that is set (0.25); default: the keys of this terminal";
+    "ratio that is set (0.25; the nearest step is used, and printed); default: the keys of this terminal";
 
 Report study_report(const Study& study) {
   const schema::Protocol& protocol = study.protocol;
@@ -244,6 +244,21 @@ Report report_of_run(const Run& run) {
   return report.add("next", "tactograph experiment prove " + run.stem);
 }
 
+// What a file of answers asked for, and the nearest setting, which was accepted.
+std::vector<Report> settings_of(const Run& run,
+                                const std::function<std::optional<double>(std::size_t)>& wanted) {
+  std::vector<Report> rows;
+  std::size_t answers = 0;
+  for (const Attempt& attempt : run.queue.attempts()) {
+    if (!attempt.answered) continue;
+    const auto asked = wanted(answers++), accepted = accepted_ratio(attempt);
+    if (!asked || !accepted) continue;
+    rows.emplace_back().add("attempt", attempt.begun.attempt);
+    rows.back().add("asked_ratio", *asked).add("accepted_ratio", *accepted);
+  }
+  return rows;
+}
+
 // Calls `work` with what a run needs from outside. `protocol` belongs to the study.
 template <class Work>
 Result<Report> with_participant(const RunStudyOptions& o, const schema::Protocol& protocol, bool simulated,
@@ -268,10 +283,13 @@ Result<Report> with_participant(const RunStudyOptions& o, const schema::Protocol
   request.tell = [&](double part) {
     if (progress) progress->update(part);
   };
+  const auto wanted = request.participant.wanted;
   auto run = work(std::move(request));
   TACTO_TRY(run);
   if (screen && run->queue.has_ended()) screen->show_end();
-  return report_of_run(*run);
+  Report report = report_of_run(*run);
+  if (wanted && protocol.task == schema::Task::adjustment) report.add("settings", settings_of(*run, wanted));
+  return report;
 }
 
 Result<Report> run_run_study(const RunStudyOptions& o) {
@@ -637,13 +655,15 @@ cli::Action declare_run_study(CLI::App& app) {
   CLI::Option* observer = app.add_option(
       "--observer", options->observer,
       "A simulated participant, which gets only the displacement that the sessions predict: "
-      "weber=25.3%,lapse=2%,hurry=5%,seed=1 (hurry: share of trials with a finger of twice the speed). Of an "
+      "weber=25.3%,lapse=2%,hurry=5%,seed=1 (hurry: share of trials with a finger of twice the fastest "
+      "accepted speed). Of an "
       "identification: template,noise=9dB,hurry=5%,seed=1, which compares its spectrum with the standards'; "
       "its noise is tuned, so its success says nothing about people. Of amplitude: "
       "match=86%,weber=10%,lapse=2%,seed=1 "
       "(match: the ratio that seems equal to the real sample). Of ordering: order,noise=1dB,seed=1, by the "
       "RMS "
-      "of the displacement. Of adjustment: threshold=20%,sd=10%,hysteresis=5%,seed=1, the ratio that it "
+      "of the displacement. Of adjustment: threshold=20%,sd=10%,hysteresis=5%,hurry=5%,seed=1, the ratio "
+      "that it "
       "looks "
       "for, the standard deviation of its logarithm, and the difference of descending series");
   app.add_option("--answers", options->answers, kAnswersHelp)->excludes(observer);

@@ -102,7 +102,8 @@ Participant ParticipantScreen::participant() {
   };
   const auto explore = [this](const std::vector<int>& left) { return wait_for_texture(left); };
   const auto turn = [this](bool wait) { return next_turn(wait); };
-  return {place, go_ahead, answer, explore, turn, {}};
+  const auto too_early = [this] { show(protocol_.texts.too_early); };
+  return {place, go_ahead, answer, explore, turn, too_early, {}};
 }
 
 void ParticipantScreen::welcome() {
@@ -307,7 +308,7 @@ Result<Participant> answers_from(const std::string& file, const schema::Protocol
   const auto wanted = [ratios = answers.ratios](std::size_t at) {
     return at < ratios.size() ? std::optional(ratios[at]) : std::nullopt;
   };
-  return Participant{place, [](int) { return true; }, answer, explore, {}, wanted};
+  return Participant{place, [](int) { return true; }, answer, explore, {}, {}, wanted};
 }
 
 }  // namespace tacto::analysis

@@ -217,6 +217,7 @@ schema::Protocol stretch_protocol(const std::string& seed, schema::LevelMethod m
                     "Which one had the smaller period? f: the first, j: the second.",
                     "That was all. Thank you.",
                     "",
+                    "",
                     ""};
   return protocol;
 }
@@ -322,6 +323,8 @@ Result<schema::Protocol> adjustment_protocol(const std::string& seed, const Name
   protocol.texts.interval = "Move the finger to the right end and back.";
   protocol.texts.question = fmt::format(
       "Find {}: f or the arrow down: weaker, j or the arrow up: stronger, a: this is it. Keep moving.", what);
+  protocol.texts.too_early =
+      "Too early: move the finger to the right end and back before you press a. This trial comes again.";
   return protocol;
 }
 

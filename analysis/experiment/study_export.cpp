@@ -37,6 +37,7 @@ constexpr Column kColumns[] = {
     {"series", "ascending: the setting began at a low gain; descending: at a high one", ""},
     {"start_ratio", "gain at its beginning over that of the protocol", "1"},
     {"accepted_ratio", "the same of the gain that was accepted, the last one of the session", "1"},
+    {"bound", "lower or upper: the accepted gain is the end of the range, and so a bound", ""},
     {"nominal_ratio", "gain of the trial over that at which the displacement is the real sample's", "1"},
     {"predicted_ratio", "the same of the displacement that the transducer's model predicts", "1"},
     {"rating", "from -3, much weaker than the real sample, to 3, much stronger", ""},
@@ -75,15 +76,17 @@ answers <- data.frame(person = factor(trials[[arguments[2]]]), level = trials[[a
 answers$no <- if (length(arguments) > 4) trials[[arguments[5]]] else 1 - answers$yes
 answers$condition <- factor(if (length(arguments) > 5) trials[[arguments[6]]] else "all")
 several <- nlevels(answers$condition) > 1
-fixed <- if (several) "cbind(yes, no) ~ 0 + condition + condition:level" else "cbind(yes, no) ~ level"
+# Stretches of one sign cannot separate the PSE from the JND: then it is 0.
+no_pse <- arguments[3] == "nominal_stretch" && (all(answers$level > 0) || all(answers$level < 0))
+fixed <- if (several) "cbind(yes, no) ~ 0 + condition + condition:level" else if (no_pse) "cbind(yes, no) ~ 0 + level" else "cbind(yes, no) ~ level"
 if (nlevels(answers$person) > 1) {
-  model <- lme4::glmer(as.formula(paste(fixed, "+ (1 + level | person)")), family = binomial("probit"), data = answers)
+  model <- lme4::glmer(as.formula(paste(fixed, if (no_pse) "+ (0 + level | person)" else "+ (1 + level | person)")), family = binomial("probit"), data = answers)
   b <- lme4::fixef(model)
 } else {
   b <- coef(glm(as.formula(fixed), family = binomial("probit"), data = answers))
 }
 conditions <- levels(answers$condition)
-intercept <- if (several) b[paste0("condition", conditions)] else b["(Intercept)"]
+intercept <- if (several) b[paste0("condition", conditions)] else if (no_pse) 0 else b["(Intercept)"]
 slope <- if (several) b[paste0("condition", conditions, ":level")] else b["level"]
 write.csv(data.frame(condition = conditions, pse = -intercept / slope, jnd = qnorm(0.75) / slope),
           row.names = FALSE, quote = FALSE)

@@ -121,6 +121,10 @@ class LiveSteps {
       if (!*goes_on) return std::nullopt;
     }
     for (std::size_t i = 0; i < attempt.begun.stimuli.size(); ++i) TACTO_TRY(read_facts(attempt, i, played));
+    const auto strokes = static_cast<std::uint64_t>(run_.study.protocol.pace.strokes);
+    if (request_.participant.too_early && task() == schema::Task::adjustment &&
+        played.facts.back().strokes < strokes)
+      request_.participant.too_early();
     return judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums, run_.study.protocol,
                            played.late);
   }

@@ -34,6 +34,8 @@ struct Participant {
   std::function<std::optional<int>(const std::vector<int>& left)> explore;
   /// Of adjustment, of a person: the next key; waits for it on request. None: no key, or the run ends.
   std::function<std::optional<schema::Turn>(bool wait)> turn;
+  /// Of adjustment, of a person: says that a setting was accepted before the strokes of the pace.
+  std::function<void()> too_early;
   /// Of adjustment, of a file: the ratio that is to be set. None: the run ends.
   std::function<std::optional<double>(std::size_t number)> wanted;
 };

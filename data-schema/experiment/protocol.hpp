@@ -78,6 +78,8 @@ struct AnswerWord {
 struct ProtocolTexts {
   std::string welcome, begin, interval, question, end;
   std::string place;  ///< to the operator, before a real sample's label; in an identification only
+  std::string
+      too_early;     ///< when a setting is accepted before the strokes of the pace; in an adjustment only
   std::string left;  ///< before the numbers of the textures that have yet to be explored; in an ordering only
 };
 

@@ -125,6 +125,7 @@ Protocol protocol_from(const Document& document) {
   for (const auto& [name, member] : kShownTexts) protocol.texts.*member = texts[name];
   protocol.texts.place = text_or(texts, "place");
   protocol.texts.left = text_or(texts, "left");
+  protocol.texts.too_early = text_or(texts, "too_early");
   protocol.notes = text_or(body, "notes");
   keep_unknown(document, protocol);
   return protocol;
@@ -193,6 +194,7 @@ Json protocol_body(const Protocol& protocol) {
   for (const auto& [name, member] : kShownTexts) body["texts"][name] = protocol.texts.*member;
   put_text(body["texts"], "place", protocol.texts.place);
   put_text(body["texts"], "left", protocol.texts.left);
+  put_text(body["texts"], "too_early", protocol.texts.too_early);
   put_text(body, "notes", protocol.notes);
   return body;
 }
@@ -323,11 +325,26 @@ Result<void> check_pace(const Protocol& protocol, const std::string& path) {
   return {};
 }
 
+// Those that only some tasks show.
+Result<void> check_texts(const Protocol& protocol, const std::string& path) {
+  const auto missing = [&](const char* member) {
+    return malformed_at(path, member, fmt::format("the task {} shows this text", word_of(protocol.task)),
+                        "add it");
+  };
+  if (protocol.task == Task::ordering && protocol.texts.left.empty()) return missing("texts/left");
+  if (protocol.task == Task::adjustment && protocol.texts.too_early.empty())
+    return missing("texts/too_early");
+  const bool places = std::ranges::find(protocol.conditions, kRealCondition) != protocol.conditions.end();
+  if (places && protocol.texts.place.empty()) return missing("texts/place");
+  return {};
+}
+
 Result<void> check_protocol(const Protocol& protocol, const std::string& path) {
   TACTO_TRY(check_levels(protocol, path));
   TACTO_TRY(check_names(protocol, path));
   TACTO_TRY(check_answers(protocol, path));
   TACTO_TRY(check_words(protocol, path));
+  TACTO_TRY(check_texts(protocol, path));
   return check_pace(protocol, path);
 }
 

@@ -161,6 +161,7 @@ TEST_F(ProtocolFile, AnOrderingAndAnAdjustmentReadBackAndEachFaultHasItsPlace) {
   adjustment.merge_patch({{"task", "adjustment"}, {"standards", {"A"}}, {"goal", "match"}});
   adjustment.merge_patch({{"smallest_ratio", 0.05}, {"largest_ratio", 4.0}, {"step_db", 1.0}});
   adjustment["answers"]["choices"] = choices({"weaker", "stronger", "accepted"});
+  adjustment["texts"]["too_early"] = "t";
   const auto read = [&](nlohmann::json body, const nlohmann::json& change) {
     body.merge_patch(change);
     PendingFiles pending;
@@ -182,6 +183,8 @@ TEST_F(ProtocolFile, AnOrderingAndAnAdjustmentReadBackAndEachFaultHasItsPlace) {
         {&ordering, {{"goal", "least"}}, "/goal"},
         {&ordering, {{"standards", nullptr}}, "/standards"},
         {&ordering, {{"standards", {"A", "B"}}, {"intended", nullptr}}, "/answers/choices"},
+        {&ordering, {{"texts", {{"left", nullptr}}}}, "/texts/left"},
+        {&adjustment, {{"texts", {{"too_early", nullptr}}}}, "/texts/too_early"},
         {&adjustment, {{"standards", {"A", "B", "C"}}}, "/standards"},
         {&adjustment, {{"standards", {"A", "B"}}, {"goal", "least"}}, "/standards"},
         {&adjustment, {{"intended", {1.0, 2.0}}}, "/intended"},
@@ -219,6 +222,7 @@ TEST_F(ProtocolFile, AnIdentificationReadsBackAndEachFaultHasItsPlace) {
                                       {R"({"standards": ["B", "A"]})", "/answers/choices/0/word"},
                                       {R"({"conditions": ["real", "real"]})", "/conditions"},
                                       {R"({"longest_s": null})", "/longest_s"},
+                                      {R"({"texts": {"place": null}})", "/texts/place"},
                                       {R"({"levels": [0.5, 0.7]})", "/levels"}}) {
     const auto refused = read(nlohmann::json::parse(change));
     ASSERT_FALSE(refused) << change;
