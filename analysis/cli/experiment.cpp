@@ -460,6 +460,7 @@ constexpr cli::VerbPart kExperimentParts[] = {
     {"check", "Check a study's files: protocol, key, stimuli", declare_check_study},
     {"run", "Run a study with one participant, or with a simulated observer", declare_run_study},
     {"resume", "Continue an interrupted run", declare_resume_study},
+    {"noise", "Write the masking noise of a study as WAV", declare_noise},
     {"watch", "Print the progress of a study's runs while they go on", declare_watch_study},
     {"prove", "Compute from the sessions of a run what was delivered", declare_prove_run},
     {"analyse",
@@ -494,6 +495,9 @@ const cli::Verb kExperimentVerb{
     "  tactograph experiment run roughness -d sim: --participant P01 --observer order,noise=1dB\n"
     "  tactograph experiment new adjustment --textures E --goal least -o least\n"
     "  tactograph experiment run least -d sim: --participant P01 --observer threshold=20%,sd=10%\n"
+    "  tactograph experiment new stretch --masking-noise 65dB -o quiet\n"
+    "  tactograph experiment noise quiet -o noise.wav\n"
+    "  tactograph experiment run quiet -d usb: --participant P01 --masking-level 64.5dB\n"
     "  tactograph experiment watch stretch\n"
     "  tactograph experiment prove stretch-P01\n"
     "  tactograph experiment analyse stretch --unblind -o stretch.html\n"

@@ -19,6 +19,7 @@
 #include "analysis/cli/participant_screen.hpp"
 #include "analysis/experiment/interval_play.hpp"
 #include "analysis/experiment/marked_proof.hpp"
+#include "analysis/experiment/masking_noise.hpp"
 #include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/study_export.hpp"
 #include "analysis/experiment/study_power.hpp"
@@ -44,6 +45,7 @@ struct NewStudyOptions {
   std::vector<double> intended;
   schema::Goal goal = schema::Goal::least;
   schema::LevelMethod method = schema::LevelMethod::constant;
+  std::optional<double> masking_db;
   schema::Existing existing = schema::Existing::keep;
 };
 
@@ -53,7 +55,8 @@ struct CheckStudyOptions {
 
 struct RunStudyOptions {
   std::string what;  ///< the study, or the run to be resumed
-  std::string device, participant, observer, answers;
+  std::string device, participant, observer, answers, language = schema::kUsualLanguage;
+  std::optional<double> masking_level_db;
 };
 
 constexpr const char* kDeviceHelp =
@@ -84,6 +87,7 @@ Report study_report(const Study& study) {
         .add("conditions", protocol.conditions.size());
   report.add("repetitions", protocol.repetitions)
       .add("trials", ordered_trials(protocol, study.key, "P1", 1).size());
+  report.add("masking_noise", noise_in_words(protocol.masking_noise));
   return report.add("interval_s", paced_path(protocol.pace).duration_s());
 }
 
@@ -180,6 +184,7 @@ Result<Report> run_new_study(const NewStudyOptions& o) {
   NamedTextures textures;
   auto protocol = new_protocol(o, textures);
   TACTO_TRY(protocol);
+  if (o.masking_db) protocol->masking_noise = usual_masking_noise(*o.masking_db);
   const auto study = write_study(o.stem.empty() ? o.what : o.stem, *protocol, textures, o.existing);
   TACTO_TRY(study);
   auto report = warn_and_report(*study);
@@ -237,6 +242,7 @@ Report progress_row(const std::string& stem, const TrialQueue& queue) {
 Report report_of_run(const Run& run) {
   Report report = progress_row(run.stem, run.queue);
   if (!run.journal.plan.observer.empty()) report.add("simulated", observer_in_words(run));
+  if (run.study.protocol.masking_noise) report.add("masking_noise", noise_of_run(run));
   std::vector<std::string> written = {schema::journal_path(run.stem), run.stem + "/"};
   if (run.queue.has_ended()) written.push_back(run.stem + ".trials.tsv");
   report.add("written", written);
@@ -266,6 +272,7 @@ Result<Report> with_participant(const RunStudyOptions& o, const schema::Protocol
   const cli::StopSignals signals;
   RunRequest request;
   request.device_uri = o.device;
+  request.masking_level_db = o.masking_level_db;
   const std::function<bool()> stop_asked = [&] { return signals.stop_asked(); };
   request.stop_asked = stop_asked;
   std::optional<ParticipantScreen> screen;
@@ -274,9 +281,14 @@ Result<Report> with_participant(const RunStudyOptions& o, const schema::Protocol
     TACTO_TRY(participant);
     request.participant = std::move(*participant);
   } else if (!simulated) {
-    screen.emplace(protocol, stop_asked);
+    auto texts = schema::texts_in(protocol, o.language);
+    TACTO_TRY(texts);
+    screen.emplace(protocol, std::move(*texts), stop_asked);
     TACTO_TRY(screen->check_terminal());
     request.participant = screen->participant();
+    request.language = o.language;
+    if (protocol.masking_noise && !o.masking_level_db)
+      cli::warn("the level of the masking noise is not measured: --masking-level checks and logs it");
   }
   std::optional<cli::Progress> progress;
   if (!screen) progress.emplace("trials");
@@ -307,9 +319,10 @@ Result<Report> run_run_study(const RunStudyOptions& o) {
   });
 }
 
-Result<Report> run_resume_study(const RunStudyOptions& o) {
+Result<Report> run_resume_study(RunStudyOptions o) {
   const auto run = read_run(o.what);
   TACTO_TRY(run);
+  if (!run->journal.plan.language.empty()) o.language = run->journal.plan.language;
   const bool simulated = !run->journal.plan.observer.empty();
   if (simulated && !o.answers.empty())
     return schema::fail(ErrorKind::usage, "an observer answers in this run", "--answers", "leave it out");
@@ -419,9 +432,33 @@ Result<Report> run_prove_run(const ProveOptions& o) {
   if (proof.ratio_error) report.add("ratio_error", *proof.ratio_error);
   report.add("recorded", "ticks and drive").add("predicted", "displacement, by the transducer's model");
   if (!proof.simulated.empty()) report.add("simulated", proof.simulated);
+  if (run->study.protocol.masking_noise) report.add("masking_noise", noise_of_run(*run));
   if (!run->journal.plan.observer.empty()) report.add("observer", observer_in_words(*run));
   if (!proof.faults.empty()) report.add("faults", proof.faults);
   return proof.holds() ? report : report.ends_with(ErrorKind::unsuitable);
+}
+
+struct NoiseOptions {
+  std::string study, output;
+  schema::Existing existing = schema::Existing::keep;
+};
+
+Result<Report> run_noise(const NoiseOptions& o) {
+  const auto protocol = schema::read_protocol(o.study);
+  TACTO_TRY(protocol);
+  if (!protocol->masking_noise)
+    return schema::fail(ErrorKind::unsuitable, "the protocol has no masking noise", o.study,
+                        "add masking_noise to it, or make it with --masking-noise 65dB");
+  TACTO_TRY(cli::check_ending(o.output, {".wav"}, "name a WAV file"));
+  TACTO_TRY(write_masking_noise(o.output, *protocol->masking_noise, protocol->seed, o.existing));
+  Report report;
+  report.add("masking_noise", noise_in_words(protocol->masking_noise));
+  report.add("duration_s", kNoisePeriodS).add("rms_db_re_full_scale", kNoiseRmsDb);
+  report.add("level_at_the_ear", "not measured: it depends on the volume and the headphones");
+  report.add("written", std::vector<std::string>{o.output});
+  return report.add("next",
+                    "play it repeatedly, measure its level at the ear, and give that to 'run "
+                    "--masking-level'");
 }
 
 struct WatchOptions {
@@ -616,6 +653,9 @@ cli::Action declare_new_study(CLI::App& app) {
                  "Of identification: which of them are presented, C,D,E; default: all")
       ->delimiter(',');
   app.add_option("--seed", options->seed, "Seed of codes and order: letters and digits");
+  cli::add_quantity(app, "--masking-noise", options->masking_db, schema::Dimension::level,
+                    "Level of masking noise at the ear, 65dB (re 20 uPa): 15-1500 Hz, within 3 dB; default: "
+                    "the protocol has none");
   app.footer(
       "stretch: which of two sinusoids has the smaller period. identification: which of the standards is a "
       "comparison, a real sample in one block and played in the other one, each of 100 trials or 15 "
@@ -647,6 +687,17 @@ cli::Action declare_check_study(CLI::App& app) {
   return [options] { return run_check_study(*options); };
 }
 
+namespace {
+
+void declare_masking_level(CLI::App& app, RunStudyOptions& options) {
+  cli::add_quantity(
+      app, "--masking-level", options.masking_level_db, schema::Dimension::level,
+      "Level of the masking noise at the ear, as measured now with a sound level meter: compared "
+      "with the protocol, and kept in the journal; default: not measured");
+}
+
+}  // namespace
+
 cli::Action declare_run_study(CLI::App& app) {
   auto options = std::make_shared<RunStudyOptions>();
   app.add_option("STUDY", options->what, "Stem of the study, or STUDY.protocol.json")->required();
@@ -666,7 +717,12 @@ cli::Action declare_run_study(CLI::App& app) {
       "that it "
       "looks "
       "for, the standard deviation of its logarithm, and the difference of descending series");
-  app.add_option("--answers", options->answers, kAnswersHelp)->excludes(observer);
+  CLI::Option* answers = app.add_option("--answers", options->answers, kAnswersHelp)->excludes(observer);
+  app.add_option("--language", options->language, "Language of the screen, one of the protocol's texts")
+      ->capture_default_str()
+      ->excludes(observer)
+      ->excludes(answers);
+  declare_masking_level(app, *options);
   app.footer(
       "Each step is in STUDY-P07.trials.jsonl before the next one begins. Whether a trial was delivered is "
       "decided before its answer is read; what was not delivered comes again at the end. Ctrl-C ends the "
@@ -680,6 +736,7 @@ cli::Action declare_resume_study(CLI::App& app) {
   app.add_option("RUN", options->what, "STUDY-P07, or its journal")->required();
   app.add_option("-d,--device", options->device, "Device; default: that of the run");
   app.add_option("--answers", options->answers, kAnswersHelp);
+  declare_masking_level(app, *options);
   app.footer(
       "The trial that was interrupted is the next one again. The file of --answers holds all answers and "
       "labels of the run, from its first trial on: those that the run has are not read again.");
@@ -702,6 +759,18 @@ cli::Action declare_prove_run(CLI::App& app) {
       "computed again, is not the same to the bit. Exit code 0 does not say that an interval was delivered: "
       "see 'delivered' (yes, no, unknown) of each interval.");
   return [options] { return run_prove_run(*options); };
+}
+
+cli::Action declare_noise(CLI::App& app) {
+  auto options = std::make_shared<NoiseOptions>();
+  app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
+  app.add_option("-o,--output", options->output, "WAV file")->required();
+  cli::declare_force(app, options->existing);
+  app.footer(
+      "White noise in the band of the protocol's masking_noise, one channel, 48 kHz, 30 s, which repeats "
+      "without a seam. It is for the participant's headphones, because a bender that plays 15-500 Hz can be "
+      "heard. No part of tactograph plays it or measures its level.");
+  return [options] { return run_noise(*options); };
 }
 
 cli::Action declare_watch_study(CLI::App& app) {

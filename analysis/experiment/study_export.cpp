@@ -213,10 +213,11 @@ std::string csv_of(const std::vector<Run>& runs) {
 }
 
 std::string participants_of(const std::vector<Run>& runs) {
-  std::string table = "participant_id\tcomplete\tsimulated\n";
+  std::string table = "participant_id\tcomplete\tsimulated\tmasking_level\n";
   for (const Run& run : runs)
-    table += fmt::format("sub-{}\t{}\t{}\n", run.journal.plan.participant,
-                         run.queue.has_ended() ? "yes" : "no", bids_cell(run.journal.plan.observer));
+    table += fmt::format("sub-{}\t{}\t{}\t{}\n", run.journal.plan.participant,
+                         run.queue.has_ended() ? "yes" : "no", bids_cell(run.journal.plan.observer),
+                         bids_cell(run.journal.plan.masking_level));
   return table;
 }
 

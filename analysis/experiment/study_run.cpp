@@ -12,6 +12,7 @@
 #include "analysis/experiment/interval_facts.hpp"
 #include "analysis/experiment/interval_play.hpp"
 #include "analysis/experiment/live_setting.hpp"
+#include "analysis/experiment/masking_noise.hpp"
 #include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/template_observer.hpp"
 #include "analysis/experiment/trial_runner.hpp"
@@ -42,6 +43,7 @@ class LiveSteps {
             [this](const StudyTrial& trial, int attempt) { return begun(trial, attempt); },
             [this](const Attempt& attempt) { return present(attempt); },
             [this](const Attempt& attempt) { return answer(attempt); },
+            [this] { return rest(); },
             [this](const StudyTrial& trial) {
               const double longest_s = run_.study.protocol.longest_s;
               return longest_s > 0 && block_s(trial.block) >= longest_s;
@@ -74,6 +76,37 @@ class LiveSteps {
         if (attempt.begun.block == block) block_base_s_ = attempt.begun.block_s;
     }
     return block_base_s_ + std::chrono::duration<double>(BlockClock::now() - block_since_).count();
+  }
+
+  // Answers since the last break, the beginning, or an interruption.
+  int answers_since_break() const {
+    int answers = 0;
+    for (const schema::JournalEntry& entry : run_.journal.entries) {
+      if (std::holds_alternative<schema::AttemptAnswered>(entry)) ++answers;
+      if (std::holds_alternative<schema::BreakTaken>(entry) ||
+          std::holds_alternative<schema::RunResumed>(entry))
+        answers = 0;
+    }
+    return answers;
+  }
+
+  Result<bool> rest() {
+    const schema::ProtocolBreaks& breaks = run_.study.protocol.breaks;
+    const auto now = BlockClock::now;
+    const std::chrono::duration<double> worked = now() - worked_since_;
+    const int answers = answers_since_break();
+    const bool due = (breaks.after_trials > 0 && answers >= breaks.after_trials) ||
+                     (breaks.after_s > 0 && answers > 0 && worked.count() >= breaks.after_s);
+    if (!due || !request_.participant.rest) return true;
+    const BlockClock::time_point begun = now();
+    if (!request_.participant.rest()) return false;
+    worked_since_ = now();
+    block_since_ += worked_since_ - begun;  // a break is no time of the block
+    const std::chrono::duration<double> rested = worked_since_ - begun;
+    const schema::BreakTaken taken{rested.count()};
+    TACTO_TRY(keep(taken));
+    TACTO_TRY(run_.queue.take(taken));
+    return true;
   }
 
   schema::AttemptBegun begun(const StudyTrial& trial, int attempt) {
@@ -316,7 +349,7 @@ class LiveSteps {
   std::optional<TemplateObserver> templates_;
   int block_ = 0;
   double block_base_s_ = 0;
-  BlockClock::time_point block_since_;
+  BlockClock::time_point block_since_, worked_since_ = BlockClock::now();
 };
 
 // The row of block orders that the fewest complete runs have. A journal that cannot be read is of no
@@ -370,6 +403,8 @@ Result<Run> begin_run(const std::string& study_name, const std::string& particip
   TACTO_TRY(study);
   TACTO_TRY(check_not_withdrawn(study->stem, participant));
   TACTO_TRY(check_observer(study->protocol, request.observer));
+  const auto masking_level = checked_masking_level(study->protocol, request.masking_level_db);
+  TACTO_TRY(masking_level);
   const auto slowest = check_on_device(*study, request.device_uri);
   TACTO_TRY(slowest);
   const int order = next_order(*study);
@@ -379,7 +414,8 @@ Result<Run> begin_run(const std::string& study_name, const std::string& particip
   schema::RunPlanned plan{
       study->name(),           participant,           study->protocol.sha256,
       study->key.sha256,       request.device_uri,    request.observer ? request.observer->text : "",
-      schema::creation_time(), std::string(kCreator), order};
+      schema::creation_time(), std::string(kCreator), order,
+      request.language,        *masking_level};
   TrialQueue queue = queue_of_run(study->protocol, study->key, participant, order);
   Run run{stem, {plan, {}, 0}, std::move(*study), std::move(queue)};
   TACTO_TRY(go_on(run, *file, request, slowest->keeps_time(), plan));
@@ -402,9 +438,12 @@ Result<Run> resume_run(const std::string& name, RunRequest request) {
     TACTO_TRY(observer);
     request.observer = std::move(*observer);
   }
+  const auto masking_level = checked_masking_level(run->study.protocol, request.masking_level_db);
+  TACTO_TRY(masking_level);
   const auto slowest = check_on_device(run->study, request.device_uri);
   TACTO_TRY(slowest);
-  TACTO_TRY(go_on(*run, *file, request, slowest->keeps_time(), schema::RunResumed{schema::creation_time()}));
+  TACTO_TRY(go_on(*run, *file, request, slowest->keeps_time(),
+                  schema::RunResumed{schema::creation_time(), *masking_level}));
   return std::move(*run);
 }
 

@@ -66,6 +66,7 @@ Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
     (*attempt)->answered = *answered;
     close();
   }
+  if (std::holds_alternative<schema::BreakTaken>(entry) && open_) return does_not_follow("a break");
   if (std::holds_alternative<schema::RunResumed>(entry) && open_) close();
   if (std::holds_alternative<schema::RunEnded>(entry)) ended_ = true;
   return {};

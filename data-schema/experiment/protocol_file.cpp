@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -39,6 +40,7 @@ constexpr LimitNumber kLimitNumbers[] = {{"removed_by_limits_db", &DeliveryLimit
 struct ShownText {
   const char* name;
   std::string ProtocolTexts::*member;
+  bool (*is_shown)(const Protocol&);
 };
 constexpr const char* kTaskWords[] = {"two_interval", "identification", "amplitude", "ordering",
                                       "adjustment"};
@@ -54,11 +56,25 @@ const std::vector<std::string> kTaskMembers[] = {
     {"standards", "largest_ratio"},
     {"standards"},
     {"standards", "goal", "smallest_ratio", "largest_ratio", "step_db"}};
-constexpr ShownText kShownTexts[] = {{"welcome", &ProtocolTexts::welcome},
-                                     {"begin", &ProtocolTexts::begin},
-                                     {"interval", &ProtocolTexts::interval},
-                                     {"question", &ProtocolTexts::question},
-                                     {"end", &ProtocolTexts::end}};
+bool is_always_shown(const Protocol& /*protocol*/) {
+  return true;
+}
+
+bool places_samples(const Protocol& protocol) {
+  return std::ranges::find(protocol.conditions, kRealCondition) != protocol.conditions.end();
+}
+
+constexpr ShownText kShownTexts[] = {
+    {"welcome", &ProtocolTexts::welcome, is_always_shown},
+    {"begin", &ProtocolTexts::begin, is_always_shown},
+    {"interval", &ProtocolTexts::interval, is_always_shown},
+    {"question", &ProtocolTexts::question, is_always_shown},
+    {"end", &ProtocolTexts::end, is_always_shown},
+    {"break", &ProtocolTexts::rest, [](const Protocol& protocol) { return protocol.breaks.any(); }},
+    {"place", &ProtocolTexts::place, places_samples},
+    {"left", &ProtocolTexts::left, [](const Protocol& protocol) { return protocol.task == Task::ordering; }},
+    {"too_early", &ProtocolTexts::too_early,
+     [](const Protocol& protocol) { return protocol.task == Task::adjustment; }}};
 
 Task task_of(const Json& body) {
   return static_cast<Task>(std::ranges::find(kTaskWords, body["task"].get<std::string>()) -
@@ -119,13 +135,19 @@ Protocol protocol_from(const Document& document) {
   protocol.begin_key = answers["begin_key"];
   protocol.most_attempts = body["most_attempts"];
   protocol.participants = body["participants"];
-  const Json &delivered = body["delivered"], &texts = body["texts"];
+  const Json& delivered = body["delivered"];
   for (const auto& [name, member] : kLimitCounts) protocol.delivered.*member = delivered[name];
   for (const auto& [name, member] : kLimitNumbers) protocol.delivered.*member = delivered[name];
-  for (const auto& [name, member] : kShownTexts) protocol.texts.*member = texts[name];
-  protocol.texts.place = text_or(texts, "place");
-  protocol.texts.left = text_or(texts, "left");
-  protocol.texts.too_early = text_or(texts, "too_early");
+  if (body.contains("breaks"))
+    protocol.breaks = {body["breaks"].value("after_trials", 0), body["breaks"].value("after_s", 0.0)};
+  if (body.contains("masking_noise")) {
+    const Json& noise = body["masking_noise"];
+    protocol.masking_noise =
+        MaskingNoise{noise["low_hz"], noise["high_hz"], noise["level_db"], noise["tolerance_db"]};
+  }
+  for (const auto& [language, texts] : body["texts"].items())
+    for (const ShownText& each : kShownTexts)
+      protocol.texts[language].*each.member = text_or(texts, each.name);
   protocol.notes = text_or(body, "notes");
   keep_unknown(document, protocol);
   return protocol;
@@ -190,11 +212,16 @@ Json protocol_body(const Protocol& protocol) {
   body["delivered"] = Json::object();
   for (const auto& [name, member] : kLimitCounts) body["delivered"][name] = protocol.delivered.*member;
   for (const auto& [name, member] : kLimitNumbers) body["delivered"][name] = protocol.delivered.*member;
-  body["texts"] = Json::object();
-  for (const auto& [name, member] : kShownTexts) body["texts"][name] = protocol.texts.*member;
-  put_text(body["texts"], "place", protocol.texts.place);
-  put_text(body["texts"], "left", protocol.texts.left);
-  put_text(body["texts"], "too_early", protocol.texts.too_early);
+  if (const auto& noise = protocol.masking_noise)
+    body["masking_noise"] = {{"low_hz", noise->low_hz},
+                             {"high_hz", noise->high_hz},
+                             {"level_db", noise->level_db},
+                             {"tolerance_db", noise->tolerance_db}};
+  if (protocol.breaks.after_trials > 0) body["breaks"]["after_trials"] = protocol.breaks.after_trials;
+  if (protocol.breaks.after_s > 0) body["breaks"]["after_s"] = protocol.breaks.after_s;
+  for (const auto& [language, texts] : protocol.texts)
+    for (const ShownText& each : kShownTexts)
+      put_text(body["texts"][language], each.name, texts.*each.member);
   put_text(body, "notes", protocol.notes);
   return body;
 }
@@ -325,17 +352,14 @@ Result<void> check_pace(const Protocol& protocol, const std::string& path) {
   return {};
 }
 
-// Those that only some tasks show.
+// Each language has all texts that are shown.
 Result<void> check_texts(const Protocol& protocol, const std::string& path) {
-  const auto missing = [&](const char* member) {
-    return malformed_at(path, member, fmt::format("the task {} shows this text", word_of(protocol.task)),
-                        "add it");
-  };
-  if (protocol.task == Task::ordering && protocol.texts.left.empty()) return missing("texts/left");
-  if (protocol.task == Task::adjustment && protocol.texts.too_early.empty())
-    return missing("texts/too_early");
-  const bool places = std::ranges::find(protocol.conditions, kRealCondition) != protocol.conditions.end();
-  if (places && protocol.texts.place.empty()) return missing("texts/place");
+  for (const auto& [language, texts] : protocol.texts)
+    for (const ShownText& each : kShownTexts)
+      if (each.is_shown(protocol) && (texts.*each.member).empty())
+        return malformed_at(path, fmt::format("texts/{}/{}", language, each.name).c_str(),
+                            "this text is shown in a run, and is missing or empty",
+                            fmt::format("add it in the language {}", language));
   return {};
 }
 
@@ -345,6 +369,8 @@ Result<void> check_protocol(const Protocol& protocol, const std::string& path) {
   TACTO_TRY(check_answers(protocol, path));
   TACTO_TRY(check_words(protocol, path));
   TACTO_TRY(check_texts(protocol, path));
+  if (const auto& noise = protocol.masking_noise; noise && noise->high_hz <= noise->low_hz)
+    return malformed_at(path, "masking_noise/high_hz", "is not above low_hz", "give a band");
   return check_pace(protocol, path);
 }
 
@@ -377,6 +403,20 @@ std::optional<Goal> goal_of(std::string_view word) {
   const auto* const found = std::ranges::find(kGoalWords, word);
   if (found == std::end(kGoalWords)) return std::nullopt;
   return static_cast<Goal>(found - std::begin(kGoalWords));
+}
+
+Result<ProtocolTexts> texts_in(const Protocol& protocol, const std::string& language) {
+  if (const auto found = protocol.texts.find(language); found != protocol.texts.end()) return found->second;
+  std::vector<std::string> languages;
+  for (const auto& [each, texts] : protocol.texts) languages.push_back(each);
+  return fail(
+      ErrorKind::usage, fmt::format("the protocol has no texts in the language '{}'", language), "--language",
+      fmt::format("give one of {}, or add texts/{} to the protocol", fmt::join(languages, ", "), language));
+}
+
+std::string question_of(const Protocol& protocol) {
+  const auto usual = protocol.texts.find(kUsualLanguage);
+  return (usual != protocol.texts.end() ? usual : protocol.texts.begin())->second.question;
 }
 
 bool is_label(std::string_view line) {

@@ -197,7 +197,7 @@ def a_person_is_told_of_an_early_setting():
     new_study("early", repetitions=1, step_db=3, lead_s=2)
     path = pathlib.Path("early.protocol.json")
     protocol = json.loads(path.read_text())
-    protocol["texts"]["too_early"] = "PATIENCE"
+    protocol["texts"]["en"]["too_early"] = "PATIENCE"
     path.write_text(json.dumps(protocol))
     ours, its = pty.openpty()
     command = ["setsid", "--ctty", "--wait", tacto.COMMAND, "experiment", "run", "early", "-d", "sim:paced=1", "--participant", "P01"]

@@ -71,6 +71,7 @@ class TextRun {
   int attempts_in_time = 1000;
   // Attempts before this one are interrupted while they are presented.
   int first_presented = 1;
+  std::size_t trials_between_breaks = 1000;
 
   // Begins a run, or resumes what is whole in `journal`. Errors: of parse_journal.
   Result<void> go_on(const std::string& journal) {
@@ -102,6 +103,14 @@ class TextRun {
     steps.begin = [](const StudyTrial& trial, int attempt) {
       if (!trial.arranged.empty()) return schema::AttemptBegun{attempt, trial.name(), {}, {}, trial.block, 0};
       return schema::AttemptBegun{attempt, trial.name(), {"K1", trial.code}, {"a", "b"}, trial.block, 0};
+    };
+    steps.rest = [this]() -> Result<bool> {
+      const std::size_t attempts = queue_.attempts().size();
+      if (attempts == 0 || attempts % trials_between_breaks != 0) return true;
+      const schema::BreakTaken taken{30};
+      if (const auto kept = keep(taken); !kept) return schema::forward_error(kept);
+      if (const auto done = queue_.take(taken); !done) return schema::forward_error(done);
+      return true;
     };
     steps.is_over = [this](const StudyTrial& trial) {
       return trial.block == 1 && static_cast<int>(queue_.attempts().size()) >= attempts_in_time;
@@ -161,8 +170,10 @@ TEST(ExperimentRun, WhatIsNotDeliveredComesAgainAtTheEnd) {
 // Wherever the journal ends: it is resumed, all whole lines stay, and each trial counts once.
 TEST(ExperimentRun, AJournalCutAtEachByteIsResumedWithEachAnswerOnce) {
   TextRun whole;
+  whole.trials_between_breaks = 5;
   ASSERT_TRUE(whole.go_on(""));
   const std::string& text = whole.text();
+  ASSERT_EQ(lines_with(text, R"("event":"break")"), 4u);
   const std::size_t first_line = text.find('\n') + 1;
   for (std::size_t bytes = 1; bytes <= text.size(); ++bytes) {
     const std::string cut = text.substr(0, bytes);
@@ -491,6 +502,15 @@ TEST(ExperimentRun, AChangedLineInTheMiddleIsRefusedWithItsNumber) {
   const auto last = schema::parse_journal(changed, "j");
   ASSERT_TRUE(last);
   EXPECT_EQ(last->entries.size(), lines_with(text, "\n") - 1);
+}
+
+TEST(ExperimentRun, ABreakIsBetweenTrials) {
+  const schema::Protocol protocol = twenty_trials();
+  TrialQueue queue = queue_of_run(protocol, key_of(protocol), "P01", 1);
+  const StudyTrial trial = queue.next().value();
+  ASSERT_TRUE(queue.take(schema::BreakTaken{1}));
+  ASSERT_TRUE(queue.take(schema::AttemptBegun{1, trial.name(), {}, {}, 1, 0}));
+  EXPECT_FALSE(queue.take(schema::BreakTaken{1}));
 }
 
 TEST(ExperimentRun, AnEntryThatDoesNotFollowIsRefused) {
