@@ -9,6 +9,7 @@
 #include "analysis/experiment/adjustment_answers.hpp"
 #include "analysis/experiment/amplitude_answers.hpp"
 #include "analysis/experiment/answers_page.hpp"
+#include "analysis/experiment/fidelity_answers.hpp"
 #include "analysis/experiment/identification_answers.hpp"
 #include "analysis/experiment/ordering_answers.hpp"
 #include "analysis/experiment/study_answers.hpp"
@@ -318,6 +319,31 @@ Report amplitude_report(const AmplitudeAnswers& all, const std::string& verdict)
   return report.add("people", std::move(people));
 }
 
+void add_same(Report& row, const SameAnswers& answers, const std::optional<Estimate>& d_prime) {
+  row.add("same_of_own", answers.same_of_own).add("own", answers.own);
+  row.add("same_of_other", answers.same_of_other).add("other", answers.other);
+  if (d_prime) add_estimate(row, "d_prime", *d_prime);
+}
+
+Report fidelity_report(const FidelityAnswers& all, const std::string& verdict) {
+  Report report;
+  report.add("verdict", verdict);
+  if (!all.simulated.empty()) report.add("simulated", all.simulated);
+  if (all.abandoned > 0) report.add("abandoned", all.abandoned);
+  add_same(report, sum_of(all), all.d_prime);
+  if (all.predicted_error_db) report.add("predicted_error_db", *all.predicted_error_db);
+  std::vector<Report> pairs, people;
+  for (std::size_t played = 0; played < all.standards.size(); ++played)
+    for (std::size_t sample = 0; sample < all.standards.size(); ++sample) {
+      const SameAnswers& pair = all.pairs[played][sample];
+      pairs.emplace_back().add("played", all.standards[played]).add("sample", all.standards[sample]);
+      pairs.back().add("same", pair.same_of_own + pair.same_of_other).add("trials", pair.own + pair.other);
+    }
+  for (const FidelityPerson& each : all.people)
+    add_same(people.emplace_back().add("participant", each.participant), each.answers, each.d_prime);
+  return report.add("pairs", std::move(pairs)).add("people", std::move(people));
+}
+
 void add_ordered(Report& row, const OrderingAnswers& all, const OrderedBy& by) {
   row.add("orders", by.orders);
   Report ranks;
@@ -389,6 +415,11 @@ Result<Report> analyse_task(const AnalyseOptions& o, bool json) {
     const Findings findings = findings_of(answers);
     return write_fit(o.fit, findings, amplitude_report(answers, findings.verdict()), json);
   }
+  if (protocol->task == schema::Task::fidelity) {
+    const FidelityAnswers answers = fidelity_answers(*runs);
+    const Findings findings = findings_of(answers);
+    return write_fit(o.fit, findings, fidelity_report(answers, findings.verdict()), json);
+  }
   if (protocol->task == schema::Task::ordering) {
     const OrderingAnswers answers = ordering_answers(*runs);
     const Findings findings = findings_of(answers);
@@ -434,7 +465,11 @@ cli::Action declare_analyse(CLI::App& app) {
       "real and of virtual comparisons, each person analysed and then the mean taken; information is "
       "corrected for its bias by the jackknife, with the plug-in value and that of Miller and Madow beside "
       "it; "
-      "the answers are the sum over people.\nOf amplitude: the mean ratio of the trials that were rated 0, "
+      "the answers are the sum over people.\nOf fidelity: how often a played texture was "
+      "called the same as its own sample, and as another one; d' of the yes-no decision, with the mean over "
+      "people and "
+      "Student's interval; and the median of the predicted error.\nOf amplitude: the mean ratio of the "
+      "trials that were rated 0, "
       "and the "
       "fitted match, the ratio at the middle of what is rated 0: it does not depend on which ratios were "
       "asked. Its "
@@ -484,6 +519,8 @@ const cli::Verb kExperimentVerb{
     "  tactograph experiment new identification --textures A,B,C,D,E --comparisons C,D,E "
     "-o surfaces\n"
     "  tactograph experiment new amplitude --textures E -o amplitude\n"
+    "  tactograph experiment new fidelity --textures A,C,E -o bench\n"
+    "  tactograph experiment run bench -d sim: --participant P01 --observer template\n"
     "  tactograph experiment run stretch -d usb: --participant P01\n"
     "  tactograph experiment run stretch -d sim: --participant P02 --observer "
     "weber=25%,lapse=2%\n"

@@ -79,7 +79,7 @@ Report study_report(const Study& study) {
         .add("smallest_ratio", protocol.smallest_ratio)
         .add("largest_ratio", protocol.largest_ratio)
         .add("step_db", protocol.step_db);
-  else if (protocol.task == schema::Task::ordering)
+  else if (protocol.task == schema::Task::ordering || protocol.task == schema::Task::fidelity)
     report.add("standards", protocol.standards.size());
   else
     report.add("standards", protocol.standards.size())
@@ -105,6 +105,7 @@ struct KnownProtocol {
 };
 const std::vector<KnownProtocol> kKnownProtocols = {{"stretch", {"--method"}},
                                                     {"identification", {"--textures", "--comparisons"}},
+                                                    {"fidelity", {"--textures"}},
                                                     {"amplitude", {"--textures"}},
                                                     {"ordering", {"--textures", "--intended"}},
                                                     {"adjustment", {"--textures", "--goal", "--reference"}}};
@@ -114,7 +115,7 @@ Result<void> check_new_options(const NewStudyOptions& o, const std::vector<std::
   if (known == kKnownProtocols.end())
     return schema::fail(
         ErrorKind::usage, fmt::format("'{}' is not a protocol that comes with tactograph", o.what),
-        "experiment new", "there are: stretch, identification, amplitude, ordering, adjustment");
+        "experiment new", "there are: stretch, identification, fidelity, amplitude, ordering, adjustment");
   for (const std::string& option : given)
     if (std::ranges::find(known->options, option) == known->options.end())
       return schema::fail(ErrorKind::usage, fmt::format("is no option of {}", o.what), option,
@@ -171,6 +172,7 @@ Result<schema::Protocol> new_adjustment(const NewStudyOptions& o, NamedTextures&
 Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& textures) {
   if (o.what == "stretch") return stretch_protocol(o.seed, o.method);
   TACTO_TRY(read_named(o.textures, textures));
+  if (o.what == "fidelity") return fidelity_protocol(o.seed, textures);
   if (o.what == "amplitude") return amplitude_protocol(o.seed, textures);
   if (o.what == "ordering") return new_ordering(o, textures);
   if (o.what == "adjustment") return new_adjustment(o, textures);
@@ -332,7 +334,10 @@ Result<Report> run_resume_study(RunStudyOptions o) {
 
 std::string proof_in_words(const Proof& proof, const TrialQueue& queue, schema::Task task) {
   std::string words = fmt::format("{} of {} trials delivered", proof.delivered, proof.trials);
-  if (proof.placed > 0)
+  if (proof.placed > 0 && task == schema::Task::fidelity)
+    words += fmt::format(", beside real samples, of whose {} placements there is only the operator's word",
+                         proof.placed);
+  else if (proof.placed > 0)
     words += fmt::format(", {} with real samples, of which there is only the operator's word", proof.placed);
   if (queue.abandoned() > 0)
     words += fmt::format(", {} abandoned after too many attempts that were not delivered", queue.abandoned());
@@ -427,7 +432,9 @@ Result<Report> run_prove_run(const ProveOptions& o) {
       .add("sessions", proof.sessions)
       .add("same_to_the_bit", proof.same_to_the_bit);
   add_lost_trials(report, run->queue);
-  if (run->study.protocol.task == schema::Task::identification) report.add("real_samples", proof.placed);
+  if (run->study.protocol.task == schema::Task::identification ||
+      run->study.protocol.task == schema::Task::fidelity)
+    report.add("real_samples", proof.placed);
   if (proof.stretch_error) report.add("stretch_error", *proof.stretch_error);
   if (proof.ratio_error) report.add("ratio_error", *proof.ratio_error);
   report.add("recorded", "ticks and drive").add("predicted", "displacement, by the transducer's model");
@@ -619,15 +626,18 @@ Result<Report> run_withdraw(const WithdrawOptions& o) {
 
 cli::Action declare_new_study(CLI::App& app) {
   auto options = std::make_shared<NewStudyOptions>();
-  app.add_option("PROTOCOL", options->what,
-                 "stretch or identification: experiments 2 and 1 of Wiertlewski 2011; amplitude: after Fiene "
-                 "and Kuchenbecker 2007; ordering, adjustment: after Minsky et al. 1990")
+  app.add_option(
+         "PROTOCOL", options->what,
+         "stretch or identification: experiments 2 and 1 of Wiertlewski 2011; fidelity: its comparison "
+         "bench; amplitude: after Fiene "
+         "and Kuchenbecker 2007; ordering, adjustment: after Minsky et al. 1990")
       ->required();
   app.add_option("-o,--output", options->stem, "Stem of the study's files; default: the protocol's name");
   app.add_option(
          "--textures", options->textures,
-         "Textures of force. Of identification: the standards, A,B,C,D,E; of ordering: those that are "
-         "put in order; of amplitude and adjustment: one")
+         "Textures of force. Of identification: the standards, A,B,C,D,E; of fidelity: those that are "
+         "played beside each sample; of ordering: those that are put in order; of amplitude and adjustment: "
+         "one")
       ->delimiter(',');
   cli::add_choice<schema::LevelMethod>(
       app, "--method", options->method,
@@ -659,7 +669,8 @@ cli::Action declare_new_study(CLI::App& app) {
   app.footer(
       "stretch: which of two sinusoids has the smaller period. identification: which of the standards is a "
       "comparison, a real sample in one block and played in the other one, each of 100 trials or 15 "
-      "minutes. amplitude: one texture at gains between 0 and 2 times that of the real sample, which is "
+      "minutes. fidelity: each texture is played beside the real sample of each; the same or different. "
+      "amplitude: one texture at gains between 0 and 2 times that of the real sample, which is "
       "before "
       "the participant; each is rated from -3 to 3 against it. ordering: all textures are explored freely, "
       "and "
@@ -708,7 +719,8 @@ cli::Action declare_run_study(CLI::App& app) {
       "A simulated participant, which gets only the displacement that the sessions predict: "
       "weber=25.3%,lapse=2%,hurry=5%,seed=1 (hurry: share of trials with a finger of twice the fastest "
       "accepted speed). Of an "
-      "identification: template,noise=9dB,hurry=5%,seed=1, which compares its spectrum with the standards'; "
+      "identification or fidelity: template,noise=9dB,hurry=5%,seed=1, which compares its spectrum with the "
+      "standards'; "
       "its noise is tuned, so its success says nothing about people. Of amplitude: "
       "match=86%,weber=10%,lapse=2%,seed=1 "
       "(match: the ratio that seems equal to the real sample). Of ordering: order,noise=1dB,seed=1, by the "

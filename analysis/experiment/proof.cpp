@@ -26,7 +26,7 @@ namespace {
 constexpr const char *kStretchColumns = "standard_interval\tnominal_stretch\tpredicted_stretch",
                      *kIdentificationColumns = "block\tcondition\tpresented",
                      *kAmplitudeColumns = "nominal_ratio\tpredicted_ratio",
-                     *kOrderingColumns = "explorations",
+                     *kOrderingColumns = "explorations", *kFidelityColumns = "block\tsample\tpresented",
                      *kAdjustmentColumns = "series\tstart_ratio\tpredicted_ratio\tbound";
 constexpr const char* kTrialColumns =
     "attempt\ttrial\t{}\tpredicted_error_db\tmeasured_error_db\t{}\tanswer\tanswer_s\tdelivered\twhy\t"
@@ -164,6 +164,9 @@ std::string cells_of_task(const Run& run, const Attempt& attempt) {
                        attempt.trial.ratio, number_cell(ratio), bound_cell(run, attempt));
   if (task_of(run) == schema::Task::amplitude)
     return fmt::format("{:.9g}\t{}", attempt.trial.ratio, number_cell(ratio));
+  if (task_of(run) == schema::Task::fidelity)
+    return fmt::format("{}\t{}\t{}", attempt.trial.block,
+                       stimulus_of(run.study.key, attempt.trial.sample).name, stimulus.name);
   if (task_of(run) == schema::Task::identification)
     return fmt::format("{}\t{}\t{}", attempt.trial.block,
                        attempt.trial.real ? schema::kRealCondition : schema::kVirtualCondition,
@@ -272,11 +275,10 @@ std::string observer_in_words(const Run& run) {
 }
 
 std::string trials_table(const Run& run) {
-  constexpr std::pair<const char*, const char*> kColumnsOfTask[] = {{kStretchColumns, "answer_interval"},
-                                                                    {kIdentificationColumns, "answer_choice"},
-                                                                    {kAmplitudeColumns, "rating"},
-                                                                    {kOrderingColumns, "order"},
-                                                                    {kAdjustmentColumns, "accepted_ratio"}};
+  constexpr std::pair<const char*, const char*> kColumnsOfTask[] = {
+      {kStretchColumns, "answer_interval"},   {kIdentificationColumns, "answer_choice"},
+      {kAmplitudeColumns, "rating"},          {kOrderingColumns, "order"},
+      {kAdjustmentColumns, "accepted_ratio"}, {kFidelityColumns, "answer_choice"}};
   const auto& [columns, answer] = kColumnsOfTask[static_cast<int>(task_of(run))];
   std::string table = fmt::format(kTrialColumns, columns, answer);
   for (const Attempt& attempt : run.queue.attempts()) table += trial_row(run, attempt) + "\n";

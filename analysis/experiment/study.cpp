@@ -331,6 +331,24 @@ Result<schema::Protocol> adjustment_protocol(const std::string& seed, const Name
   return protocol;
 }
 
+Result<schema::Protocol> fidelity_protocol(const std::string& seed, const NamedTextures& textures) {
+  TACTO_TRY(check_several(textures));
+  schema::Protocol protocol = stretch_protocol(seed);
+  schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
+  protocol.task = schema::Task::fidelity;
+  TACTO_TRY(fit_to_textures(protocol, textures, 1));
+  const double others = static_cast<double>(textures.size()) - 1;
+  protocol.repetitions = static_cast<int>(std::max(1.0, std::round(10 / others)));
+  protocol.participants = 10;
+  protocol.choices = {{"f", "same"}, {"j", "different"}};
+  texts.welcome =
+      "You feel a texture that is played, and a real sample beside it. Say whether they are the same "
+      "texture.";
+  texts.question = "Feel the sample beside it. Is it the same texture? f: the same, j: a different one.";
+  texts.place = "For the operator: put this sample beside the device, type its label and press Enter.";
+  return protocol;
+}
+
 Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,
                           const NamedTextures& textures, schema::Existing existing) {
   TACTO_TRY(check_plain(protocol.seed, "--seed"));

@@ -29,9 +29,10 @@ constexpr Column kColumns[] = {
      ""},
     {"block", "number of the block of trials", ""},
     {"condition", "whether the comparisons were real samples or played (virtual)", ""},
-    {"presented", "name of the comparison", ""},
-    {"answer_choice", "number of the standard that was answered", ""},
-    {"correct", "1: the answer is the comparison, else 0", ""},
+    {"sample", "name of the real sample beside which a texture was played", ""},
+    {"presented", "name of the comparison, or of the texture that was played", ""},
+    {"answer_choice", "number of the standard that was answered, or 1: same, 2: different", ""},
+    {"correct", "1: the answer is the comparison, or right about the sample, else 0", ""},
     {"explorations", "number of textures that were explored, each of them once or more", ""},
     {"order", "names of the textures in the order of the answer, from least to most", ""},
     {"series", "ascending: the setting began at a low gain; descending: at a high one", ""},
@@ -129,19 +130,24 @@ std::string bids_cell(const std::string& text) {
 }
 
 bool is_right(const Run& run, const Attempt& attempt) {
+  if (run.study.protocol.task == schema::Task::fidelity)
+    return (attempt.answered->choice == schema::kSameChoice) == (attempt.trial.code == attempt.trial.sample);
   return is_two_interval(run.study.protocol)
              ? seemed_longer(attempt)
              : attempt.answered->word == stimulus_of(run.study.key, attempt.trial.code).name;
 }
 
-// The cells of trials_table(); with seemed_longer of two intervals, with correct of an identification.
+// The cells of trials_table(); with seemed_longer of two intervals, with correct of an identification and a
+// fidelity.
 std::vector<std::vector<std::string>> rows_of(const Run& run) {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::string> lines = split(trials_table(run), '\n');
   lines.pop_back();
   for (std::size_t i = 0; i < lines.size(); ++i) {
     rows.push_back(split(lines[i], '\t'));
-    if (!is_two_interval(run.study.protocol) && run.study.protocol.task != schema::Task::identification)
+    const schema::Task task = run.study.protocol.task;
+    if (!is_two_interval(run.study.protocol) && task != schema::Task::identification &&
+        task != schema::Task::fidelity)
       continue;
     const Attempt* const attempt = i > 0 ? &run.queue.attempts()[i - 1] : nullptr;
     const bool answered = attempt != nullptr && attempt->answered;

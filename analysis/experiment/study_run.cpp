@@ -126,15 +126,35 @@ class LiveSteps {
   Result<std::optional<schema::JournalEntry>> present(const Attempt& attempt) {
     request_.tell(static_cast<double>(run_.queue.counted()) / static_cast<double>(run_.queue.trials()));
     if (task() == schema::Task::ordering) return explore(attempt);
-    if (!attempt.trial.real) return play(attempt);
-    const std::string& label = attempt.trial.code;
-    if (!request_.observer) {
-      const auto is_placed = request_.participant.place(label, run_.queue.placed());
-      TACTO_TRY(is_placed);
-      if (!*is_placed || !go_ahead(1)) return std::nullopt;
+    if (task() == schema::Task::fidelity) {
+      const auto beside = place_beside(attempt);
+      TACTO_TRY(beside);
+      if (!*beside) return std::nullopt;
     }
-    if (request_.stop_asked()) return std::nullopt;
-    return schema::SamplePlaced{attempt.begun.attempt, label};
+    if (!attempt.trial.real) return play(attempt);
+    const auto placed = place_sample(attempt.trial.code);
+    TACTO_TRY(placed);
+    if (!*placed || !go_ahead(1) || request_.stop_asked()) return std::nullopt;
+    return schema::SamplePlaced{attempt.begun.attempt, attempt.trial.code};
+  }
+
+  // False: the run ends. An observer needs no operator.
+  Result<bool> place_sample(const std::string& label) const {
+    if (request_.observer) return !request_.stop_asked();
+    return request_.participant.place(label, run_.queue.placed());
+  }
+
+  // The sample stays for its block.
+  Result<bool> place_beside(const Attempt& attempt) {
+    const std::string& label = attempt.trial.sample;
+    if (run_.queue.sample() == label) return true;
+    const auto placed = place_sample(label);
+    TACTO_TRY(placed);
+    if (!*placed) return false;
+    const schema::SamplePlaced entry{attempt.begun.attempt, label};
+    TACTO_TRY(keep(entry));
+    TACTO_TRY(run_.queue.take(entry));
+    return true;
   }
 
   std::string place(const Attempt& attempt) const {
@@ -308,20 +328,29 @@ class LiveSteps {
     return schema::AttemptAnswered{attempt.begun.attempt, choice, word, (*given)->answer_s};
   }
 
+  // Which standard it is to the observer.
+  Result<int> identified(const Attempt& attempt) {
+    if (!templates_) {
+      auto templates = TemplateObserver::of(run_.study);
+      TACTO_TRY(templates);
+      templates_ = std::move(*templates);
+    }
+    const std::optional<std::string> session =
+        attempt.trial.real ? std::nullopt : std::optional(full(attempt.begun.sessions.front()));
+    return templates_->answer(*request_.observer, place(attempt), attempt.trial.code, session);
+  }
+
   Result<std::optional<GivenAnswer>> given_answer(const Attempt& attempt) {
     if (task() == schema::Task::adjustment) return GivenAnswer{accepted_choice(attempt), 0};
     if (!request_.observer) return request_.participant.answer(run_.queue.answers());
     if (task() == schema::Task::ordering) return order_by_level(attempt);
-    if (task() == schema::Task::identification) {
-      if (!templates_) {
-        auto templates = TemplateObserver::of(run_.study);
-        TACTO_TRY(templates);
-        templates_ = std::move(*templates);
-      }
-      const std::optional<std::string> session =
-          attempt.trial.real ? std::nullopt : std::optional(full(attempt.begun.sessions.front()));
-      return GivenAnswer{templates_->answer(*request_.observer, place(attempt), attempt.trial.code, session),
-                         0};
+    if (task() == schema::Task::identification || task() == schema::Task::fidelity) {
+      const auto number = identified(attempt);
+      TACTO_TRY(number);
+      if (task() == schema::Task::identification) return GivenAnswer{*number, 0};
+      const std::string& name = run_.study.protocol.standards[static_cast<std::size_t>(*number) - 1];
+      const bool same = stimulus_of(run_.study.key, attempt.trial.sample).name == name;
+      return GivenAnswer{same ? schema::kSameChoice : schema::kSameChoice + 1, 0};
     }
     const auto& intervals = attempt.judged->intervals;
     if (task() == schema::Task::amplitude) {
@@ -369,9 +398,11 @@ int next_order(const Study& study) {
 }
 
 Result<void> check_observer(const schema::Protocol& protocol, const std::optional<Observer>& observer) {
-  constexpr const char* kExamples[] = {"weber=25.3%", "template", "match=86%,weber=10%", "order,noise=1dB",
-                                       "threshold=20%,sd=10%"};
-  if (!observer || observer->task == protocol.task) return {};
+  constexpr const char* kExamples[] = {"weber=25.3%",          "template",
+                                       "match=86%,weber=10%",  "order,noise=1dB",
+                                       "threshold=20%,sd=10%", "template"};
+  const bool compares = protocol.task == schema::Task::fidelity;  // the template that it identifies
+  if (!observer || observer->task == (compares ? schema::Task::identification : protocol.task)) return {};
   return fail(
       ErrorKind::usage,
       fmt::format("'{}' cannot answer in the task {}", observer->text, schema::word_of(protocol.task)),

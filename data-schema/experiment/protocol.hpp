@@ -23,10 +23,11 @@ struct StandardStimulus {
 /// the bench as a real sample; which of the standards it is. amplitude: the standard is played, at a gain of
 /// each trial; how strong it is, re the real sample that is before the participant. ordering: all standards,
 /// each explored as often as the participant likes; their order, from least to most. adjustment: the first
-/// standard is played, and the participant changes its gain until the goal is reached.
-enum class Task { two_interval, identification, amplitude, ordering, adjustment };
+/// standard is played, and the participant changes its gain until the goal is reached. fidelity: a
+/// standard is played beside the real sample of one of them; whether they are the same.
+enum class Task { two_interval, identification, amplitude, ordering, adjustment, fidelity };
 
-/// "two_interval", "identification", "amplitude", "ordering", "adjustment".
+/// "two_interval", "identification", "amplitude", "ordering", "adjustment", "fidelity".
 const char* word_of(Task task);
 
 /// Which level a trial of two intervals has. constant: each level as often as the others, in the order of the
@@ -54,6 +55,9 @@ inline constexpr int kLargestRating = 3;
 /// The answers of the task adjustment, in order and from 1: a step down, a step up, and the end.
 enum class Turn { weaker = 1, stronger, accept };
 
+/// The answers of the task fidelity are "same" and "different", in this order, from 1.
+inline constexpr int kSameChoice = 1;
+
 /// How the finger is to move in each interval.
 struct ProtocolPace {
   double from_m = 0, to_m = 0;  ///< on the texture
@@ -79,7 +83,7 @@ struct AnswerWord {
 struct ProtocolTexts {
   std::string welcome, begin, interval, question, end;
   std::string rest;   ///< before a break; in a protocol with breaks only
-  std::string place;  ///< to the operator, before a real sample's label; in an identification only
+  std::string place;  ///< to the operator, before a real sample's label
   std::string
       too_early;     ///< when a setting is accepted before the strokes of the pace; in an adjustment only
   std::string left;  ///< before the numbers of the textures that have yet to be explored; in an ordering only
@@ -122,7 +126,8 @@ struct Protocol {
   /// Of amplitude: gains of trials are uniform from 0 to this times gain_m_per_n. Of adjustment: the limit of
   /// what can be set.
   double largest_ratio = 1;
-  /// Of each level (constant) or comparison (in each condition); else the number of trials.
+  /// Of each level (constant) or comparison (in each condition); of fidelity of a texture beside another
+  /// sample; else the number of trials.
   int repetitions = 0;
   std::string seed;         ///< of codes and order
   double gain_m_per_n = 0;  ///< of playback; of amplitude and adjustment that of the ratio 1

@@ -42,8 +42,8 @@ struct ShownText {
   std::string ProtocolTexts::*member;
   bool (*is_shown)(const Protocol&);
 };
-constexpr const char* kTaskWords[] = {"two_interval", "identification", "amplitude", "ordering",
-                                      "adjustment"};
+constexpr const char* kTaskWords[] = {"two_interval", "identification", "amplitude",
+                                      "ordering",     "adjustment",     "fidelity"};
 constexpr const char* kMethodWords[] = {"constant", "staircase", "quest_plus"};
 constexpr const char* kGoalWords[] = {"least", "greatest", "match"};
 // Those that a task may have.
@@ -55,13 +55,15 @@ const std::vector<std::string> kTaskMembers[] = {
     {"standards", "comparisons", "conditions", "most_trials", "longest_s"},
     {"standards", "largest_ratio"},
     {"standards"},
-    {"standards", "goal", "smallest_ratio", "largest_ratio", "step_db"}};
+    {"standards", "goal", "smallest_ratio", "largest_ratio", "step_db"},
+    {"standards"}};
 bool is_always_shown(const Protocol& /*protocol*/) {
   return true;
 }
 
 bool places_samples(const Protocol& protocol) {
-  return std::ranges::find(protocol.conditions, kRealCondition) != protocol.conditions.end();
+  return protocol.task == Task::fidelity ||
+         std::ranges::find(protocol.conditions, kRealCondition) != protocol.conditions.end();
 }
 
 constexpr ShownText kShownTexts[] = {
@@ -124,7 +126,7 @@ Protocol protocol_from(const Document& document) {
   if (protocol.task == Task::two_interval) take_two_interval(body, protocol);
   if (protocol.task == Task::identification) take_identification(body, protocol);
   if (protocol.task == Task::amplitude) take_amplitude(body, protocol);
-  if (protocol.task == Task::ordering) take_ordering(body, protocol);
+  if (protocol.task == Task::ordering || protocol.task == Task::fidelity) take_ordering(body, protocol);
   if (protocol.task == Task::adjustment) take_adjustment(body, protocol);
   protocol.repetitions = body["repetitions"];
   protocol.seed = body["seed"];
@@ -194,7 +196,7 @@ Json protocol_body(const Protocol& protocol) {
   if (protocol.task == Task::two_interval) put_two_interval(body, protocol);
   if (protocol.task == Task::identification) put_identification(body, protocol);
   if (protocol.task == Task::amplitude) put_amplitude(body, protocol);
-  if (protocol.task == Task::ordering) put_ordering(body, protocol);
+  if (protocol.task == Task::ordering || protocol.task == Task::fidelity) put_ordering(body, protocol);
   if (protocol.task == Task::adjustment) put_adjustment(body, protocol);
   body["repetitions"] = protocol.repetitions;
   body["seed"] = protocol.seed;
@@ -246,7 +248,7 @@ Result<void> check_levels(const Protocol& protocol, const std::string& path) {
 }
 
 std::size_t answers_of(const Protocol& protocol) {
-  if (protocol.task == Task::two_interval) return 2;
+  if (protocol.task == Task::two_interval || protocol.task == Task::fidelity) return 2;
   if (protocol.task == Task::amplitude) return 2 * kLargestRating + 1;
   if (protocol.task == Task::adjustment) return static_cast<std::size_t>(Turn::accept);
   return protocol.standards.size();
@@ -266,8 +268,8 @@ Result<void> check_answers(const Protocol& protocol, const std::string& path) {
   if (protocol.choices.size() == expected) return {};
   return malformed_at(path, "answers/choices",
                       fmt::format("has {} answers, the task {}", protocol.choices.size(), expected),
-                      "give one for each interval, for each standard, for each rating from -3 to 3, or for "
-                      "weaker, stronger and accepted");
+                      "give one for each interval, for each standard, for each rating from -3 to 3, for "
+                      "weaker, stronger and accepted, or for same and different");
 }
 
 // A line of a file of answers is a word, a key or a label (K3): each has one meaning.
@@ -296,9 +298,10 @@ Result<void> check_names(const Protocol& protocol, const std::string& path) {
   const bool matches = protocol.task == Task::adjustment && protocol.goal == Goal::match;
   const bool one = protocol.task == Task::amplitude || protocol.task == Task::adjustment;
   if (protocol.task != Task::two_interval && (one != (names == 1)) && !(matches && names == 2))
-    return malformed_at(path, "standards", fmt::format("has {} names", names),
-                        "give two or more in an identification or ordering, else one; to match them, one or "
-                        "two");
+    return malformed_at(
+        path, "standards", fmt::format("has {} names", names),
+        "give two or more in an identification, ordering or fidelity, else one; to match them, one or "
+        "two");
   if (!protocol.intended.empty() && protocol.intended.size() != names)
     return malformed_at(path, "intended",
                         fmt::format("has {} numbers for {} standards", protocol.intended.size(), names),

@@ -62,6 +62,15 @@ schema::Protocol three_orders() {
   return protocol;
 }
 
+// Three textures, each beside the sample of each: 3 blocks of 4 trials.
+schema::Protocol twelve_beside_samples() {
+  schema::Protocol protocol = three_orders();
+  protocol.task = schema::Task::fidelity;
+  protocol.standards = {"A", "B", "C"};
+  protocol.repetitions = 1;
+  return protocol;
+}
+
 // A run whose journal is a text: every seventh attempt is not delivered.
 class TextRun {
  public:
@@ -118,6 +127,11 @@ class TextRun {
     steps.present = [this](const Attempt& attempt) -> Result<std::optional<schema::JournalEntry>> {
       if (attempt.begun.attempt < first_presented) return std::nullopt;
       if (attempt.trial.real) return schema::SamplePlaced{attempt.begun.attempt, attempt.trial.code};
+      if (const std::string& sample = attempt.trial.sample; sample != queue_.sample()) {
+        const schema::SamplePlaced placed{attempt.begun.attempt, sample};
+        if (const auto kept = keep(placed); !kept) return schema::forward_error(kept);
+        if (const auto taken = queue_.take(placed); !taken) return schema::forward_error(taken);
+      }
       for (const std::string& code : attempt.trial.arranged) {
         const schema::StimulusExplored explored{attempt.begun.attempt, code, "a"};
         if (const auto kept = keep(explored); !kept) return schema::forward_error(kept);
@@ -319,6 +333,42 @@ TEST(ExperimentRun, AJournalOfOrdersCutAtEachByteIsResumed) {
     ASSERT_EQ(counted.size(), 3U) << bytes;
     for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
   }
+}
+
+// A sample stays for its block, and is placed again after an interruption. The journal is cut at each byte.
+TEST(ExperimentRun, AJournalOfSamplesBesideTexturesCutAtEachByteIsResumed) {
+  TextRun whole(twelve_beside_samples());
+  ASSERT_TRUE(whole.go_on(""));
+  const std::string& text = whole.text();
+  ASSERT_EQ(whole.queue().counted(), 12U);
+  ASSERT_EQ(lines_with(text, R"("event":"placed")"), 3U);
+  int own = 0;
+  for (const Attempt& attempt : whole.queue().attempts())
+    own += attempt.counts() && attempt.trial.code == attempt.trial.sample;
+  EXPECT_EQ(own, 6);
+  for (std::size_t bytes = text.find('\n') + 1; bytes <= text.size(); ++bytes) {
+    TextRun resumed(twelve_beside_samples());
+    const auto went_on = resumed.go_on(text.substr(0, bytes));
+    ASSERT_TRUE(went_on) << bytes << ": " << schema::message(went_on.error());
+    ASSERT_TRUE(resumed.queue().has_ended()) << bytes;
+    const auto counted = counted_trials(resumed.queue());
+    ASSERT_EQ(counted.size(), 12U) << bytes;
+    for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
+  }
+}
+
+TEST(ExperimentRun, ATextureBesideNoSampleOrAnotherOneIsRefused) {
+  const schema::Protocol protocol = twelve_beside_samples();
+  const StudyTrial trial = ordered_trials(protocol, key_of(protocol), "P01", 1).front();
+  TrialQueue queue({trial}, 3);
+  ASSERT_TRUE(queue.take(schema::AttemptBegun{1, trial.name(), {}, {}, 1, 0}));
+  EXPECT_FALSE(queue.take(schema::DeliveryJudged{1, true, {}, {}}));
+  EXPECT_FALSE(queue.take(schema::SamplePlaced{1, "K9"}));
+  ASSERT_TRUE(queue.take(schema::SamplePlaced{1, trial.sample}));
+  EXPECT_FALSE(queue.take(schema::AttemptAnswered{1, 1, "same", 0}));
+  ASSERT_TRUE(queue.take(schema::DeliveryJudged{1, true, {}, {}}));
+  ASSERT_TRUE(queue.take(schema::AttemptAnswered{1, 1, "same", 0}));
+  EXPECT_TRUE(queue.attempts().front().counts());
 }
 
 schema::Protocol adaptive(schema::LevelMethod method) {

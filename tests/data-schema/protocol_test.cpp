@@ -222,6 +222,13 @@ TEST_F(ProtocolFile, AnOrderingAndAnAdjustmentReadBackAndEachFaultHasItsPlace) {
     EXPECT_EQ(nlohmann::json::parse(protocol_text(*protocol).value()), body);
   }
   EXPECT_TRUE(read(ordering, {{"intended", nullptr}}));
+  nlohmann::json fidelity = ordering;
+  fidelity.erase("intended"), fidelity["texts"]["en"].erase("left");
+  fidelity.merge_patch({{"task", "fidelity"}});
+  fidelity["texts"]["en"]["place"] = "p", fidelity["answers"]["choices"] = choices({"same", "different"});
+  const auto beside = read(fidelity, nlohmann::json::object());
+  ASSERT_TRUE(beside) << message(beside.error());
+  EXPECT_EQ(nlohmann::json::parse(protocol_text(*beside).value()), fidelity);
   EXPECT_TRUE(read(adjustment, {{"standards", {"A", "B"}}}));
   using Fault = std::tuple<const nlohmann::json*, nlohmann::json, const char*>;
   for (const auto& [body, change, place] :
@@ -232,6 +239,10 @@ TEST_F(ProtocolFile, AnOrderingAndAnAdjustmentReadBackAndEachFaultHasItsPlace) {
         {&ordering, {{"standards", {"A", "B"}}, {"intended", nullptr}}, "/answers/choices"},
         {&ordering, {{"texts", {{"en", {{"left", nullptr}}}}}}, "/texts/en/left"},
         {&adjustment, {{"texts", {{"en", {{"too_early", nullptr}}}}}}, "/texts/en/too_early"},
+        {&fidelity, {{"standards", {"A"}}}, "/standards"},
+        {&fidelity, {{"intended", {1.0, 2.0, 3.0}}}, "/intended"},
+        {&fidelity, {{"texts", {{"en", {{"place", nullptr}}}}}}, "/texts/en/place"},
+        {&fidelity, {{"answers", {{"choices", choices({"a", "b", "c"})}}}}, "/answers/choices"},
         {&adjustment, {{"standards", {"A", "B", "C"}}}, "/standards"},
         {&adjustment, {{"standards", {"A", "B"}}, {"goal", "least"}}, "/standards"},
         {&adjustment, {{"intended", {1.0, 2.0}}}, "/intended"},
