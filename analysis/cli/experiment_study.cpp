@@ -456,7 +456,8 @@ Result<Report> run_noise(const NoiseOptions& o) {
   if (!protocol->masking_noise)
     return schema::fail(ErrorKind::unsuitable, "the protocol has no masking noise", o.study,
                         "add masking_noise to it, or make it with --masking-noise 65dB");
-  TACTO_TRY(cli::check_ending(o.output, {".wav"}, "name a WAV file"));
+  if (!o.output.ends_with(".wav"))
+    return schema::fail(ErrorKind::usage, "does not end in .wav", o.output, "name a WAV file");
   TACTO_TRY(write_masking_noise(o.output, *protocol->masking_noise, protocol->seed, o.existing));
   Report report;
   report.add("masking_noise", noise_in_words(protocol->masking_noise));

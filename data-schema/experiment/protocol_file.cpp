@@ -372,8 +372,8 @@ Result<void> check_protocol(const Protocol& protocol, const std::string& path) {
   TACTO_TRY(check_answers(protocol, path));
   TACTO_TRY(check_words(protocol, path));
   TACTO_TRY(check_texts(protocol, path));
-  if (const auto& noise = protocol.masking_noise; noise && noise->high_hz <= noise->low_hz)
-    return malformed_at(path, "masking_noise/high_hz", "is not above low_hz", "give a band");
+  if (const auto& noise = protocol.masking_noise; noise && noise->high_hz < noise->low_hz + 1)
+    return malformed_at(path, "masking_noise/high_hz", "the band is narrower than 1 Hz", "give a wider band");
   return check_pace(protocol, path);
 }
 
