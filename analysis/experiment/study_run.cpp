@@ -175,7 +175,8 @@ class LiveSteps {
     }
     for (std::size_t i = 0; i < attempt.begun.stimuli.size(); ++i) TACTO_TRY(read_facts(attempt, i, played));
     const auto strokes = static_cast<std::uint64_t>(run_.study.protocol.pace.strokes);
-    if (request_.participant.too_early && task() == schema::Task::adjustment &&
+    const bool accepted = std::ranges::find(played.late, kNotAccepted) == played.late.end();
+    if (request_.participant.too_early && task() == schema::Task::adjustment && accepted &&
         played.facts.back().strokes < strokes)
       request_.participant.too_early();
     return judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums, run_.study.protocol,
