@@ -9,6 +9,7 @@
 #include "analysis/experiment/adjustment_answers.hpp"
 #include "analysis/experiment/amplitude_answers.hpp"
 #include "analysis/experiment/answers_page.hpp"
+#include "analysis/experiment/fidelity_answers.hpp"
 #include "analysis/experiment/identification_answers.hpp"
 #include "analysis/experiment/ordering_answers.hpp"
 #include "analysis/experiment/study_answers.hpp"
@@ -68,7 +69,10 @@ void add_test(Report& row, double deviance, std::size_t freedom, double p) {
 Report fit_row(const AnswersFit& all, const FittedGroup& group) {
   Report row;
   add_by(row, all.table.columns.by, group.by);
-  add_estimate(row, all.options.guess ? "threshold" : "pse", group.fit.threshold);
+  if (all.options.threshold)
+    row.add("pse", *all.options.threshold).add("pse_is_fixed", true);
+  else
+    add_estimate(row, all.options.guess ? "threshold" : "pse", group.fit.threshold);
   add_estimate(row, all.steepness_name == "JND" ? "jnd" : all.steepness_name, group.steepness);
   row.add("lapse", group.fit.function.lapse);
   if (!all.options.lapse) row.add("lapse_high", group.fit.lapse_high);
@@ -315,6 +319,31 @@ Report amplitude_report(const AmplitudeAnswers& all, const std::string& verdict)
   return report.add("people", std::move(people));
 }
 
+void add_same(Report& row, const SameAnswers& answers, const std::optional<Estimate>& d_prime) {
+  row.add("same_of_own", answers.same_of_own).add("own", answers.own);
+  row.add("same_of_other", answers.same_of_other).add("other", answers.other);
+  if (d_prime) add_estimate(row, "d_prime", *d_prime);
+}
+
+Report fidelity_report(const FidelityAnswers& all, const std::string& verdict) {
+  Report report;
+  report.add("verdict", verdict);
+  if (!all.simulated.empty()) report.add("simulated", all.simulated);
+  if (all.abandoned > 0) report.add("abandoned", all.abandoned);
+  add_same(report, sum_of(all), all.d_prime);
+  if (all.predicted_error_db) report.add("predicted_error_db", *all.predicted_error_db);
+  std::vector<Report> pairs, people;
+  for (std::size_t played = 0; played < all.standards.size(); ++played)
+    for (std::size_t sample = 0; sample < all.standards.size(); ++sample) {
+      const SameAnswers& pair = all.pairs[played][sample];
+      pairs.emplace_back().add("played", all.standards[played]).add("sample", all.standards[sample]);
+      pairs.back().add("same", pair.same_of_own + pair.same_of_other).add("trials", pair.own + pair.other);
+    }
+  for (const FidelityPerson& each : all.people)
+    add_same(people.emplace_back().add("participant", each.participant), each.answers, each.d_prime);
+  return report.add("pairs", std::move(pairs)).add("people", std::move(people));
+}
+
 void add_ordered(Report& row, const OrderingAnswers& all, const OrderedBy& by) {
   row.add("orders", by.orders);
   Report ranks;
@@ -357,12 +386,12 @@ Report adjustment_report(const AdjustmentAnswers& all, const std::string& verdic
   if (!all.simulated.empty()) report.add("simulated", all.simulated);
   if (all.abandoned > 0) report.add("abandoned", all.abandoned);
   if (all.ratio) add_estimate(report, "ratio", *all.ratio);
-  if (all.ratio) report.add("rms_m", all.unit_rms_m * all.ratio->value);
+  if (all.ratio) report.add("rms_m", all.unit_rms_m * all.ratio->value).add("rms_band", all.band);
   if (all.hysteresis_db) add_estimate(report, "hysteresis_db", *all.hysteresis_db);
   std::vector<Report> people;
   for (const AdjustedPerson& each : all.people) {
     Report& row = people.emplace_back();
-    row.add("participant", each.participant);
+    row.add("participant", each.participant).add("bounds", each.bounds);
     if (each.means.middle) add_estimate(row, "ratio", *each.means.middle);
     add_series(row, "ascending", each.means.ascending);
     add_series(row, "descending", each.means.descending);
@@ -385,6 +414,11 @@ Result<Report> analyse_task(const AnalyseOptions& o, bool json) {
     const AmplitudeAnswers answers = amplitude_answers(*runs);
     const Findings findings = findings_of(answers);
     return write_fit(o.fit, findings, amplitude_report(answers, findings.verdict()), json);
+  }
+  if (protocol->task == schema::Task::fidelity) {
+    const FidelityAnswers answers = fidelity_answers(*runs);
+    const Findings findings = findings_of(answers);
+    return write_fit(o.fit, findings, fidelity_report(answers, findings.verdict()), json);
   }
   if (protocol->task == schema::Task::ordering) {
     const OrderingAnswers answers = ordering_answers(*runs);
@@ -424,12 +458,18 @@ cli::Action declare_analyse(CLI::App& app) {
   cli::declare_force(app, options->fit.existing);
   app.footer(
       "The trials that were delivered and answered, of all participants. Of two intervals: the JND is the "
-      "Weber fraction, re the standard's period.\nOf an identification: success and transmitted information "
+      "Weber fraction, re the standard's period; where all stretches have one sign (a staircase) the PSE is "
+      "0 and "
+      "not fitted.\nOf an identification: success and transmitted information "
       "of "
       "real and of virtual comparisons, each person analysed and then the mean taken; information is "
       "corrected for its bias by the jackknife, with the plug-in value and that of Miller and Madow beside "
       "it; "
-      "the answers are the sum over people.\nOf amplitude: the mean ratio of the trials that were rated 0, "
+      "the answers are the sum over people.\nOf fidelity: how often a played texture was "
+      "called the same as its own sample, and as another one; d' of the yes-no decision, with the mean over "
+      "people and "
+      "Student's interval; and the median of the predicted error.\nOf amplitude: the mean ratio of the "
+      "trials that were rated 0, "
       "and the "
       "fitted match, the ratio at the middle of what is rated 0: it does not depend on which ratios were "
       "asked. Its "
@@ -443,7 +483,9 @@ cli::Action declare_analyse(CLI::App& app) {
       "of "
       "the ratios that were accepted, in ascending and in descending series, with Student's 95 % interval; "
       "the "
-      "middle of both, and their difference with an interval after Welch.");
+      "middle of both, and their difference with an interval after Welch. A setting at an end of the range "
+      "is "
+      "a bound, and counted.");
   CLI::App* const verb = app.get_parent();
   return [options, verb] { return run_analyse(*options, verb->count("--json") > 0); };
 }
@@ -453,6 +495,7 @@ constexpr cli::VerbPart kExperimentParts[] = {
     {"check", "Check a study's files: protocol, key, stimuli", declare_check_study},
     {"run", "Run a study with one participant, or with a simulated observer", declare_run_study},
     {"resume", "Continue an interrupted run", declare_resume_study},
+    {"noise", "Write the masking noise of a study as WAV", declare_noise},
     {"watch", "Print the progress of a study's runs while they go on", declare_watch_study},
     {"prove", "Compute from the sessions of a run what was delivered", declare_prove_run},
     {"analyse",
@@ -476,6 +519,8 @@ const cli::Verb kExperimentVerb{
     "  tactograph experiment new identification --textures A,B,C,D,E --comparisons C,D,E "
     "-o surfaces\n"
     "  tactograph experiment new amplitude --textures E -o amplitude\n"
+    "  tactograph experiment new fidelity --textures A,C,E -o bench\n"
+    "  tactograph experiment run bench -d sim: --participant P01 --observer template\n"
     "  tactograph experiment run stretch -d usb: --participant P01\n"
     "  tactograph experiment run stretch -d sim: --participant P02 --observer "
     "weber=25%,lapse=2%\n"
@@ -487,6 +532,9 @@ const cli::Verb kExperimentVerb{
     "  tactograph experiment run roughness -d sim: --participant P01 --observer order,noise=1dB\n"
     "  tactograph experiment new adjustment --textures E --goal least -o least\n"
     "  tactograph experiment run least -d sim: --participant P01 --observer threshold=20%,sd=10%\n"
+    "  tactograph experiment new stretch --masking-noise 65dB -o quiet\n"
+    "  tactograph experiment noise quiet -o noise.wav\n"
+    "  tactograph experiment run quiet -d usb: --participant P01 --masking-level 64.5dB\n"
     "  tactograph experiment watch stretch\n"
     "  tactograph experiment prove stretch-P01\n"
     "  tactograph experiment analyse stretch --unblind -o stretch.html\n"

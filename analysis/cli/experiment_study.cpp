@@ -19,6 +19,7 @@
 #include "analysis/cli/participant_screen.hpp"
 #include "analysis/experiment/interval_play.hpp"
 #include "analysis/experiment/marked_proof.hpp"
+#include "analysis/experiment/masking_noise.hpp"
 #include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/study_export.hpp"
 #include "analysis/experiment/study_power.hpp"
@@ -44,6 +45,7 @@ struct NewStudyOptions {
   std::vector<double> intended;
   schema::Goal goal = schema::Goal::least;
   schema::LevelMethod method = schema::LevelMethod::constant;
+  std::optional<double> masking_db;
   schema::Existing existing = schema::Existing::keep;
 };
 
@@ -53,7 +55,8 @@ struct CheckStudyOptions {
 
 struct RunStudyOptions {
   std::string what;  ///< the study, or the run to be resumed
-  std::string device, participant, observer, answers;
+  std::string device, participant, observer, answers, language = schema::kUsualLanguage;
+  std::optional<double> masking_level_db;
 };
 
 constexpr const char* kDeviceHelp =
@@ -61,7 +64,7 @@ constexpr const char* kDeviceHelp =
 constexpr const char* kAnswersHelp =
     "File with an answer on each line, its word or its key, and between them the labels (K3) of the real "
     "samples that the operator places; of ordering the numbers from least to most (2 1 3); of adjustment the "
-    "ratio that is set (0.25); default: the keys of this terminal";
+    "ratio that is set (0.25; the nearest step is used, and printed); default: the keys of this terminal";
 
 Report study_report(const Study& study) {
   const schema::Protocol& protocol = study.protocol;
@@ -76,7 +79,7 @@ Report study_report(const Study& study) {
         .add("smallest_ratio", protocol.smallest_ratio)
         .add("largest_ratio", protocol.largest_ratio)
         .add("step_db", protocol.step_db);
-  else if (protocol.task == schema::Task::ordering)
+  else if (protocol.task == schema::Task::ordering || protocol.task == schema::Task::fidelity)
     report.add("standards", protocol.standards.size());
   else
     report.add("standards", protocol.standards.size())
@@ -84,6 +87,7 @@ Report study_report(const Study& study) {
         .add("conditions", protocol.conditions.size());
   report.add("repetitions", protocol.repetitions)
       .add("trials", ordered_trials(protocol, study.key, "P1", 1).size());
+  report.add("masking_noise", noise_in_words(protocol.masking_noise));
   return report.add("interval_s", paced_path(protocol.pace).duration_s());
 }
 
@@ -101,6 +105,7 @@ struct KnownProtocol {
 };
 const std::vector<KnownProtocol> kKnownProtocols = {{"stretch", {"--method"}},
                                                     {"identification", {"--textures", "--comparisons"}},
+                                                    {"fidelity", {"--textures"}},
                                                     {"amplitude", {"--textures"}},
                                                     {"ordering", {"--textures", "--intended"}},
                                                     {"adjustment", {"--textures", "--goal", "--reference"}}};
@@ -110,7 +115,7 @@ Result<void> check_new_options(const NewStudyOptions& o, const std::vector<std::
   if (known == kKnownProtocols.end())
     return schema::fail(
         ErrorKind::usage, fmt::format("'{}' is not a protocol that comes with tactograph", o.what),
-        "experiment new", "there are: stretch, identification, amplitude, ordering, adjustment");
+        "experiment new", "there are: stretch, identification, fidelity, amplitude, ordering, adjustment");
   for (const std::string& option : given)
     if (std::ranges::find(known->options, option) == known->options.end())
       return schema::fail(ErrorKind::usage, fmt::format("is no option of {}", o.what), option,
@@ -167,6 +172,7 @@ Result<schema::Protocol> new_adjustment(const NewStudyOptions& o, NamedTextures&
 Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& textures) {
   if (o.what == "stretch") return stretch_protocol(o.seed, o.method);
   TACTO_TRY(read_named(o.textures, textures));
+  if (o.what == "fidelity") return fidelity_protocol(o.seed, textures);
   if (o.what == "amplitude") return amplitude_protocol(o.seed, textures);
   if (o.what == "ordering") return new_ordering(o, textures);
   if (o.what == "adjustment") return new_adjustment(o, textures);
@@ -180,6 +186,7 @@ Result<Report> run_new_study(const NewStudyOptions& o) {
   NamedTextures textures;
   auto protocol = new_protocol(o, textures);
   TACTO_TRY(protocol);
+  if (o.masking_db) protocol->masking_noise = usual_masking_noise(*o.masking_db);
   const auto study = write_study(o.stem.empty() ? o.what : o.stem, *protocol, textures, o.existing);
   TACTO_TRY(study);
   auto report = warn_and_report(*study);
@@ -237,11 +244,27 @@ Report progress_row(const std::string& stem, const TrialQueue& queue) {
 Report report_of_run(const Run& run) {
   Report report = progress_row(run.stem, run.queue);
   if (!run.journal.plan.observer.empty()) report.add("simulated", observer_in_words(run));
+  if (run.study.protocol.masking_noise) report.add("masking_noise", noise_of_run(run));
   std::vector<std::string> written = {schema::journal_path(run.stem), run.stem + "/"};
   if (run.queue.has_ended()) written.push_back(run.stem + ".trials.tsv");
   report.add("written", written);
   if (!run.queue.has_ended()) return report.add("next", "tactograph experiment resume " + run.stem);
   return report.add("next", "tactograph experiment prove " + run.stem);
+}
+
+// What a file of answers asked for, and the nearest setting, which was accepted.
+std::vector<Report> settings_of(const Run& run,
+                                const std::function<std::optional<double>(std::size_t)>& wanted) {
+  std::vector<Report> rows;
+  std::size_t answers = 0;
+  for (const Attempt& attempt : run.queue.attempts()) {
+    if (!attempt.answered) continue;
+    const auto asked = wanted(answers++), accepted = accepted_ratio(attempt);
+    if (!asked || !accepted) continue;
+    rows.emplace_back().add("attempt", attempt.begun.attempt);
+    rows.back().add("asked_ratio", *asked).add("accepted_ratio", *accepted);
+  }
+  return rows;
 }
 
 // Calls `work` with what a run needs from outside. `protocol` belongs to the study.
@@ -251,6 +274,7 @@ Result<Report> with_participant(const RunStudyOptions& o, const schema::Protocol
   const cli::StopSignals signals;
   RunRequest request;
   request.device_uri = o.device;
+  request.masking_level_db = o.masking_level_db;
   const std::function<bool()> stop_asked = [&] { return signals.stop_asked(); };
   request.stop_asked = stop_asked;
   std::optional<ParticipantScreen> screen;
@@ -259,19 +283,27 @@ Result<Report> with_participant(const RunStudyOptions& o, const schema::Protocol
     TACTO_TRY(participant);
     request.participant = std::move(*participant);
   } else if (!simulated) {
-    screen.emplace(protocol, stop_asked);
+    auto texts = schema::texts_in(protocol, o.language);
+    TACTO_TRY(texts);
+    screen.emplace(protocol, std::move(*texts), stop_asked);
     TACTO_TRY(screen->check_terminal());
     request.participant = screen->participant();
+    request.language = o.language;
+    if (protocol.masking_noise && !o.masking_level_db)
+      cli::warn("the level of the masking noise is not measured: --masking-level checks and logs it");
   }
   std::optional<cli::Progress> progress;
   if (!screen) progress.emplace("trials");
   request.tell = [&](double part) {
     if (progress) progress->update(part);
   };
+  const auto wanted = request.participant.wanted;
   auto run = work(std::move(request));
   TACTO_TRY(run);
   if (screen && run->queue.has_ended()) screen->show_end();
-  return report_of_run(*run);
+  Report report = report_of_run(*run);
+  if (wanted && protocol.task == schema::Task::adjustment) report.add("settings", settings_of(*run, wanted));
+  return report;
 }
 
 Result<Report> run_run_study(const RunStudyOptions& o) {
@@ -289,9 +321,10 @@ Result<Report> run_run_study(const RunStudyOptions& o) {
   });
 }
 
-Result<Report> run_resume_study(const RunStudyOptions& o) {
+Result<Report> run_resume_study(RunStudyOptions o) {
   const auto run = read_run(o.what);
   TACTO_TRY(run);
+  if (!run->journal.plan.language.empty()) o.language = run->journal.plan.language;
   const bool simulated = !run->journal.plan.observer.empty();
   if (simulated && !o.answers.empty())
     return schema::fail(ErrorKind::usage, "an observer answers in this run", "--answers", "leave it out");
@@ -301,7 +334,10 @@ Result<Report> run_resume_study(const RunStudyOptions& o) {
 
 std::string proof_in_words(const Proof& proof, const TrialQueue& queue, schema::Task task) {
   std::string words = fmt::format("{} of {} trials delivered", proof.delivered, proof.trials);
-  if (proof.placed > 0)
+  if (proof.placed > 0 && task == schema::Task::fidelity)
+    words += fmt::format(", beside real samples, of whose {} placements there is only the operator's word",
+                         proof.placed);
+  else if (proof.placed > 0)
     words += fmt::format(", {} with real samples, of which there is only the operator's word", proof.placed);
   if (queue.abandoned() > 0)
     words += fmt::format(", {} abandoned after too many attempts that were not delivered", queue.abandoned());
@@ -396,14 +432,41 @@ Result<Report> run_prove_run(const ProveOptions& o) {
       .add("sessions", proof.sessions)
       .add("same_to_the_bit", proof.same_to_the_bit);
   add_lost_trials(report, run->queue);
-  if (run->study.protocol.task == schema::Task::identification) report.add("real_samples", proof.placed);
+  if (run->study.protocol.task == schema::Task::identification ||
+      run->study.protocol.task == schema::Task::fidelity)
+    report.add("real_samples", proof.placed);
   if (proof.stretch_error) report.add("stretch_error", *proof.stretch_error);
   if (proof.ratio_error) report.add("ratio_error", *proof.ratio_error);
   report.add("recorded", "ticks and drive").add("predicted", "displacement, by the transducer's model");
   if (!proof.simulated.empty()) report.add("simulated", proof.simulated);
+  if (run->study.protocol.masking_noise) report.add("masking_noise", noise_of_run(*run));
   if (!run->journal.plan.observer.empty()) report.add("observer", observer_in_words(*run));
   if (!proof.faults.empty()) report.add("faults", proof.faults);
   return proof.holds() ? report : report.ends_with(ErrorKind::unsuitable);
+}
+
+struct NoiseOptions {
+  std::string study, output;
+  schema::Existing existing = schema::Existing::keep;
+};
+
+Result<Report> run_noise(const NoiseOptions& o) {
+  const auto protocol = schema::read_protocol(o.study);
+  TACTO_TRY(protocol);
+  if (!protocol->masking_noise)
+    return schema::fail(ErrorKind::unsuitable, "the protocol has no masking noise", o.study,
+                        "add masking_noise to it, or make it with --masking-noise 65dB");
+  if (!o.output.ends_with(".wav"))
+    return schema::fail(ErrorKind::usage, "does not end in .wav", o.output, "name a WAV file");
+  TACTO_TRY(write_masking_noise(o.output, *protocol->masking_noise, protocol->seed, o.existing));
+  Report report;
+  report.add("masking_noise", noise_in_words(protocol->masking_noise));
+  report.add("duration_s", kNoisePeriodS).add("rms_db_re_full_scale", kNoiseRmsDb);
+  report.add("level_at_the_ear", "not measured: it depends on the volume and the headphones");
+  report.add("written", std::vector<std::string>{o.output});
+  return report.add("next",
+                    "play it repeatedly, measure its level at the ear, and give that to 'run "
+                    "--masking-level'");
 }
 
 struct WatchOptions {
@@ -564,15 +627,18 @@ Result<Report> run_withdraw(const WithdrawOptions& o) {
 
 cli::Action declare_new_study(CLI::App& app) {
   auto options = std::make_shared<NewStudyOptions>();
-  app.add_option("PROTOCOL", options->what,
-                 "stretch or identification: experiments 2 and 1 of Wiertlewski 2011; amplitude: after Fiene "
-                 "and Kuchenbecker 2007; ordering, adjustment: after Minsky et al. 1990")
+  app.add_option(
+         "PROTOCOL", options->what,
+         "stretch or identification: experiments 2 and 1 of Wiertlewski 2011; fidelity: its comparison "
+         "bench; amplitude: after Fiene "
+         "and Kuchenbecker 2007; ordering, adjustment: after Minsky et al. 1990")
       ->required();
   app.add_option("-o,--output", options->stem, "Stem of the study's files; default: the protocol's name");
   app.add_option(
          "--textures", options->textures,
-         "Textures of force. Of identification: the standards, A,B,C,D,E; of ordering: those that are "
-         "put in order; of amplitude and adjustment: one")
+         "Textures of force. Of identification: the standards, A,B,C,D,E; of fidelity: those that are "
+         "played beside each sample; of ordering: those that are put in order; of amplitude and adjustment: "
+         "one")
       ->delimiter(',');
   cli::add_choice<schema::LevelMethod>(
       app, "--method", options->method,
@@ -598,10 +664,14 @@ cli::Action declare_new_study(CLI::App& app) {
                  "Of identification: which of them are presented, C,D,E; default: all")
       ->delimiter(',');
   app.add_option("--seed", options->seed, "Seed of codes and order: letters and digits");
+  cli::add_quantity(app, "--masking-noise", options->masking_db, schema::Dimension::level,
+                    "Level of masking noise at the ear, 65dB (re 20 uPa): 15-1500 Hz, within 3 dB; default: "
+                    "the protocol has none");
   app.footer(
       "stretch: which of two sinusoids has the smaller period. identification: which of the standards is a "
       "comparison, a real sample in one block and played in the other one, each of 100 trials or 15 "
-      "minutes. amplitude: one texture at gains between 0 and 2 times that of the real sample, which is "
+      "minutes. fidelity: each texture is played beside the real sample of each; the same or different. "
+      "amplitude: one texture at gains between 0 and 2 times that of the real sample, which is "
       "before "
       "the participant; each is rated from -3 to 3 against it. ordering: all textures are explored freely, "
       "and "
@@ -629,6 +699,17 @@ cli::Action declare_check_study(CLI::App& app) {
   return [options] { return run_check_study(*options); };
 }
 
+namespace {
+
+void declare_masking_level(CLI::App& app, RunStudyOptions& options) {
+  cli::add_quantity(
+      app, "--masking-level", options.masking_level_db, schema::Dimension::level,
+      "Level of the masking noise at the ear, as measured now with a sound level meter: compared "
+      "with the protocol, and kept in the journal; default: not measured");
+}
+
+}  // namespace
+
 cli::Action declare_run_study(CLI::App& app) {
   auto options = std::make_shared<RunStudyOptions>();
   app.add_option("STUDY", options->what, "Stem of the study, or STUDY.protocol.json")->required();
@@ -637,16 +718,24 @@ cli::Action declare_run_study(CLI::App& app) {
   CLI::Option* observer = app.add_option(
       "--observer", options->observer,
       "A simulated participant, which gets only the displacement that the sessions predict: "
-      "weber=25.3%,lapse=2%,hurry=5%,seed=1 (hurry: share of trials with a finger of twice the speed). Of an "
-      "identification: template,noise=9dB,hurry=5%,seed=1, which compares its spectrum with the standards'; "
+      "weber=25.3%,lapse=2%,hurry=5%,seed=1 (hurry: share of trials with a finger of twice the fastest "
+      "accepted speed). Of an "
+      "identification or fidelity: template,noise=9dB,hurry=5%,seed=1, which compares its spectrum with the "
+      "standards'; "
       "its noise is tuned, so its success says nothing about people. Of amplitude: "
       "match=86%,weber=10%,lapse=2%,seed=1 "
       "(match: the ratio that seems equal to the real sample). Of ordering: order,noise=1dB,seed=1, by the "
       "RMS "
-      "of the displacement. Of adjustment: threshold=20%,sd=10%,hysteresis=5%,seed=1, the ratio that it "
+      "of the displacement. Of adjustment: threshold=20%,sd=10%,hysteresis=5%,hurry=5%,seed=1, the ratio "
+      "that it "
       "looks "
       "for, the standard deviation of its logarithm, and the difference of descending series");
-  app.add_option("--answers", options->answers, kAnswersHelp)->excludes(observer);
+  CLI::Option* answers = app.add_option("--answers", options->answers, kAnswersHelp)->excludes(observer);
+  app.add_option("--language", options->language, "Language of the screen, one of the protocol's texts")
+      ->capture_default_str()
+      ->excludes(observer)
+      ->excludes(answers);
+  declare_masking_level(app, *options);
   app.footer(
       "Each step is in STUDY-P07.trials.jsonl before the next one begins. Whether a trial was delivered is "
       "decided before its answer is read; what was not delivered comes again at the end. Ctrl-C ends the "
@@ -660,6 +749,7 @@ cli::Action declare_resume_study(CLI::App& app) {
   app.add_option("RUN", options->what, "STUDY-P07, or its journal")->required();
   app.add_option("-d,--device", options->device, "Device; default: that of the run");
   app.add_option("--answers", options->answers, kAnswersHelp);
+  declare_masking_level(app, *options);
   app.footer(
       "The trial that was interrupted is the next one again. The file of --answers holds all answers and "
       "labels of the run, from its first trial on: those that the run has are not read again.");
@@ -682,6 +772,18 @@ cli::Action declare_prove_run(CLI::App& app) {
       "computed again, is not the same to the bit. Exit code 0 does not say that an interval was delivered: "
       "see 'delivered' (yes, no, unknown) of each interval.");
   return [options] { return run_prove_run(*options); };
+}
+
+cli::Action declare_noise(CLI::App& app) {
+  auto options = std::make_shared<NoiseOptions>();
+  app.add_option("STUDY", options->study, "Stem of the study, or STUDY.protocol.json")->required();
+  app.add_option("-o,--output", options->output, "WAV file")->required();
+  cli::declare_force(app, options->existing);
+  app.footer(
+      "White noise in the band of the protocol's masking_noise, one channel, 48 kHz, 30 s, which repeats "
+      "without a seam. It is for the participant's headphones, because a bender that plays 15-500 Hz can be "
+      "heard. No part of tactograph plays it or measures its level.");
+  return [options] { return run_noise(*options); };
 }
 
 cli::Action declare_watch_study(CLI::App& app) {

@@ -12,6 +12,7 @@ cli::Action declare_check_study(CLI::App& app);
 cli::Action declare_run_study(CLI::App& app);
 cli::Action declare_resume_study(CLI::App& app);
 cli::Action declare_prove_run(CLI::App& app);
+cli::Action declare_noise(CLI::App& app);
 cli::Action declare_watch_study(CLI::App& app);
 cli::Action declare_withdraw(CLI::App& app);
 cli::Action declare_study_power(CLI::App& app);

@@ -64,9 +64,9 @@ void take_typed(char key, std::string& typed) {
 
 }  // namespace
 
-ParticipantScreen::ParticipantScreen(const schema::Protocol& protocol,
+ParticipantScreen::ParticipantScreen(const schema::Protocol& protocol, schema::ProtocolTexts texts,
                                      const std::function<bool()>& stop_asked)
-    : protocol_(protocol), stop_asked_(stop_asked) {}
+    : protocol_(protocol), texts_(std::move(texts)), stop_asked_(stop_asked) {}
 
 Result<void> ParticipantScreen::check_terminal() const {
   if (isatty(STDIN_FILENO) == 1) return {};
@@ -77,13 +77,13 @@ Result<void> ParticipantScreen::check_terminal() const {
 Participant ParticipantScreen::participant() {
   const auto go_ahead = [this](int interval) {
     welcome();
-    show(protocol_.texts.begin);
+    show(texts_.begin);
     if (wait_for(protocol_.begin_key) == 0) return false;
-    show(adjusts(interval) ? protocol_.texts.question : protocol_.texts.interval);
+    show(adjusts(interval) ? texts_.question : texts_.interval);
     return true;
   };
   const auto answer = [this](std::size_t /*number*/) -> Result<std::optional<GivenAnswer>> {
-    show(protocol_.texts.question);
+    show(texts_.question);
     const ScreenClock::time_point asked = ScreenClock::now();
     if (protocol_.task == schema::Task::ordering) {
       auto order = wait_for_order();
@@ -102,11 +102,16 @@ Participant ParticipantScreen::participant() {
   };
   const auto explore = [this](const std::vector<int>& left) { return wait_for_texture(left); };
   const auto turn = [this](bool wait) { return next_turn(wait); };
-  return {place, go_ahead, answer, explore, turn, {}};
+  const auto too_early = [this] { show(texts_.too_early); };
+  const auto rest = [this] {
+    show(texts_.rest);
+    return wait_for({}) != 0;
+  };
+  return {place, go_ahead, answer, explore, turn, too_early, {}, rest};
 }
 
 void ParticipantScreen::welcome() {
-  if (!std::exchange(welcomed_, true)) show(protocol_.texts.welcome);
+  if (!std::exchange(welcomed_, true)) show(texts_.welcome);
 }
 
 bool ParticipantScreen::adjusts(int interval) const {
@@ -117,18 +122,18 @@ bool ParticipantScreen::adjusts(int interval) const {
 // The number of a texture, or 0 for the order, once each was explored; none: the run ends.
 std::optional<int> ParticipantScreen::wait_for_texture(const std::vector<int>& left) {
   welcome();
-  show(protocol_.texts.begin);
+  show(texts_.begin);
   std::string keys = choice_keys();
   if (left.empty()) keys += protocol_.begin_key;
   std::vector<std::string> to_feel;
   for (const int number : left)
     to_feel.push_back(protocol_.choices[static_cast<std::size_t>(number) - 1].word);
-  if (!left.empty()) show(fmt::format("{}: {}", protocol_.texts.left, fmt::join(to_feel, " ")));
+  if (!left.empty()) show(fmt::format("{}: {}", texts_.left, fmt::join(to_feel, " ")));
   const char key = wait_for(keys);
   if (key == 0) return std::nullopt;
   const auto number = keys.find(key) + 1;
   if (number > protocol_.choices.size()) return 0;
-  show(protocol_.texts.interval);
+  show(texts_.interval);
   return static_cast<int>(number);
 }
 
@@ -174,7 +179,7 @@ std::string ParticipantScreen::choice_keys() const {
 }
 
 void ParticipantScreen::show_end() const {
-  show(protocol_.texts.end);
+  show(texts_.end);
 }
 
 // Keys that were pressed before the prompt are no answer to it.
@@ -183,12 +188,12 @@ void ParticipantScreen::drain_keys() {
   }
 }
 
-// The next of these keys that is pressed from now on; 0: the run ends.
+// The next of these keys (none: of all) that is pressed from now on; 0: the run ends.
 char ParticipantScreen::wait_for(std::string_view keys) {
   drain_keys();
   while (!stop_asked_()) {
     const char key = keys_.next();
-    if (key != 0 && keys.find(key) != std::string_view::npos) return key;
+    if (key != 0 && (keys.empty() || keys.find(key) != std::string_view::npos)) return key;
     if (key == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return 0;
@@ -197,7 +202,7 @@ char ParticipantScreen::wait_for(std::string_view keys) {
 // Until the operator types this label and Enter; false: the run ends.
 Result<bool> ParticipantScreen::wait_for_label(const std::string& label) {
   drain_keys();
-  show(fmt::format("{} {}", protocol_.texts.place, label));
+  show(fmt::format("{} {}", texts_.place, label));
   std::string typed;
   while (!stop_asked_()) {
     const char key = keys_.next();
@@ -307,7 +312,7 @@ Result<Participant> answers_from(const std::string& file, const schema::Protocol
   const auto wanted = [ratios = answers.ratios](std::size_t at) {
     return at < ratios.size() ? std::optional(ratios[at]) : std::nullopt;
   };
-  return Participant{place, [](int) { return true; }, answer, explore, {}, wanted};
+  return Participant{place, [](int) { return true; }, answer, explore, {}, {}, wanted, {}};
 }
 
 }  // namespace tacto::analysis

@@ -10,11 +10,12 @@
 
 namespace tacto::analysis {
 
-/// Shows the protocol's texts on stderr and reads its keys from the terminal, each without Enter. Neither a
-/// stimulus nor a score is shown. Both references must outlive this.
+/// Shows the protocol's texts in one language on stderr and reads its keys from the terminal, each without
+/// Enter. Neither a stimulus nor a score is shown. Both references must outlive this.
 class ParticipantScreen {
  public:
-  ParticipantScreen(const schema::Protocol& protocol, const std::function<bool()>& stop_asked);
+  ParticipantScreen(const schema::Protocol& protocol, schema::ProtocolTexts texts,
+                    const std::function<bool()>& stop_asked);
 
   /// Errors: usage, if stdin is no terminal.
   schema::Result<void> check_terminal() const;
@@ -33,6 +34,7 @@ class ParticipantScreen {
   std::string choice_keys() const;
 
   const schema::Protocol& protocol_;
+  const schema::ProtocolTexts texts_;
   const std::function<bool()>& stop_asked_;
   cli::TerminalKeys keys_;
   bool welcomed_ = false;

@@ -7,9 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/experiment/live_setting.hpp"
 #include "analysis/experiment/study_answers.hpp"
 #include "analysis/psychometrics/over_people.hpp"
 #include "data-schema/base/decibels.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "playback/prepare/prepare.hpp"
+#include "spatial/dsp/filter/fourier_filter.hpp"
 
 namespace tacto::analysis {
 
@@ -22,21 +26,34 @@ Result<double> unit_rms_m(const Study& study) {
       *std::ranges::find(study.key.stimuli, study.protocol.standards.front(), &schema::CodedStimulus::name);
   const auto texture = schema::read_texture(study.stimulus(adjusted.code));
   TACTO_TRY(texture);
-  double sum = 0, squares = 0, count = 0;
-  for (std::size_t i = 0; i < texture->signal.values.size(); ++i) {
-    const double x = texture->signal.position_m(i), force_n = texture->signal.values[i];
-    if (x < study.protocol.pace.from_m || x > study.protocol.pace.to_m) continue;
-    sum += force_n, squares += force_n * force_n, ++count;
+  const schema::ProtocolPace& pace = study.protocol.pace;
+  const std::vector<double> in_band_n =
+      spatial::fourier_filter(texture->signal.values, pace.speed_mps / texture->signal.pitch_m,
+                              playback::PrepareOptions{}.band, spatial::Edges::treated);
+  double squares = 0, count = 0;
+  for (std::size_t i = 0; i < in_band_n.size(); ++i) {
+    const double x = texture->signal.position_m(i);
+    if (x < pace.from_m || x > pace.to_m) continue;
+    squares += in_band_n[i] * in_band_n[i], ++count;
   }
-  return study.protocol.gain_m_per_n * std::sqrt(squares / count - std::pow(sum / count, 2));
+  return study.protocol.gain_m_per_n * std::sqrt(squares / count);
+}
+
+std::string band_in_words(const schema::ProtocolPace& pace) {
+  const spatial::Band band = playback::PrepareOptions{}.band;
+  return fmt::format("{:g} to {:g} Hz at {}", band.low_hz, band.high_hz,
+                     schema::for_people(pace.speed_mps, schema::Dimension::speed));
 }
 
 AdjustedPerson adjusted_person(const Run& run) {
   AdjustedPerson person;
   person.participant = run.journal.plan.participant;
+  const schema::Protocol& protocol = run.study.protocol;
   for (const Attempt& attempt : run.queue.attempts())
-    if (const auto ratio = accepted_ratio(attempt); ratio && attempt.counts())
+    if (const auto ratio = accepted_ratio(attempt); ratio && attempt.counts()) {
       (attempt.trial.is_ascending() ? person.ascending : person.descending).push_back(*ratio);
+      person.bounds += is_lowest(protocol, *ratio) || is_highest(protocol, *ratio) ? 1 : 0;
+    }
   person.means = adjustment_means(person.ascending, person.descending);
   return person;
 }
@@ -64,6 +81,19 @@ std::string series_in_words(const std::optional<SeriesMean>& series) {
                      series->settings);
 }
 
+std::string bounds_in_words(const AdjustmentAnswers& all) {
+  std::size_t bounds = 0, settings = 0;
+  for (const AdjustedPerson& each : all.people) {
+    bounds += each.bounds;
+    settings += each.ascending.size() + each.descending.size();
+  }
+  if (bounds == 0) return "";
+  return fmt::format(
+      "{} of {} settings are at an end of the range: what was looked for may be beyond it, and "
+      "a mean with them is a bound, too",
+      bounds, settings);
+}
+
 schema::ResultPicture picture_of(const AdjustedPerson& person) {
   schema::ResultPicture picture{
       person.participant, "number of the setting in its series", "accepted ratio", false, {}};
@@ -87,6 +117,7 @@ Result<AdjustmentAnswers> adjustment_answers(const std::vector<Run>& runs) {
   const auto unit = unit_rms_m(runs.front().study);
   TACTO_TRY(unit);
   all.unit_rms_m = *unit;
+  all.band = band_in_words(runs.front().study.protocol.pace);
   std::vector<std::string> simulated;
   std::vector<double> ratios, hystereses;
   for (const Run& run : runs) {
@@ -118,7 +149,12 @@ Findings findings_of(const AdjustmentAnswers& all) {
       one ? " (one person: middle of the two series, 95 % interval)" : " (mean over people, 95 % interval)";
   findings.figures.push_back({"verdict", fmt::format("{}: ratio {}", schema::word_of(all.goal), ratio)});
   findings.figures.push_back({"ratio to the protocol's gain", ratio + of});
+  findings.figures.push_back(
+      {"displacement",
+       fmt::format("of the texture's force in the band that is played, {}, times the gain", all.band)});
   findings.figures.push_back({"descending minus ascending", hysteresis_in_words(all.hysteresis_db) + of});
+  if (const std::string bounds = bounds_in_words(all); !bounds.empty())
+    findings.figures.push_back({"bounds", bounds});
   if (all.abandoned > 0)
     findings.figures.push_back(
         {"abandoned",

@@ -15,14 +15,16 @@ namespace tacto::analysis {
 struct AdjustedPerson {
   std::string participant;
   std::vector<double> ascending, descending;  ///< ratios to the protocol's gain, in the order of the trials
+  std::size_t bounds = 0;                     ///< of them at an end of the range
   AdjustmentMeans means;
 };
 
 struct AdjustmentAnswers {
   schema::Goal goal = schema::Goal::least;
-  /// RMS of the texture's force on the path, less its mean, times the protocol's gain: what the ratio 1
-  /// stands for.
+  /// RMS of the texture's force on the path in the band that is played at the protocol's pace, times the
+  /// protocol's gain: what the ratio 1 stands for.
   double unit_rms_m = 0;
+  std::string band;  ///< in words, with the speed
   std::vector<AdjustedPerson> people;
   /// Of one person; or the geometric mean of two or more who have one. The hysteresis of several people is
   /// the mean of theirs.

@@ -88,8 +88,9 @@ std::string group_name(const std::vector<std::string>& by) {
   return by.empty() ? "all" : fmt::format("{}", fmt::join(by, ", "));
 }
 
-Result<AnswersFit> fit_answers(AnswersTable table, const PsychometricOptions& options,
+Result<AnswersFit> fit_answers(AnswersTable table, PsychometricOptions options,
                                const std::function<void(double)>& tell) {
+  options.threshold = table.pse;
   auto fitted = fit_groups(table, options, tell);
   TACTO_TRY(fitted);
   AnswersFit all{std::move(table),

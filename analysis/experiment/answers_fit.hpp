@@ -36,7 +36,7 @@ struct OverPeople {
 
 struct AnswersFit {
   AnswersTable table;
-  PsychometricOptions options;
+  PsychometricOptions options;                 ///< as used
   std::string threshold_name, steepness_name;  ///< "PSE", "JND" ...
   std::string steepness_unit;                  ///< that of the levels, or empty
   std::vector<FittedGroup> groups;
@@ -45,9 +45,10 @@ struct AnswersFit {
   std::optional<OverPeople> without_lapses;  ///< the same with the lapse fixed at 0, if it was fitted
 };
 
-/// Fits each group. The first column of `by` is the person, the others are conditions. Errors: those of
-/// fit_psychometric(), with the group; of a study only if no person can be fitted. `tell` receives 0 to 1.
-schema::Result<AnswersFit> fit_answers(AnswersTable table, const PsychometricOptions& options,
+/// Fits each group, at the table's PSE if that is known. The first column of `by` is the person, the others
+/// are conditions. Errors: those of fit_psychometric(), with the group; of a study only if no person can be
+/// fitted. `tell` receives 0 to 1.
+schema::Result<AnswersFit> fit_answers(AnswersTable table, PsychometricOptions options,
                                        const std::function<void(double)>& tell);
 
 /// "S1, 0", or "all" without columns.

@@ -50,16 +50,27 @@ std::string shape_in_words(Shape shape) {
   return shape == Shape::normal ? "cumulative normal function" : "logistic function";
 }
 
+std::string threshold_in_words(const AnswersFit& all, const PsychometricFit& fit) {
+  if (all.options.threshold) return fmt::format("fixed at {:g}", *all.options.threshold);
+  return in_words(fit.threshold, all.table.unit);
+}
+
 std::string assumed(const AnswersFit& all) {
   const PsychometricOptions& o = all.options;
   std::string text = shape_in_words(o.shape);
   text += o.guess ? fmt::format("; right by guessing {}", share(*o.guess))
                   : "; two stimuli are compared: lapses at both ends alike";
+  if (o.threshold)
+    text += fmt::format(
+        "; the PSE is {:g}, because levels of one sign cannot separate a bias of the answers from the JND",
+        *o.threshold);
   if (!o.lapse) text += "; prior of the lapse Beta(1, 19)";
   text += o.overdispersed ? "; answers beta-binomial, prior of the overdispersion Beta(1, 10)"
                           : "; answers independent";
-  return text +
-         "; intervals: 95 % of the posterior, flat in threshold and width within the range of the levels";
+  return text + (o.threshold ? "; intervals: 95 % of the posterior, flat in width within the range of the "
+                               "levels, to both sides of the PSE"
+                             : "; intervals: 95 % of the posterior, flat in threshold and width within the "
+                               "range of the levels");
 }
 
 std::string answers_in_words(const AnswersFit& all) {
@@ -129,7 +140,7 @@ std::vector<std::string> all_notes(const AnswersFit& all) {
 void add_one(std::vector<ResultFigure>& figures, const AnswersFit& all) {
   const FittedGroup& group = all.groups.front();
   const PsychometricFit& fit = group.fit;
-  figures.push_back({all.threshold_name, in_words(fit.threshold, all.table.unit)});
+  figures.push_back({all.threshold_name, threshold_in_words(all, fit)});
   figures.push_back({all.steepness_name, in_words(group.steepness, all.steepness_unit)});
   figures.push_back({"lapses", lapse_in_words(all, fit)});
   if (all.options.overdispersed)
@@ -153,7 +164,7 @@ bool could_be_guessing_of_two(const AnswersFit& all) {
       levels[each.level].yes += each.yes;
       levels[each.level].trials += each.trials;
     }
-  return !all.options.guess && std::ranges::all_of(levels, [](const auto& each) {
+  return !all.options.guess && !all.options.threshold && std::ranges::all_of(levels, [](const auto& each) {
     return each.second.yes >= kLeast * each.second.trials;
   });
 }
@@ -192,7 +203,7 @@ std::vector<std::vector<std::string>> groups_table(const AnswersFit& all) {
     rows.front().push_back(name);
   for (const FittedGroup& group : all.groups) {
     auto& row = rows.emplace_back(group.by);
-    row.push_back(in_words(group.fit.threshold, all.table.unit));
+    row.push_back(threshold_in_words(all, group.fit));
     row.push_back(in_words(group.steepness, all.steepness_unit));
     row.push_back(lapse_in_words(all, group.fit));
     row.push_back(fmt::format("{:.2g}", group.fit.p));
@@ -208,10 +219,11 @@ std::string answers_verdict(const AnswersFit& all) {
   if (all.over_people) return compared(all, *all.over_people);
   const FittedGroup& group = all.groups.front();
   const PsychometricFit& fit = group.fit;
-  return fmt::format("{} {}, {} {}", all.threshold_name,
-                     with_unit(fmt::format("{:.4g}", fit.threshold.value), all.table.unit),
-                     all.steepness_name,
-                     with_unit(fmt::format("{:.4g}", group.steepness.value), all.steepness_unit));
+  return fmt::format(
+      "{} {}, {} {}", all.threshold_name,
+      all.options.threshold ? threshold_in_words(all, fit)
+                            : with_unit(fmt::format("{:.4g}", fit.threshold.value), all.table.unit),
+      all.steepness_name, with_unit(fmt::format("{:.4g}", group.steepness.value), all.steepness_unit));
 }
 
 std::vector<ResultFigure> answers_figures(const AnswersFit& all) {

@@ -2,6 +2,7 @@
 // Answers of people from a table of another program.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct AnswersTable {
   std::vector<AnswerGroup<LevelCount>> groups;  ///< in the order of their texts, numbers by value
   std::string simulated;                        ///< by what, where an answer or a session is simulated
   std::vector<std::string> reversals = {};      ///< of staircases, their mean, in words
+  std::optional<double> pse =
+      {};                 ///< known, and not fitted: levels of one sign cannot separate it from the JND
   bool of_study = false;  ///< a person who cannot be fitted is left out, and does not prevent the others
 };
 

@@ -106,7 +106,7 @@ playback::FingerPath paced_path(const schema::ProtocolPace& pace) {
 
 schema::ProtocolPace pace_of(const schema::Protocol& protocol, const IntervalPlay& play) {
   schema::ProtocolPace pace = protocol.pace;
-  if (play.hurried) pace.speed_mps *= 2;
+  if (play.hurried) pace.speed_mps = 2 * protocol.delivered.fastest_mps;
   return pace;
 }
 

@@ -20,7 +20,7 @@ struct IntervalPlay {
   std::string device_uri;
   std::string stimulus;  ///< stem of the texture
   std::string session;   ///< to be written
-  bool hurried = false;  ///< an emulated finger moves at twice the speed
+  bool hurried = false;  ///< an emulated finger moves at twice the fastest speed that is accepted
   std::function<bool()> stop_asked;
   double ratio = 1;  ///< gain over that of the protocol
   /// Of an interval in which the gain is changed, from `ratio` on: PlayOptions::steer. The interval then

@@ -43,6 +43,14 @@ double stepped(const schema::Protocol& protocol, double ratio, Turn turn) {
   return protocol.smallest_ratio <= next && next <= protocol.largest_ratio ? next : ratio;
 }
 
+bool is_lowest(const schema::Protocol& protocol, double ratio) {
+  return stepped(protocol, ratio, Turn::weaker) == ratio;
+}
+
+bool is_highest(const schema::Protocol& protocol, double ratio) {
+  return stepped(protocol, ratio, Turn::stronger) == ratio;
+}
+
 Turn turn_towards(const schema::Protocol& protocol, double ratio, double measured, double wanted) {
   const double left_db = schema::amplitude_db(wanted / measured);
   if (std::abs(left_db) <= protocol.step_db / 2) return Turn::accept;

@@ -58,6 +58,10 @@ class LiveSetting {
   bool accepted_ = false, begun_ = false;
 };
 
+/// Whether a step leads out of the protocol's range: what is accepted here is a bound.
+bool is_lowest(const schema::Protocol& protocol, double ratio);
+bool is_highest(const schema::Protocol& protocol, double ratio);
+
 /// The ratio after a step; the same, if that would leave the range of the protocol.
 double stepped(const schema::Protocol& protocol, double ratio, schema::Turn turn);
 

@@ -25,7 +25,7 @@ struct Observer {
   double threshold = 0;            ///< of adjustment: the ratio that it looks for
   double sd = 0, hysteresis = 0;   ///< of adjustment, see criterion_of()
   double lapse = 0;                ///< share of answers by chance
-  double hurry = 0;                ///< share of intervals with a finger of twice the speed
+  double hurry = 0;                ///< share of attempts with a finger of twice the fastest accepted speed
   std::optional<double> noise_db;  ///< of identifying; none: tuned, see TemplateObserver. Of ordering
   std::string seed = "1";
   std::string text;  ///< as it was given

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analysis/experiment/interval_facts.hpp"
+#include "analysis/experiment/live_setting.hpp"
 #include "analysis/experiment/trial_runner.hpp"
 #include "analysis/experiment/withdrawal.hpp"
 #include "playback/session/session_replay.hpp"
@@ -25,8 +26,8 @@ namespace {
 constexpr const char *kStretchColumns = "standard_interval\tnominal_stretch\tpredicted_stretch",
                      *kIdentificationColumns = "block\tcondition\tpresented",
                      *kAmplitudeColumns = "nominal_ratio\tpredicted_ratio",
-                     *kOrderingColumns = "explorations",
-                     *kAdjustmentColumns = "series\tstart_ratio\tpredicted_ratio";
+                     *kOrderingColumns = "explorations", *kFidelityColumns = "block\tsample\tpresented",
+                     *kAdjustmentColumns = "series\tstart_ratio\tpredicted_ratio\tbound";
 constexpr const char* kTrialColumns =
     "attempt\ttrial\t{}\tpredicted_error_db\tmeasured_error_db\t{}\tanswer\tanswer_s\tdelivered\twhy\t"
     "simulated\n";
@@ -146,15 +147,26 @@ std::string number_cell(const std::optional<double>& number) {
   return number ? fmt::format("{:.9g}", *number) : "";
 }
 
+// Of an adjustment: at which end of the range the accepted ratio is.
+std::string bound_cell(const Run& run, const Attempt& attempt) {
+  const auto ratio = accepted_ratio(attempt);
+  if (!ratio || !attempt.answered || attempt.answered->choice == 0) return "";
+  if (is_lowest(run.study.protocol, *ratio)) return "lower";
+  return is_highest(run.study.protocol, *ratio) ? "upper" : "";
+}
+
 std::string cells_of_task(const Run& run, const Attempt& attempt) {
   if (task_of(run) == schema::Task::ordering) return fmt::format("{}", attempt.begun.stimuli.size());
   const schema::CodedStimulus& stimulus = stimulus_of(run.study.key, attempt.trial.code);
   const auto ratio = attempt.judged ? predicted_ratio(run, attempt) : std::nullopt;
   if (task_of(run) == schema::Task::adjustment)
-    return fmt::format("{}\t{:.9g}\t{}", attempt.trial.is_ascending() ? "ascending" : "descending",
-                       attempt.trial.ratio, number_cell(ratio));
+    return fmt::format("{}\t{:.9g}\t{}\t{}", attempt.trial.is_ascending() ? "ascending" : "descending",
+                       attempt.trial.ratio, number_cell(ratio), bound_cell(run, attempt));
   if (task_of(run) == schema::Task::amplitude)
     return fmt::format("{:.9g}\t{}", attempt.trial.ratio, number_cell(ratio));
+  if (task_of(run) == schema::Task::fidelity)
+    return fmt::format("{}\t{}\t{}", attempt.trial.block,
+                       stimulus_of(run.study.key, attempt.trial.sample).name, stimulus.name);
   if (task_of(run) == schema::Task::identification)
     return fmt::format("{}\t{}\t{}", attempt.trial.block,
                        attempt.trial.real ? schema::kRealCondition : schema::kVirtualCondition,
@@ -263,11 +275,10 @@ std::string observer_in_words(const Run& run) {
 }
 
 std::string trials_table(const Run& run) {
-  constexpr std::pair<const char*, const char*> kColumnsOfTask[] = {{kStretchColumns, "answer_interval"},
-                                                                    {kIdentificationColumns, "answer_choice"},
-                                                                    {kAmplitudeColumns, "rating"},
-                                                                    {kOrderingColumns, "order"},
-                                                                    {kAdjustmentColumns, "accepted_ratio"}};
+  constexpr std::pair<const char*, const char*> kColumnsOfTask[] = {
+      {kStretchColumns, "answer_interval"},   {kIdentificationColumns, "answer_choice"},
+      {kAmplitudeColumns, "rating"},          {kOrderingColumns, "order"},
+      {kAdjustmentColumns, "accepted_ratio"}, {kFidelityColumns, "answer_choice"}};
   const auto& [columns, answer] = kColumnsOfTask[static_cast<int>(task_of(run))];
   std::string table = fmt::format(kTrialColumns, columns, answer);
   for (const Attempt& attempt : run.queue.attempts()) table += trial_row(run, attempt) + "\n";

@@ -211,13 +211,13 @@ schema::Protocol stretch_protocol(const std::string& seed, schema::LevelMethod m
   protocol.participants = 8;
   // At 45 mm/s the longest period, 2.99 mm, is at 15.04 Hz: still in the band from 15 Hz.
   protocol.delivered = {0, 0, 10, 0, -40, -20, 0.045, 0.085};
-  protocol.texts = {"You feel two textures, one after the other. Say which of them has the smaller period.",
-                    "Put the finger at the left end and press the space bar.",
-                    "Move the finger to the right end and back.",
-                    "Which one had the smaller period? f: the first, j: the second.",
-                    "That was all. Thank you.",
-                    "",
-                    ""};
+  schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
+  texts.welcome = "You feel two textures, one after the other. Say which of them has the smaller period.";
+  texts.begin = "Put the finger at the left end and press the space bar.";
+  texts.interval = "Move the finger to the right end and back.";
+  texts.question = "Which one had the smaller period? f: the first, j: the second.";
+  texts.rest = "Take a break. Press any key when you want to go on.";
+  texts.end = "That was all. Thank you.";
   return protocol;
 }
 
@@ -229,6 +229,7 @@ Result<schema::Protocol> identification_protocol(const std::string& seed, const 
       return fail(ErrorKind::usage, fmt::format("'{}' is none of the textures", name), "--comparisons",
                   "name those of --textures that are to be presented");
   schema::Protocol protocol = stretch_protocol(seed);
+  schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
   protocol.task = schema::Task::identification;
   TACTO_TRY(fit_to_textures(protocol, textures, 1));
   protocol.comparisons = comparisons;
@@ -239,10 +240,10 @@ Result<schema::Protocol> identification_protocol(const std::string& seed, const 
   protocol.participants = 10;
   for (const std::string& name : protocol.standards)
     protocol.choices.push_back({std::string(1, kAnswerKeys[protocol.choices.size()]), name});
-  protocol.texts.welcome = "You feel one texture at a time. Say which of the textures before you it is.";
-  protocol.texts.question = fmt::format("Which one was it? Press its button, {} to {}.", kAnswerKeys.front(),
-                                        protocol.choices.back().key);
-  protocol.texts.place = "For the operator: put this sample on the bench, type its label and press Enter.";
+  texts.welcome = "You feel one texture at a time. Say which of the textures before you it is.";
+  texts.question = fmt::format("Which one was it? Press its button, {} to {}.", kAnswerKeys.front(),
+                               protocol.choices.back().key);
+  texts.place = "For the operator: put this sample on the bench, type its label and press Enter.";
   return protocol;
 }
 
@@ -251,14 +252,15 @@ Result<schema::Protocol> amplitude_protocol(const std::string& seed, const Named
     return fail(ErrorKind::usage, fmt::format("takes one texture, but {} are named", textures.size()),
                 "--textures", "name one texture; make a study for each of the others");
   schema::Protocol protocol = stretch_protocol(seed);
+  schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
   protocol.task = schema::Task::amplitude;
   protocol.largest_ratio = 2;
   TACTO_TRY(fit_to_textures(protocol, textures, protocol.largest_ratio));
   protocol.repetitions = 60;
   protocol.choices = {{"a", "-3"}, {"s", "-2"}, {"d", "-1"}, {"f", "0"}, {"j", "1"}, {"k", "2"}, {"l", "3"}};
-  protocol.texts.welcome =
+  texts.welcome =
       "You feel one texture at a time. Say how strong it is, compared with the real sample before you.";
-  protocol.texts.question =
+  texts.question =
       "Compared with the real sample, the texture was: a: much weaker (-3), s: weaker (-2), d: a little "
       "weaker "
       "(-1), f: equal (0), j: a little stronger (1), k: stronger (2), l: much stronger (3).";
@@ -269,6 +271,7 @@ Result<schema::Protocol> ordering_protocol(const std::string& seed, const NamedT
                                            const std::map<std::string, double>& intended) {
   TACTO_TRY(check_several(textures));
   schema::Protocol protocol = stretch_protocol(seed);
+  schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
   protocol.task = schema::Task::ordering;
   TACTO_TRY(fit_to_textures(protocol, textures, 1));
   protocol.repetitions = 3;
@@ -281,16 +284,16 @@ Result<schema::Protocol> ordering_protocol(const std::string& seed, const NamedT
                   "give one for each texture, in their order");
     protocol.intended.push_back(intended.at(name));
   }
-  protocol.texts.welcome =
+  texts.welcome =
       fmt::format("You feel {} textures, as often as you like, and put them in order of roughness.",
                   protocol.standards.size());
-  protocol.texts.begin = fmt::format(
+  texts.begin = fmt::format(
       "Put the finger at the left end and press a number, {} to {}, to feel that texture. Press the space "
       "bar "
       "to give the order.",
       kAnswerKeys.front(), protocol.choices.back().key);
-  protocol.texts.left = "Not explored yet, or not at the right speed";
-  protocol.texts.question =
+  texts.left = "Not explored yet, or not at the right speed";
+  texts.question =
       "Press the numbers from the smoothest texture to the roughest one, then the space bar. Backspace takes "
       "one back.";
   return protocol;
@@ -302,6 +305,7 @@ Result<schema::Protocol> adjustment_protocol(const std::string& seed, const Name
     return fail(ErrorKind::usage, fmt::format("there are {} textures", textures.size()), "--textures",
                 "name one to be adjusted; --reference is for the goal match");
   schema::Protocol protocol = stretch_protocol(seed);
+  schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
   protocol.task = schema::Task::adjustment;
   protocol.goal = goal;
   protocol.smallest_ratio = 0.05, protocol.largest_ratio = 4, protocol.step_db = 1;
@@ -316,12 +320,32 @@ Result<schema::Protocol> adjustment_protocol(const std::string& seed, const Name
                                    "the strongest setting that still feels like a texture",
                                    "the setting that is as strong as the first texture"};
   const char* const what = kWhat[static_cast<int>(goal)];
-  protocol.texts.welcome = fmt::format("You change how strong a texture is. Find {}.", what);
+  texts.welcome = fmt::format("You change how strong a texture is. Find {}.", what);
   if (goal == schema::Goal::match)
-    protocol.texts.welcome += " You feel the first texture, and then the one that you change.";
-  protocol.texts.interval = "Move the finger to the right end and back.";
-  protocol.texts.question = fmt::format(
+    texts.welcome += " You feel the first texture, and then the one that you change.";
+  texts.interval = "Move the finger to the right end and back.";
+  texts.question = fmt::format(
       "Find {}: f or the arrow down: weaker, j or the arrow up: stronger, a: this is it. Keep moving.", what);
+  texts.too_early =
+      "Too early: move the finger to the right end and back before you press a. This trial comes again.";
+  return protocol;
+}
+
+Result<schema::Protocol> fidelity_protocol(const std::string& seed, const NamedTextures& textures) {
+  TACTO_TRY(check_several(textures));
+  schema::Protocol protocol = stretch_protocol(seed);
+  schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
+  protocol.task = schema::Task::fidelity;
+  TACTO_TRY(fit_to_textures(protocol, textures, 1));
+  const double others = static_cast<double>(textures.size()) - 1;
+  protocol.repetitions = static_cast<int>(std::max(1.0, std::round(10 / others)));
+  protocol.participants = 10;
+  protocol.choices = {{"f", "same"}, {"j", "different"}};
+  texts.welcome =
+      "You feel a texture that is played, and a real sample beside it. Say whether they are the same "
+      "texture.";
+  texts.question = "Feel the sample beside it. Is it the same texture? f: the same, j: a different one.";
+  texts.place = "For the operator: put this sample beside the device, type its label and press Enter.";
   return protocol;
 }
 

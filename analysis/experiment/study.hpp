@@ -60,6 +60,11 @@ schema::Result<schema::Protocol> ordering_protocol(const std::string& seed, cons
 schema::Result<schema::Protocol> adjustment_protocol(const std::string& seed, const NamedTextures& textures,
                                                      const std::string& adjusted, schema::Goal goal);
 
+/// The comparison bench of Wiertlewski 2011: each texture is played beside the real sample of each, in blocks
+/// of one sample; the same or different. About ten trials of each texture beside its own sample, and as many
+/// beside the others. Path and gain as of an identification. Errors: as identification_protocol.
+schema::Result<schema::Protocol> fidelity_protocol(const std::string& seed, const NamedTextures& textures);
+
 /// Makes the stimuli (spatial/transform; or of `textures`, without what names their surface) and writes all
 /// files. Errors: usage, if there is one of them and it is to be kept, or a folder of another kind;
 /// cannot_write, also if the study has runs; those of stretching.

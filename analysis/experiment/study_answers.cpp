@@ -89,6 +89,11 @@ bool seemed_longer(const Attempt& attempt) {
   return attempt.trial.standard_comes_first() == (attempt.answered->choice == 1);
 }
 
+std::optional<double> known_pse(const schema::Protocol& protocol) {
+  const bool one_sign = protocol.levels.front() > 0 || protocol.levels.back() < 0;
+  return one_sign ? std::optional(0.0) : std::nullopt;
+}
+
 Result<std::vector<Run>> answered_runs(const std::string& name, bool unblind) {
   const auto study = read_study(name);
   TACTO_TRY(study);
@@ -124,6 +129,7 @@ Result<AnswersTable> study_answers(const std::string& name, bool unblind) {
       table.reversals.push_back(reversals_in_words(run));
     add_simulated(simulated, run);
   }
+  table.pse = known_pse(runs->front().study.protocol);
   table.columns.by = {"participant"};
   table.columns.level = table.level_name = "stretch";
   table.columns.yes = "seemed longer";

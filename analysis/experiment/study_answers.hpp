@@ -2,6 +2,7 @@
 // The answers of all participants of a study, for the fit.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,10 @@ schema::Result<std::vector<Run>> answered_runs(const std::string& study, bool un
 
 /// Whether the stretched stimulus seemed to have the longer period. Precondition: an answer.
 bool seemed_longer(const Attempt& attempt);
+
+/// 0, where all stretches of the protocol have one sign: their answers cannot separate a bias from the JND.
+/// Precondition: the task is two_interval.
+std::optional<double> known_pse(const schema::Protocol& protocol);
 
 /// Of those runs, by the stretch of the period: how often the stretched stimulus seemed the longer one, among
 /// the trials that were delivered and answered. Errors: those of answered_runs.

@@ -29,14 +29,16 @@ constexpr Column kColumns[] = {
      ""},
     {"block", "number of the block of trials", ""},
     {"condition", "whether the comparisons were real samples or played (virtual)", ""},
-    {"presented", "name of the comparison", ""},
-    {"answer_choice", "number of the standard that was answered", ""},
-    {"correct", "1: the answer is the comparison, else 0", ""},
+    {"sample", "name of the real sample beside which a texture was played", ""},
+    {"presented", "name of the comparison, or of the texture that was played", ""},
+    {"answer_choice", "number of the standard that was answered, or 1: same, 2: different", ""},
+    {"correct", "1: the answer is the comparison, or right about the sample, else 0", ""},
     {"explorations", "number of textures that were explored, each of them once or more", ""},
     {"order", "names of the textures in the order of the answer, from least to most", ""},
     {"series", "ascending: the setting began at a low gain; descending: at a high one", ""},
     {"start_ratio", "gain at its beginning over that of the protocol", "1"},
     {"accepted_ratio", "the same of the gain that was accepted, the last one of the session", "1"},
+    {"bound", "lower or upper: the accepted gain is the end of the range, and so a bound", ""},
     {"nominal_ratio", "gain of the trial over that at which the displacement is the real sample's", "1"},
     {"predicted_ratio", "the same of the displacement that the transducer's model predicts", "1"},
     {"rating", "from -3, much weaker than the real sample, to 3, much stronger", ""},
@@ -75,15 +77,17 @@ answers <- data.frame(person = factor(trials[[arguments[2]]]), level = trials[[a
 answers$no <- if (length(arguments) > 4) trials[[arguments[5]]] else 1 - answers$yes
 answers$condition <- factor(if (length(arguments) > 5) trials[[arguments[6]]] else "all")
 several <- nlevels(answers$condition) > 1
-fixed <- if (several) "cbind(yes, no) ~ 0 + condition + condition:level" else "cbind(yes, no) ~ level"
+# Stretches of one sign cannot separate the PSE from the JND: then it is 0.
+no_pse <- arguments[3] == "nominal_stretch" && (all(answers$level > 0) || all(answers$level < 0))
+fixed <- if (several) "cbind(yes, no) ~ 0 + condition + condition:level" else if (no_pse) "cbind(yes, no) ~ 0 + level" else "cbind(yes, no) ~ level"
 if (nlevels(answers$person) > 1) {
-  model <- lme4::glmer(as.formula(paste(fixed, "+ (1 + level | person)")), family = binomial("probit"), data = answers)
+  model <- lme4::glmer(as.formula(paste(fixed, if (no_pse) "+ (0 + level | person)" else "+ (1 + level | person)")), family = binomial("probit"), data = answers)
   b <- lme4::fixef(model)
 } else {
   b <- coef(glm(as.formula(fixed), family = binomial("probit"), data = answers))
 }
 conditions <- levels(answers$condition)
-intercept <- if (several) b[paste0("condition", conditions)] else b["(Intercept)"]
+intercept <- if (several) b[paste0("condition", conditions)] else if (no_pse) 0 else b["(Intercept)"]
 slope <- if (several) b[paste0("condition", conditions, ":level")] else b["level"]
 write.csv(data.frame(condition = conditions, pse = -intercept / slope, jnd = qnorm(0.75) / slope),
           row.names = FALSE, quote = FALSE)
@@ -126,19 +130,24 @@ std::string bids_cell(const std::string& text) {
 }
 
 bool is_right(const Run& run, const Attempt& attempt) {
+  if (run.study.protocol.task == schema::Task::fidelity)
+    return (attempt.answered->choice == schema::kSameChoice) == (attempt.trial.code == attempt.trial.sample);
   return is_two_interval(run.study.protocol)
              ? seemed_longer(attempt)
              : attempt.answered->word == stimulus_of(run.study.key, attempt.trial.code).name;
 }
 
-// The cells of trials_table(); with seemed_longer of two intervals, with correct of an identification.
+// The cells of trials_table(); with seemed_longer of two intervals, with correct of an identification and a
+// fidelity.
 std::vector<std::vector<std::string>> rows_of(const Run& run) {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::string> lines = split(trials_table(run), '\n');
   lines.pop_back();
   for (std::size_t i = 0; i < lines.size(); ++i) {
     rows.push_back(split(lines[i], '\t'));
-    if (!is_two_interval(run.study.protocol) && run.study.protocol.task != schema::Task::identification)
+    const schema::Task task = run.study.protocol.task;
+    if (!is_two_interval(run.study.protocol) && task != schema::Task::identification &&
+        task != schema::Task::fidelity)
       continue;
     const Attempt* const attempt = i > 0 ? &run.queue.attempts()[i - 1] : nullptr;
     const bool answered = attempt != nullptr && attempt->answered;
@@ -210,10 +219,11 @@ std::string csv_of(const std::vector<Run>& runs) {
 }
 
 std::string participants_of(const std::vector<Run>& runs) {
-  std::string table = "participant_id\tcomplete\tsimulated\n";
+  std::string table = "participant_id\tcomplete\tsimulated\tmasking_level\n";
   for (const Run& run : runs)
-    table += fmt::format("sub-{}\t{}\t{}\n", run.journal.plan.participant,
-                         run.queue.has_ended() ? "yes" : "no", bids_cell(run.journal.plan.observer));
+    table += fmt::format("sub-{}\t{}\t{}\t{}\n", run.journal.plan.participant,
+                         run.queue.has_ended() ? "yes" : "no", bids_cell(run.journal.plan.observer),
+                         bids_cell(run.journal.plan.masking_level));
   return table;
 }
 

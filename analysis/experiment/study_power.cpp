@@ -8,6 +8,7 @@
 #include <random>
 #include <span>
 
+#include "analysis/experiment/study_answers.hpp"
 #include "analysis/psychometrics/over_people.hpp"
 #include "analysis/psychometrics/psychometric_fit.hpp"
 
@@ -131,6 +132,7 @@ Result<StudyPower> study_power(const schema::Protocol& protocol, const PowerAssu
   Draws draws(assumed.seed);
   PsychometricOptions fit;
   if (!assumed.lapse) fit.lapse = 0;
+  fit.threshold = known_pse(protocol);
   StudyPower power;
   std::array<std::vector<double>, 2> logs;
   std::vector<double> differences;

@@ -12,6 +12,7 @@
 #include "analysis/experiment/interval_facts.hpp"
 #include "analysis/experiment/interval_play.hpp"
 #include "analysis/experiment/live_setting.hpp"
+#include "analysis/experiment/masking_noise.hpp"
 #include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/template_observer.hpp"
 #include "analysis/experiment/trial_runner.hpp"
@@ -42,6 +43,7 @@ class LiveSteps {
             [this](const StudyTrial& trial, int attempt) { return begun(trial, attempt); },
             [this](const Attempt& attempt) { return present(attempt); },
             [this](const Attempt& attempt) { return answer(attempt); },
+            [this] { return rest(); },
             [this](const StudyTrial& trial) {
               const double longest_s = run_.study.protocol.longest_s;
               return longest_s > 0 && block_s(trial.block) >= longest_s;
@@ -76,6 +78,37 @@ class LiveSteps {
     return block_base_s_ + std::chrono::duration<double>(BlockClock::now() - block_since_).count();
   }
 
+  // Answers since the last break, the beginning, or an interruption.
+  int answers_since_break() const {
+    int answers = 0;
+    for (const schema::JournalEntry& entry : run_.journal.entries) {
+      if (std::holds_alternative<schema::AttemptAnswered>(entry)) ++answers;
+      if (std::holds_alternative<schema::BreakTaken>(entry) ||
+          std::holds_alternative<schema::RunResumed>(entry))
+        answers = 0;
+    }
+    return answers;
+  }
+
+  Result<bool> rest() {
+    const schema::ProtocolBreaks& breaks = run_.study.protocol.breaks;
+    const auto now = BlockClock::now;
+    const std::chrono::duration<double> worked = now() - worked_since_;
+    const int answers = answers_since_break();
+    const bool due = (breaks.after_trials > 0 && answers >= breaks.after_trials) ||
+                     (breaks.after_s > 0 && answers > 0 && worked.count() >= breaks.after_s);
+    if (!due || !request_.participant.rest) return true;
+    const BlockClock::time_point begun = now();
+    if (!request_.participant.rest()) return false;
+    worked_since_ = now();
+    block_since_ += worked_since_ - begun;  // a break is no time of the block
+    const std::chrono::duration<double> rested = worked_since_ - begun;
+    const schema::BreakTaken taken{rested.count()};
+    TACTO_TRY(keep(taken));
+    TACTO_TRY(run_.queue.take(taken));
+    return true;
+  }
+
   schema::AttemptBegun begun(const StudyTrial& trial, int attempt) {
     schema::AttemptBegun begun{attempt, trial.name(), {}, {}, trial.block, block_s(trial.block)};
     if (task() == schema::Task::ordering) return begun;
@@ -93,15 +126,35 @@ class LiveSteps {
   Result<std::optional<schema::JournalEntry>> present(const Attempt& attempt) {
     request_.tell(static_cast<double>(run_.queue.counted()) / static_cast<double>(run_.queue.trials()));
     if (task() == schema::Task::ordering) return explore(attempt);
-    if (!attempt.trial.real) return play(attempt);
-    const std::string& label = attempt.trial.code;
-    if (!request_.observer) {
-      const auto is_placed = request_.participant.place(label, run_.queue.placed());
-      TACTO_TRY(is_placed);
-      if (!*is_placed || !go_ahead(1)) return std::nullopt;
+    if (task() == schema::Task::fidelity) {
+      const auto beside = place_beside(attempt);
+      TACTO_TRY(beside);
+      if (!*beside) return std::nullopt;
     }
-    if (request_.stop_asked()) return std::nullopt;
-    return schema::SamplePlaced{attempt.begun.attempt, label};
+    if (!attempt.trial.real) return play(attempt);
+    const auto placed = place_sample(attempt.trial.code);
+    TACTO_TRY(placed);
+    if (!*placed || !go_ahead(1) || request_.stop_asked()) return std::nullopt;
+    return schema::SamplePlaced{attempt.begun.attempt, attempt.trial.code};
+  }
+
+  // False: the run ends. An observer needs no operator.
+  Result<bool> place_sample(const std::string& label) const {
+    if (request_.observer) return !request_.stop_asked();
+    return request_.participant.place(label, run_.queue.placed());
+  }
+
+  // The sample stays for its block.
+  Result<bool> place_beside(const Attempt& attempt) {
+    const std::string& label = attempt.trial.sample;
+    if (run_.queue.sample() == label) return true;
+    const auto placed = place_sample(label);
+    TACTO_TRY(placed);
+    if (!*placed) return false;
+    const schema::SamplePlaced entry{attempt.begun.attempt, label};
+    TACTO_TRY(keep(entry));
+    TACTO_TRY(run_.queue.take(entry));
+    return true;
   }
 
   std::string place(const Attempt& attempt) const {
@@ -121,6 +174,11 @@ class LiveSteps {
       if (!*goes_on) return std::nullopt;
     }
     for (std::size_t i = 0; i < attempt.begun.stimuli.size(); ++i) TACTO_TRY(read_facts(attempt, i, played));
+    const auto strokes = static_cast<std::uint64_t>(run_.study.protocol.pace.strokes);
+    const bool accepted = std::ranges::find(played.late, kNotAccepted) == played.late.end();
+    if (request_.participant.too_early && task() == schema::Task::adjustment && accepted &&
+        played.facts.back().strokes < strokes)
+      request_.participant.too_early();
     return judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums, run_.study.protocol,
                            played.late);
   }
@@ -271,20 +329,29 @@ class LiveSteps {
     return schema::AttemptAnswered{attempt.begun.attempt, choice, word, (*given)->answer_s};
   }
 
+  // Which standard it is to the observer.
+  Result<int> identified(const Attempt& attempt) {
+    if (!templates_) {
+      auto templates = TemplateObserver::of(run_.study);
+      TACTO_TRY(templates);
+      templates_ = std::move(*templates);
+    }
+    const std::optional<std::string> session =
+        attempt.trial.real ? std::nullopt : std::optional(full(attempt.begun.sessions.front()));
+    return templates_->answer(*request_.observer, place(attempt), attempt.trial.code, session);
+  }
+
   Result<std::optional<GivenAnswer>> given_answer(const Attempt& attempt) {
     if (task() == schema::Task::adjustment) return GivenAnswer{accepted_choice(attempt), 0};
     if (!request_.observer) return request_.participant.answer(run_.queue.answers());
     if (task() == schema::Task::ordering) return order_by_level(attempt);
-    if (task() == schema::Task::identification) {
-      if (!templates_) {
-        auto templates = TemplateObserver::of(run_.study);
-        TACTO_TRY(templates);
-        templates_ = std::move(*templates);
-      }
-      const std::optional<std::string> session =
-          attempt.trial.real ? std::nullopt : std::optional(full(attempt.begun.sessions.front()));
-      return GivenAnswer{templates_->answer(*request_.observer, place(attempt), attempt.trial.code, session),
-                         0};
+    if (task() == schema::Task::identification || task() == schema::Task::fidelity) {
+      const auto number = identified(attempt);
+      TACTO_TRY(number);
+      if (task() == schema::Task::identification) return GivenAnswer{*number, 0};
+      const std::string& name = run_.study.protocol.standards[static_cast<std::size_t>(*number) - 1];
+      const bool same = stimulus_of(run_.study.key, attempt.trial.sample).name == name;
+      return GivenAnswer{same ? schema::kSameChoice : schema::kSameChoice + 1, 0};
     }
     const auto& intervals = attempt.judged->intervals;
     if (task() == schema::Task::amplitude) {
@@ -312,7 +379,7 @@ class LiveSteps {
   std::optional<TemplateObserver> templates_;
   int block_ = 0;
   double block_base_s_ = 0;
-  BlockClock::time_point block_since_;
+  BlockClock::time_point block_since_, worked_since_ = BlockClock::now();
 };
 
 // The row of block orders that the fewest complete runs have. A journal that cannot be read is of no
@@ -332,9 +399,11 @@ int next_order(const Study& study) {
 }
 
 Result<void> check_observer(const schema::Protocol& protocol, const std::optional<Observer>& observer) {
-  constexpr const char* kExamples[] = {"weber=25.3%", "template", "match=86%,weber=10%", "order,noise=1dB",
-                                       "threshold=20%,sd=10%"};
-  if (!observer || observer->task == protocol.task) return {};
+  constexpr const char* kExamples[] = {"weber=25.3%",          "template",
+                                       "match=86%,weber=10%",  "order,noise=1dB",
+                                       "threshold=20%,sd=10%", "template"};
+  const bool compares = protocol.task == schema::Task::fidelity;  // the template that it identifies
+  if (!observer || observer->task == (compares ? schema::Task::identification : protocol.task)) return {};
   return fail(
       ErrorKind::usage,
       fmt::format("'{}' cannot answer in the task {}", observer->text, schema::word_of(protocol.task)),
@@ -366,6 +435,8 @@ Result<Run> begin_run(const std::string& study_name, const std::string& particip
   TACTO_TRY(study);
   TACTO_TRY(check_not_withdrawn(study->stem, participant));
   TACTO_TRY(check_observer(study->protocol, request.observer));
+  const auto masking_level = checked_masking_level(study->protocol, request.masking_level_db);
+  TACTO_TRY(masking_level);
   const auto slowest = check_on_device(*study, request.device_uri);
   TACTO_TRY(slowest);
   const int order = next_order(*study);
@@ -375,7 +446,8 @@ Result<Run> begin_run(const std::string& study_name, const std::string& particip
   schema::RunPlanned plan{
       study->name(),           participant,           study->protocol.sha256,
       study->key.sha256,       request.device_uri,    request.observer ? request.observer->text : "",
-      schema::creation_time(), std::string(kCreator), order};
+      schema::creation_time(), std::string(kCreator), order,
+      request.language,        *masking_level};
   TrialQueue queue = queue_of_run(study->protocol, study->key, participant, order);
   Run run{stem, {plan, {}, 0}, std::move(*study), std::move(queue)};
   TACTO_TRY(go_on(run, *file, request, slowest->keeps_time(), plan));
@@ -398,9 +470,12 @@ Result<Run> resume_run(const std::string& name, RunRequest request) {
     TACTO_TRY(observer);
     request.observer = std::move(*observer);
   }
+  const auto masking_level = checked_masking_level(run->study.protocol, request.masking_level_db);
+  TACTO_TRY(masking_level);
   const auto slowest = check_on_device(run->study, request.device_uri);
   TACTO_TRY(slowest);
-  TACTO_TRY(go_on(*run, *file, request, slowest->keeps_time(), schema::RunResumed{schema::creation_time()}));
+  TACTO_TRY(go_on(*run, *file, request, slowest->keeps_time(),
+                  schema::RunResumed{schema::creation_time(), *masking_level}));
   return std::move(*run);
 }
 

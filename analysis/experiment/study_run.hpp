@@ -34,21 +34,28 @@ struct Participant {
   std::function<std::optional<int>(const std::vector<int>& left)> explore;
   /// Of adjustment, of a person: the next key; waits for it on request. None: no key, or the run ends.
   std::function<std::optional<schema::Turn>(bool wait)> turn;
+  /// Of adjustment, of a person: says that a setting was accepted before the strokes of the pace.
+  std::function<void()> too_early;
   /// Of adjustment, of a file: the ratio that is to be set. None: the run ends.
   std::function<std::optional<double>(std::size_t number)> wanted;
+  /// Of a person: a break, until a key is pressed; false: the run ends.
+  std::function<bool()> rest;
 };
 
 struct RunRequest {
   std::string device_uri;
   std::optional<Observer> observer;  ///< answers in place of the participant
   Participant participant;
+  std::string language = {};                    ///< of the screen; empty: none
+  std::optional<double> masking_level_db = {};  ///< as the operator measured it
   std::function<bool()> stop_asked;
   std::function<void(double)> tell;  ///< the part of the trials that are done
 };
 
 /// Begins a run and returns it as it ended. The order of its blocks is the row that the fewest complete
 /// runs of the study have, the first of these rows. Errors: those of read_study and of check_on_device;
-/// usage: no code of a participant, one that has begun; those of playback: the run can be resumed.
+/// usage: no code of a participant, one that has begun, a level of the masking noise that is not the
+/// protocol's; those of playback: the run can be resumed.
 schema::Result<Run> begin_run(const std::string& study, const std::string& participant,
                               const RunRequest& request);
 

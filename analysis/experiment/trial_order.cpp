@@ -81,12 +81,35 @@ std::vector<StudyTrial> trials_of_block(const schema::Protocol& protocol, const 
                        [&](const StudyTrial& trial) { return hashed_text(protocol, participant, trial); });
 }
 
+// A block for each sample. Half of its trials play the sample's own texture.
+std::vector<StudyTrial> beside_samples(const schema::Protocol& protocol, const schema::ProtocolKey& key,
+                                       const std::string& participant) {
+  std::vector<StudyTrial> trials;
+  const auto samples = sorted_by_sum(key.stimuli, [&](const schema::CodedStimulus& each) {
+    return fmt::format("{}/{}/sample/{}", protocol.seed, participant, each.code);
+  });
+  const int others = static_cast<int>(samples.size()) - 1;
+  int number = 0;
+  for (const schema::CodedStimulus& sample : samples) {
+    ++number;
+    std::vector<StudyTrial> block;
+    for (const schema::CodedStimulus& played : key.stimuli)
+      for (int i = 1; i <= protocol.repetitions * (played.code == sample.code ? others : 1); ++i)
+        block.push_back({played.code, i, number, false, 1, false, sample.code});
+    block = sorted_by_sum(std::move(block),
+                          [&](const StudyTrial& trial) { return hashed_text(protocol, participant, trial); });
+    trials.insert(trials.end(), block.begin(), block.end());
+  }
+  return trials;
+}
+
 }  // namespace
 
 std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                        const std::string& participant, int order) {
   if (protocol.method != schema::LevelMethod::constant) return adaptive_trials(protocol, participant);
   if (protocol.task == schema::Task::ordering) return orderings(protocol, key, participant);
+  if (protocol.task == schema::Task::fidelity) return beside_samples(protocol, key, participant);
   if (protocol.task != schema::Task::identification)
     return trials_of_block(protocol, key, participant, {{}, 0, 1, false, 1});
   std::vector<StudyTrial> trials;

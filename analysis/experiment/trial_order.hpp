@@ -13,9 +13,10 @@ struct StudyTrial {
   std::string code;  ///< of the stretched stimulus, the comparison or the standard; of ordering "all"
   int repetition = 0;
   int block = 1;
-  bool real = false;      ///< a sample on the bench, instead of playback
-  double ratio = 1;       ///< its gain over that of the protocol; of adjustment, the gain at its start
-  bool adaptive = false;  ///< its code is chosen when its turn comes
+  bool real = false;        ///< a sample on the bench, instead of playback
+  double ratio = 1;         ///< its gain over that of the protocol; of adjustment, the gain at its start
+  bool adaptive = false;    ///< its code is chosen when its turn comes
+  std::string sample = {};  ///< of fidelity: the code of the real sample beside it
   std::vector<std::string> arranged = {};  ///< of ordering: the codes of the first, second ... texture
 
   std::string name() const { return code + "." + std::to_string(repetition); }
@@ -30,7 +31,8 @@ struct StudyTrial {
 /// that text with /ratio at its end. Of an adaptive method CODE is "level" in that order. The textures of a
 /// trial of ordering are sorted by the SHA-256 of that text with /CODE at its end. An adjustment starts at
 /// uniform_by_sum() of that text with /start at its end, times a quarter of the range of ratios in dB, from
-/// its lower end in odd repetitions, from its upper one in even ones.
+/// its lower end in odd repetitions, from its upper one in even ones. A fidelity has a block for each sample,
+/// sorted by the SHA-256 of SEED/PARTICIPANT/sample/CODE.
 std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                        const std::string& participant, int order);
 

@@ -45,27 +45,34 @@ Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
   if (const auto* judged = std::get_if<schema::DeliveryJudged>(&entry)) {
     const auto attempt = open_attempt(judged->attempt);
     TACTO_TRY(attempt);
-    if ((*attempt)->judged || (*attempt)->trial.real)
+    const StudyTrial& trial = (*attempt)->trial;
+    if ((*attempt)->judged || trial.real || (!trial.sample.empty() && trial.sample != sample_))
       return does_not_follow(fmt::format("attempt {}", judged->attempt));
     (*attempt)->judged = *judged;
   }
   if (const auto* placed = std::get_if<schema::SamplePlaced>(&entry)) {
     const auto attempt = open_attempt(placed->attempt);
     TACTO_TRY(attempt);
-    if ((*attempt)->placed || !(*attempt)->trial.real || placed->label != (*attempt)->trial.code)
+    const StudyTrial& trial = (*attempt)->trial;
+    if ((*attempt)->placed || (*attempt)->judged || placed->label != (trial.real ? trial.code : trial.sample))
       return does_not_follow(fmt::format("sample {} of attempt {}", placed->label, placed->attempt));
     (*attempt)->placed = *placed;
+    sample_ = placed->label;
   }
   if (const auto* explored = std::get_if<schema::StimulusExplored>(&entry)) return explore(*explored);
   if (const auto* over = std::get_if<schema::BlockOver>(&entry)) return end_block(over->block);
   if (const auto* answered = std::get_if<schema::AttemptAnswered>(&entry)) {
     const auto attempt = open_attempt(answered->attempt);
     TACTO_TRY(attempt);
-    if ((!(*attempt)->judged && !(*attempt)->placed) || !is_order_of(answered->word, (*attempt)->trial))
+    const bool presented =
+        (*attempt)->trial.real ? (*attempt)->placed.has_value() : (*attempt)->judged.has_value();
+    if (!presented || !is_order_of(answered->word, (*attempt)->trial))
       return does_not_follow(fmt::format("attempt {}", answered->attempt));
     (*attempt)->answered = *answered;
     close();
   }
+  if (std::holds_alternative<schema::BreakTaken>(entry) && open_) return does_not_follow("a break");
+  if (std::holds_alternative<schema::RunResumed>(entry)) sample_.clear();
   if (std::holds_alternative<schema::RunResumed>(entry) && open_) close();
   if (std::holds_alternative<schema::RunEnded>(entry)) ended_ = true;
   return {};

@@ -21,8 +21,8 @@ struct Attempt {
   std::optional<schema::SamplePlaced> placed;
   std::optional<schema::AttemptAnswered> answered;
 
-  /// Delivered, or placed as a real sample; and answered.
-  bool counts() const { return answered && (placed || (judged && judged->delivered)); }
+  /// Delivered, or a real sample of an identification that was placed; and answered.
+  bool counts() const { return answered && (trial.real ? placed.has_value() : judged && judged->delivered); }
 };
 
 /// The codes of an order, from the word of its answer.
@@ -50,8 +50,10 @@ class TrialQueue {
   std::size_t trials() const { return trials_; }
   std::size_t counted() const;
   std::size_t answers() const;
-  /// Answered attempts with a real sample in place.
+  /// Answered attempts for which a real sample was placed.
   std::size_t placed() const;
+  /// The sample that was placed last, since the run was begun or resumed; empty: none.
+  const std::string& sample() const { return sample_; }
   std::size_t abandoned() const { return abandoned_; }
   /// Trials left out because the time of their block was over.
   std::size_t timed_out() const { return timed_out_; }
@@ -69,6 +71,7 @@ class TrialQueue {
   std::vector<Attempt> attempts_;
   std::size_t trials_, abandoned_ = 0, timed_out_ = 0;
   int most_attempts_;
+  std::string sample_;
   bool open_ = false, ended_ = false;
 };
 

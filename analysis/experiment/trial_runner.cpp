@@ -38,6 +38,9 @@ Result<void> run_trials(TrialQueue& queue, const TrialSteps& steps) {
       TACTO_TRY(keep_and_take(queue, steps, schema::BlockOver{trial->block}));
       continue;
     }
+    const auto rested = steps.rest();
+    TACTO_TRY(rested);
+    if (!*rested) return {};
     const auto goes_on = run_trial(queue, steps, *trial);
     TACTO_TRY(goes_on);
     if (!*goes_on) return {};

@@ -21,6 +21,8 @@ struct TrialSteps {
   std::function<schema::Result<std::optional<schema::JournalEntry>>(const Attempt&)> present;
   /// The answer, also to what was not delivered. None: as above.
   std::function<schema::Result<std::optional<schema::AttemptAnswered>>(const Attempt&)> answer;
+  /// A break, if one is due before the trial; kept and taken by this. False: the run is ended.
+  std::function<schema::Result<bool>()> rest;
   /// Whether the time of the trial's block is over before it begins.
   std::function<bool(const StudyTrial&)> is_over;
 };

@@ -7,6 +7,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "analysis/psychometrics/psychometric_function.hpp"
 
@@ -36,6 +37,20 @@ schema::Result<double> d_prime_of(double proportion, std::size_t alternatives) {
   const auto found = boost::math::tools::toms748_solve(difference, -kMost, kMost,
                                                        boost::math::tools::eps_tolerance<double>(40), steps);
   return (found.first + found.second) / 2;
+}
+
+std::optional<Estimate> d_prime_of_same(const SameAnswers& answers) {
+  if (answers.own == 0 || answers.other == 0) return std::nullopt;
+  double d_prime = 0, variance = 0;
+  for (const auto& [same, trials, sign] :
+       {std::tuple{answers.same_of_own, answers.own, 1.0}, {answers.same_of_other, answers.other, -1.0}}) {
+    const double share = (same + 0.5) / (trials + 1), z = standard_quantile(Shape::normal, share);
+    const double phi = std::exp(-z * z / 2) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+    d_prime += sign * z;
+    variance += share * (1 - share) / (trials * phi * phi);
+  }
+  const double reach = standard_quantile(Shape::normal, 0.975) * std::sqrt(variance);
+  return Estimate{d_prime, d_prime - reach, d_prime + reach};
 }
 
 }  // namespace tacto::analysis

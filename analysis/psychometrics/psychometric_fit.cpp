@@ -37,13 +37,14 @@ class PsychometricLikelihood {
   // `eta` of 0: binomial answers.
   double at(const Tails& tails, double lapse, double eta) const;
 
-  const std::vector<double>& scaled_levels() const { return scaled_; }
+  // Ascending: the levels; beside a fixed threshold also their mirror images, at which F is known as well.
+  const std::vector<double>& places() const { return places_; }
   const PsychometricOptions& options() const { return options_; }
 
  private:
   std::span<const LevelCount> levels_;
   const PsychometricOptions& options_;
-  std::vector<double> scaled_;
+  std::vector<double> scaled_, places_;
 };
 
 // The place of the maximum.
@@ -111,14 +112,16 @@ class Climb {
   bool step() {
     constexpr double kStep = 1e-4, kConverged = 1e-10;
     const double unit = std::exp(at_.log_spread);
+    const bool fixed = likelihood_.options().threshold.has_value();
     const auto f = [&](double x, double y) {
-      return value(at_.centre + unit * kStep * x, at_.log_spread + kStep * y);
+      return value(at_.centre + (fixed ? 0 : unit * kStep * x), at_.log_spread + kStep * y);
     };
     const double left = f(-1, 0), right = f(1, 0), below = f(0, -1), above = f(0, 1), here = at_.value;
     const Eigen::Vector2d slope((right - left) / 2, (above - below) / 2);
     const double mixed = (f(1, 1) - f(1, -1) - f(-1, 1) + f(-1, -1)) / 4;
     Eigen::Matrix2d bend;
     bend << left - 2 * here + right, mixed, mixed, below - 2 * here + above;
+    if (fixed) bend(0, 0) = bend(1, 1);  // its slope is 0: the centre stays
     if (!slope.allFinite() || !bend.allFinite()) return false;
     const double size = std::max(bend.cwiseAbs().maxCoeff(), 1e-300);
     for (double damping = 0; damping < 1e8 * size; damping = std::max(1e-3 * size, 10 * damping)) {
@@ -167,13 +170,15 @@ PsychometricPeak best_peak(double most, PeakAt peak_at) {
 // A first centre and spread, from a coarse grid.
 PsychometricPeak first_peak(const PsychometricLikelihood& likelihood) {
   constexpr int kCentres = 24, kSpreads = 12;
-  const auto& x = likelihood.scaled_levels();
+  const auto& x = likelihood.places();
+  const auto& fixed = likelihood.options().threshold;
   const double range = x.back() - x.front();
   PsychometricPeak best;
   best.value = -INFINITY;
-  for (int i = 0; i <= kCentres; ++i)
+  for (int i = 0; i <= (fixed ? 0 : kCentres); ++i)
     for (int j = 0; j < kSpreads; ++j) {
-      PsychometricPeak at{x.front() + range * i / kCentres, std::log(2 * range * std::pow(0.6, j)), 0, 0, 0};
+      const double centre = fixed.value_or(x.front() + range * i / kCentres);
+      PsychometricPeak at{centre, std::log(2 * range * std::pow(0.6, j)), 0, 0, 0};
       at.value = likelihood.at(likelihood.tails(at.centre, std::exp(at.log_spread)), 0.02, 0);
       if (at.value > best.value) best = at;
     }
@@ -189,7 +194,13 @@ struct GridAxis {
   double span() const { return high - low; }
 };
 
+void place_at_one(GridAxis& axis) {
+  axis.nodes.assign(1, axis.low);
+  axis.weights.assign(1, 1);
+}
+
 void place_evenly(GridAxis& axis, std::size_t count) {
+  if (axis.fixed()) return place_at_one(axis);
   axis.nodes.clear();
   for (std::size_t i = 0; i < count; ++i)
     axis.nodes.push_back(axis.low + axis.span() * static_cast<double>(i) / static_cast<double>(count - 1));
@@ -202,14 +213,9 @@ void place_evenly(GridAxis& axis, std::size_t count) {
 template <unsigned kCount>
 void place_by_gauss(GridAxis& axis) {
   using Rule = boost::math::quadrature::gauss<double, kCount>;
+  if (axis.fixed()) return place_at_one(axis);
   axis.nodes.assign(kCount, axis.low);
   axis.weights.assign(kCount, 0);
-  axis.weights.front() = 1;
-  if (axis.fixed()) {
-    axis.nodes.resize(1);
-    axis.weights.resize(1);
-    return;
-  }
   const auto& places = Rule::abscissa();
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::size_t up = kCount / 2 + i, down = kCount - 1 - up;
@@ -236,7 +242,9 @@ class PosteriorGrid {
     const PsychometricOptions& options = likelihood.options();
     width_ = standard_quantile(options.shape, 0.95) - standard_quantile(options.shape, 0.05);
     const double spread = std::exp(peak.log_spread), half = range.range() / 2;
-    centre_ = around(peak.centre, spread / 2, range.least - half, range.most + half);
+    const auto& fixed = options.threshold;
+    centre_ = fixed ? around(*fixed, 0, *fixed, *fixed)
+                    : around(peak.centre, spread / 2, range.least - half, range.most + half);
     spread_ =
         around(peak.log_spread, 0.5, std::log(range.spacing / width_), std::log(3 * range.range() / width_));
     lapse_ = options.lapse ? around(*options.lapse, 0, *options.lapse, *options.lapse)
@@ -356,6 +364,11 @@ PsychometricLikelihood::PsychometricLikelihood(std::span<const LevelCount> level
                                                const PsychometricOptions& options)
     : levels_(levels), options_(options) {
   for (const LevelCount& each : levels) scaled_.push_back(scaled_level(options.shape, each.level));
+  places_ = scaled_;
+  if (!options.threshold) return;
+  for (const double level : scaled_) places_.push_back(2 * *options.threshold - level);
+  std::ranges::sort(places_);
+  places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
 }
 
 PsychometricLikelihood::Tails PsychometricLikelihood::tails(double centre, double spread) const {
@@ -429,6 +442,24 @@ double rise_of(const std::vector<LevelCount>& levels) {
   return sum;
 }
 
+constexpr const char* kBoundOfJnd = "all answers but lapses are right: this bounds the JND only";
+constexpr const char* kMeasureNear = "a bound is no estimate: measure at levels nearer to the standard";
+
+// With a fixed threshold: the answers that are right, and whether they are more than half.
+Result<void> check_right_answers(const std::vector<LevelCount>& levels, double threshold) {
+  double right = 0, trials = 0;
+  for (const LevelCount& each : levels) {
+    if (each.level == threshold) continue;
+    right += each.level > threshold ? each.yes : each.trials - each.yes;
+    trials += each.trials;
+  }
+  if (right == trials) return fail(ErrorKind::unsuitable, kBoundOfJnd, {}, kMeasureNear);
+  if (2 * right > trials) return {};
+  return fail(ErrorKind::unsuitable,
+              fmt::format("{:g} of {:g} answers are right, no more than by guessing", right, trials), {},
+              "measure at levels farther from the standard");
+}
+
 Result<void> check_answers(const std::vector<LevelCount>& levels, const PsychometricOptions& options) {
   if (levels.size() < 2)
     return fail(ErrorKind::unsuitable, "all answers are at one level", {},
@@ -436,6 +467,7 @@ Result<void> check_answers(const std::vector<LevelCount>& levels, const Psychome
   if (options.shape == Shape::weibull && levels.front().level <= 0)
     return fail(ErrorKind::unsuitable, fmt::format("the level {:g} is not above 0", levels.front().level), {},
                 "a Weibull function needs levels above 0: use --function normal");
+  if (options.threshold) return check_right_answers(levels, *options.threshold);
   const double yes = total_of(levels, &LevelCount::yes), trials = total_of(levels, &LevelCount::trials);
   constexpr const char* kRemedy = "a bound is no estimate: measure at levels where both answers occur";
   if (yes == 0)
@@ -477,6 +509,8 @@ Result<void> check_peak(const std::vector<LevelCount>& levels, const Psychometri
                         const LevelRange& range, const PsychometricPeak& peak) {
   const PsychometricOptions& options = likelihood.options();
   const double threshold = level_of(options.shape, peak.centre);
+  if (is_step(likelihood, peak) && options.threshold)
+    return fail(ErrorKind::unsuitable, kBoundOfJnd, {}, kMeasureNear);
   if (is_step(likelihood, peak)) {
     auto above = std::ranges::upper_bound(levels, threshold, {}, &LevelCount::level);
     above = std::clamp(above, levels.begin() + 1, levels.end() - 1);
@@ -503,7 +537,7 @@ void judge_fit(PsychometricFit& fit, const PsychometricOptions& options) {
     const double p = fit.function(each.level), no = each.trials - each.yes;
     fit.deviance += deviance_part(each.yes, each.trials, p) + deviance_part(no, each.trials, 1 - p);
   }
-  const std::size_t parameters = options.lapse ? 2 : 3;
+  const std::size_t parameters = (options.threshold ? 1U : 2U) + (options.lapse ? 0U : 1U);
   fit.freedom = fit.levels.size() - std::min(fit.levels.size(), parameters);
   fit.p = chi_squared_p(fit.deviance, fit.freedom);
 }
@@ -531,7 +565,7 @@ Result<PsychometricFunction> most_probable_function(std::vector<LevelCount> coun
   TACTO_TRY(check_answers(levels, options));
   const PsychometricLikelihood likelihood(levels, options);
   const PsychometricPeak peak = peak_of(likelihood);
-  TACTO_TRY(check_peak(levels, likelihood, range_of(likelihood.scaled_levels()), peak));
+  TACTO_TRY(check_peak(levels, likelihood, range_of(likelihood.places()), peak));
   return PsychometricFunction{options.shape, peak.centre, std::exp(peak.log_spread), peak.lapse,
                               options.guess};
 }
@@ -541,7 +575,7 @@ Result<PsychometricFit> fit_psychometric(std::vector<LevelCount> counts, const P
   fit.levels = merged(std::move(counts));
   TACTO_TRY(check_answers(fit.levels, options));
   const PsychometricLikelihood likelihood(fit.levels, options);
-  const LevelRange range = range_of(likelihood.scaled_levels());
+  const LevelRange range = range_of(likelihood.places());
   const PsychometricPeak peak = peak_of(likelihood);
   const double spread = std::exp(peak.log_spread);
   TACTO_TRY(check_peak(fit.levels, likelihood, range, peak));

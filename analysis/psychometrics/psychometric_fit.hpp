@@ -22,7 +22,9 @@ struct PsychometricOptions {
   Shape shape = Shape::normal;
   std::optional<double> guess = {};  ///< as in PsychometricFunction
   std::optional<double> lapse = {};  ///< fixed; without it fitted, with the prior Beta(1, 19)
-  bool overdispersed = false;        ///< answers at one level scatter more than binomially
+  /// Level at which F is 0.5, fixed; without it fitted. Levels on one side of it are enough then.
+  std::optional<double> threshold = {};
+  bool overdispersed = false;  ///< answers at one level scatter more than binomially
 };
 
 /// A value with its 95 % interval.
@@ -50,7 +52,10 @@ struct PsychometricFit {
 /// Schuett, Harmeling, Macke, Wichmann 2016 (Vision Research 122): flat in the range that the levels can
 /// show, zero beyond it. Overdispersed answers are beta-binomial. Errors: unsuitable: fewer than two levels,
 /// answers all alike (a bound), a step between two levels (a bound), answers that don't rise with the level,
-/// a level that is not above 0 for Weibull. Precondition: 0 <= yes <= trials, trials > 0, 0 <= guess < 1, 0
+/// a level that is not above 0 for Weibull. With a fixed threshold (not of a Weibull function)
+/// an answer is right if it is 'yes' above it or not below it, errors are: all answers right but lapses, or
+/// no more than half of them; and the priors refer to the levels and their mirror images at the threshold.
+/// Precondition: 0 <= yes <= trials, trials > 0, 0 <= guess < 1, 0
 /// <= lapse < (1 - guess) / 2. Pure; takes milliseconds, overdispersed about a second.
 schema::Result<PsychometricFit> fit_psychometric(std::vector<LevelCount> levels,
                                                  const PsychometricOptions& options);

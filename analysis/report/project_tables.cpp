@@ -176,7 +176,7 @@ Result<void> add_protocol(const std::string& path, ProjectFile& file) {
   TACTO_TRY(protocol);
   const bool two_interval = protocol->task == schema::Task::two_interval;
   file.figures = {
-      {"question", protocol->texts.question},
+      {"question", question_of(*protocol)},
       {two_interval ? "levels" : "comparisons",
        fmt::format("{}, {} times each", two_interval ? protocol->levels.size() : protocol->comparisons.size(),
                    protocol->repetitions)}};

@@ -9,7 +9,7 @@ Result<cli::Report> describe_protocol(const std::string& path) {
   TACTO_TRY(protocol);
   warn_of_unknown(path, *protocol);
   cli::Report report = report_of(FileKind::protocol, path, "");
-  report.add("task", word_of(protocol->task)).add("question", protocol->texts.question);
+  report.add("task", word_of(protocol->task)).add("question", question_of(*protocol));
   if (protocol->task == Task::two_interval)
     report.add("standard_period_m", protocol->standard.period_m)
         .add("standard_amplitude_m", protocol->standard.amplitude_m)
@@ -21,6 +21,9 @@ Result<cli::Report> describe_protocol(const std::string& path) {
     report.add("comparisons", protocol->comparisons.size()).add("conditions", protocol->conditions);
   if (protocol->task == Task::adjustment) report.add("goal", word_of(protocol->goal));
   report.add("repetitions", protocol->repetitions);
+  std::vector<std::string> languages;
+  for (const auto& [language, texts] : protocol->texts) languages.push_back(language);
+  report.add("languages", languages);
   report.add("participants", protocol->participants).add("seed", protocol->seed);
   add_text(report, "notes", protocol->notes);
   return report;

@@ -22,7 +22,10 @@ struct RunPlanned {
   std::string device;
   std::string observer;  ///< simulated; empty: a person
   std::string created, creator;
-  int order = 1;  ///< row of the square of block orders, from 1
+  int order = 1;              ///< row of the square of block orders, from 1
+  std::string language = {};  ///< of the texts that the person read; empty: no screen
+  std::string masking_level =
+      {};  ///< "64.5 dB", as the operator measured it, or "not measured"; empty: no noise
 };
 
 /// An attempt at a trial begins: the first line of it.
@@ -88,9 +91,15 @@ struct BlockOver {
   int block = 0;
 };
 
+/// A break before the next trial.
+struct BreakTaken {
+  double break_s = 0;
+};
+
 /// The run continues after an interruption: an attempt without an answer is over.
 struct RunResumed {
   std::string created;
+  std::string masking_level = {};  ///< as in RunPlanned
 };
 
 struct RunEnded {
@@ -98,7 +107,7 @@ struct RunEnded {
 };
 
 using JournalEntry = std::variant<RunPlanned, AttemptBegun, DeliveryJudged, SamplePlaced, StimulusExplored,
-                                  AttemptAnswered, BlockOver, RunResumed, RunEnded>;
+                                  AttemptAnswered, BlockOver, BreakTaken, RunResumed, RunEnded>;
 
 /// The line of an entry, with its end: a JSON object whose last member `check` has the first 16 hexadecimal
 /// digits of the SHA-256 of the line without that member (and with the closing brace).

@@ -62,6 +62,8 @@ constexpr PlanText kPlanTexts[] = {{"study", &RunPlanned::study},
                                    {"key_sha256", &RunPlanned::key_sha256},
                                    {"device", &RunPlanned::device},
                                    {"observer", &RunPlanned::observer},
+                                   {"language", &RunPlanned::language},
+                                   {"masking_level", &RunPlanned::masking_level},
                                    {"created", &RunPlanned::created},
                                    {"creator", &RunPlanned::creator}};
 
@@ -118,8 +120,10 @@ struct EntryWriter {
     body["word"] = answered.word, body["answer_s"] = answered.answer_s;
   }
   void operator()(const BlockOver& over) const { body["event"] = "block_over", body["block"] = over.block; }
+  void operator()(const BreakTaken& taken) const { body["event"] = "break", body["break_s"] = taken.break_s; }
   void operator()(const RunResumed& resumed) const {
     body["event"] = "resumed", body["created"] = resumed.created;
+    put_text(body, "masking_level", resumed.masking_level);
   }
   void operator()(const RunEnded& ended) const { body["event"] = "end", body["created"] = ended.created; }
 };
@@ -148,7 +152,8 @@ JournalEntry journal_entry_from(const Json& body) {
     return StimulusExplored{body.at("attempt"), body.at("stimulus"), body.at("session")};
   if (event == "placed") return SamplePlaced{body.at("attempt"), body.at("label")};
   if (event == "block_over") return BlockOver{body.at("block")};
-  if (event == "resumed") return RunResumed{body.at("created")};
+  if (event == "break") return BreakTaken{body.at("break_s")};
+  if (event == "resumed") return RunResumed{body.at("created"), text_or(body, "masking_level")};
   if (event != "end") throw std::invalid_argument("event");
   return RunEnded{body.at("created")};
 }

@@ -3,6 +3,7 @@
 // stimulus plays under which code.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,10 +23,11 @@ struct StandardStimulus {
 /// the bench as a real sample; which of the standards it is. amplitude: the standard is played, at a gain of
 /// each trial; how strong it is, re the real sample that is before the participant. ordering: all standards,
 /// each explored as often as the participant likes; their order, from least to most. adjustment: the first
-/// standard is played, and the participant changes its gain until the goal is reached.
-enum class Task { two_interval, identification, amplitude, ordering, adjustment };
+/// standard is played, and the participant changes its gain until the goal is reached. fidelity: a
+/// standard is played beside the real sample of one of them; whether they are the same.
+enum class Task { two_interval, identification, amplitude, ordering, adjustment, fidelity };
 
-/// "two_interval", "identification", "amplitude", "ordering", "adjustment".
+/// "two_interval", "identification", "amplitude", "ordering", "adjustment", "fidelity".
 const char* word_of(Task task);
 
 /// Which level a trial of two intervals has. constant: each level as often as the others, in the order of the
@@ -53,6 +55,9 @@ inline constexpr int kLargestRating = 3;
 /// The answers of the task adjustment, in order and from 1: a step down, a step up, and the end.
 enum class Turn { weaker = 1, stronger, accept };
 
+/// The answers of the task fidelity are "same" and "different", in this order, from 1.
+inline constexpr int kSameChoice = 1;
+
 /// How the finger is to move in each interval.
 struct ProtocolPace {
   double from_m = 0, to_m = 0;  ///< on the texture
@@ -74,11 +79,30 @@ struct AnswerWord {
   std::string word;  ///< as it is shown and stored
 };
 
-/// What the participant reads. The names of the keys are inserted by the runner.
+/// What the participant reads, in one language. The names of the keys are inserted by the runner.
 struct ProtocolTexts {
   std::string welcome, begin, interval, question, end;
-  std::string place;  ///< to the operator, before a real sample's label; in an identification only
+  std::string rest;   ///< before a break; in a protocol with breaks only
+  std::string place;  ///< to the operator, before a real sample's label
+  std::string
+      too_early;     ///< when a setting is accepted before the strokes of the pace; in an adjustment only
   std::string left;  ///< before the numbers of the textures that have yet to be explored; in an ordering only
+};
+
+inline constexpr const char* kUsualLanguage = "en";
+
+/// White noise in the participant's headphones, so that the playback is not heard.
+struct MaskingNoise {
+  double low_hz = 0, high_hz = 0;
+  double level_db = 0, tolerance_db = 0;  ///< re 20 uPa at the ear, unweighted
+};
+
+/// A break is due after so many trials or so much time since the last one, the beginning, or an interruption.
+struct ProtocolBreaks {
+  int after_trials = 0;  ///< 0: not by this
+  double after_s = 0;    ///< the same
+
+  bool any() const { return after_trials > 0 || after_s > 0; }
 };
 
 /// What the task does not have is empty.
@@ -102,7 +126,8 @@ struct Protocol {
   /// Of amplitude: gains of trials are uniform from 0 to this times gain_m_per_n. Of adjustment: the limit of
   /// what can be set.
   double largest_ratio = 1;
-  /// Of each level (constant) or comparison (in each condition); else the number of trials.
+  /// Of each level (constant) or comparison (in each condition); of fidelity of a texture beside another
+  /// sample; else the number of trials.
   int repetitions = 0;
   std::string seed;         ///< of codes and order
   double gain_m_per_n = 0;  ///< of playback; of amplitude and adjustment that of the ratio 1
@@ -114,7 +139,9 @@ struct Protocol {
   int most_attempts = 0;  ///< of one trial; then the run goes on without it
   int participants = 0;   ///< planned: before they are complete, the analysis needs --unblind
   DeliveryLimits delivered;
-  ProtocolTexts texts;
+  ProtocolBreaks breaks;
+  std::optional<MaskingNoise> masking_noise;
+  std::map<std::string, ProtocolTexts> texts;  ///< by the code of the language; at least one
   std::string notes;
   std::string extra_json;  ///< members that the schema does not name
   std::string newer_version;
@@ -126,11 +153,17 @@ struct Protocol {
 /// place: also an unknown member (with the nearest known one), one that the task lacks or does not have,
 /// levels that do not rise or include 0, a comparison that is no standard, doubled keys or words, a word
 /// that is another answer's key or could be a label, words that are not the standards in order, a path that
-/// leaves the texture, limits of speed that exclude the pace; unsupported_version.
+/// leaves the texture, limits of speed that exclude the pace, a band of the noise that is none, a text that
+/// is shown and missing; unsupported_version.
 Result<Protocol> read_protocol(const std::string& name);
 
 /// The text of the file. Errors: unsuitable, by the schema.
 Result<std::string> protocol_text(const Protocol& protocol);
+
+/// The texts in a language. Errors: usage, with those that there are.
+Result<ProtocolTexts> texts_in(const Protocol& protocol, const std::string& language);
+/// The question in kUsualLanguage, or in the first language that there is.
+std::string question_of(const Protocol& protocol);
 
 /// Whether this is the code of a stimulus, on a real sample its label: K and digits.
 bool is_label(std::string_view line);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -39,9 +40,10 @@ constexpr LimitNumber kLimitNumbers[] = {{"removed_by_limits_db", &DeliveryLimit
 struct ShownText {
   const char* name;
   std::string ProtocolTexts::*member;
+  bool (*is_shown)(const Protocol&);
 };
-constexpr const char* kTaskWords[] = {"two_interval", "identification", "amplitude", "ordering",
-                                      "adjustment"};
+constexpr const char* kTaskWords[] = {"two_interval", "identification", "amplitude",
+                                      "ordering",     "adjustment",     "fidelity"};
 constexpr const char* kMethodWords[] = {"constant", "staircase", "quest_plus"};
 constexpr const char* kGoalWords[] = {"least", "greatest", "match"};
 // Those that a task may have.
@@ -53,12 +55,28 @@ const std::vector<std::string> kTaskMembers[] = {
     {"standards", "comparisons", "conditions", "most_trials", "longest_s"},
     {"standards", "largest_ratio"},
     {"standards"},
-    {"standards", "goal", "smallest_ratio", "largest_ratio", "step_db"}};
-constexpr ShownText kShownTexts[] = {{"welcome", &ProtocolTexts::welcome},
-                                     {"begin", &ProtocolTexts::begin},
-                                     {"interval", &ProtocolTexts::interval},
-                                     {"question", &ProtocolTexts::question},
-                                     {"end", &ProtocolTexts::end}};
+    {"standards", "goal", "smallest_ratio", "largest_ratio", "step_db"},
+    {"standards"}};
+bool is_always_shown(const Protocol& /*protocol*/) {
+  return true;
+}
+
+bool places_samples(const Protocol& protocol) {
+  return protocol.task == Task::fidelity ||
+         std::ranges::find(protocol.conditions, kRealCondition) != protocol.conditions.end();
+}
+
+constexpr ShownText kShownTexts[] = {
+    {"welcome", &ProtocolTexts::welcome, is_always_shown},
+    {"begin", &ProtocolTexts::begin, is_always_shown},
+    {"interval", &ProtocolTexts::interval, is_always_shown},
+    {"question", &ProtocolTexts::question, is_always_shown},
+    {"end", &ProtocolTexts::end, is_always_shown},
+    {"break", &ProtocolTexts::rest, [](const Protocol& protocol) { return protocol.breaks.any(); }},
+    {"place", &ProtocolTexts::place, places_samples},
+    {"left", &ProtocolTexts::left, [](const Protocol& protocol) { return protocol.task == Task::ordering; }},
+    {"too_early", &ProtocolTexts::too_early,
+     [](const Protocol& protocol) { return protocol.task == Task::adjustment; }}};
 
 Task task_of(const Json& body) {
   return static_cast<Task>(std::ranges::find(kTaskWords, body["task"].get<std::string>()) -
@@ -108,7 +126,7 @@ Protocol protocol_from(const Document& document) {
   if (protocol.task == Task::two_interval) take_two_interval(body, protocol);
   if (protocol.task == Task::identification) take_identification(body, protocol);
   if (protocol.task == Task::amplitude) take_amplitude(body, protocol);
-  if (protocol.task == Task::ordering) take_ordering(body, protocol);
+  if (protocol.task == Task::ordering || protocol.task == Task::fidelity) take_ordering(body, protocol);
   if (protocol.task == Task::adjustment) take_adjustment(body, protocol);
   protocol.repetitions = body["repetitions"];
   protocol.seed = body["seed"];
@@ -119,12 +137,19 @@ Protocol protocol_from(const Document& document) {
   protocol.begin_key = answers["begin_key"];
   protocol.most_attempts = body["most_attempts"];
   protocol.participants = body["participants"];
-  const Json &delivered = body["delivered"], &texts = body["texts"];
+  const Json& delivered = body["delivered"];
   for (const auto& [name, member] : kLimitCounts) protocol.delivered.*member = delivered[name];
   for (const auto& [name, member] : kLimitNumbers) protocol.delivered.*member = delivered[name];
-  for (const auto& [name, member] : kShownTexts) protocol.texts.*member = texts[name];
-  protocol.texts.place = text_or(texts, "place");
-  protocol.texts.left = text_or(texts, "left");
+  if (body.contains("breaks"))
+    protocol.breaks = {body["breaks"].value("after_trials", 0), body["breaks"].value("after_s", 0.0)};
+  if (body.contains("masking_noise")) {
+    const Json& noise = body["masking_noise"];
+    protocol.masking_noise =
+        MaskingNoise{noise["low_hz"], noise["high_hz"], noise["level_db"], noise["tolerance_db"]};
+  }
+  for (const auto& [language, texts] : body["texts"].items())
+    for (const ShownText& each : kShownTexts)
+      protocol.texts[language].*each.member = text_or(texts, each.name);
   protocol.notes = text_or(body, "notes");
   keep_unknown(document, protocol);
   return protocol;
@@ -171,7 +196,7 @@ Json protocol_body(const Protocol& protocol) {
   if (protocol.task == Task::two_interval) put_two_interval(body, protocol);
   if (protocol.task == Task::identification) put_identification(body, protocol);
   if (protocol.task == Task::amplitude) put_amplitude(body, protocol);
-  if (protocol.task == Task::ordering) put_ordering(body, protocol);
+  if (protocol.task == Task::ordering || protocol.task == Task::fidelity) put_ordering(body, protocol);
   if (protocol.task == Task::adjustment) put_adjustment(body, protocol);
   body["repetitions"] = protocol.repetitions;
   body["seed"] = protocol.seed;
@@ -189,10 +214,16 @@ Json protocol_body(const Protocol& protocol) {
   body["delivered"] = Json::object();
   for (const auto& [name, member] : kLimitCounts) body["delivered"][name] = protocol.delivered.*member;
   for (const auto& [name, member] : kLimitNumbers) body["delivered"][name] = protocol.delivered.*member;
-  body["texts"] = Json::object();
-  for (const auto& [name, member] : kShownTexts) body["texts"][name] = protocol.texts.*member;
-  put_text(body["texts"], "place", protocol.texts.place);
-  put_text(body["texts"], "left", protocol.texts.left);
+  if (const auto& noise = protocol.masking_noise)
+    body["masking_noise"] = {{"low_hz", noise->low_hz},
+                             {"high_hz", noise->high_hz},
+                             {"level_db", noise->level_db},
+                             {"tolerance_db", noise->tolerance_db}};
+  if (protocol.breaks.after_trials > 0) body["breaks"]["after_trials"] = protocol.breaks.after_trials;
+  if (protocol.breaks.after_s > 0) body["breaks"]["after_s"] = protocol.breaks.after_s;
+  for (const auto& [language, texts] : protocol.texts)
+    for (const ShownText& each : kShownTexts)
+      put_text(body["texts"][language], each.name, texts.*each.member);
   put_text(body, "notes", protocol.notes);
   return body;
 }
@@ -217,7 +248,7 @@ Result<void> check_levels(const Protocol& protocol, const std::string& path) {
 }
 
 std::size_t answers_of(const Protocol& protocol) {
-  if (protocol.task == Task::two_interval) return 2;
+  if (protocol.task == Task::two_interval || protocol.task == Task::fidelity) return 2;
   if (protocol.task == Task::amplitude) return 2 * kLargestRating + 1;
   if (protocol.task == Task::adjustment) return static_cast<std::size_t>(Turn::accept);
   return protocol.standards.size();
@@ -237,8 +268,8 @@ Result<void> check_answers(const Protocol& protocol, const std::string& path) {
   if (protocol.choices.size() == expected) return {};
   return malformed_at(path, "answers/choices",
                       fmt::format("has {} answers, the task {}", protocol.choices.size(), expected),
-                      "give one for each interval, for each standard, for each rating from -3 to 3, or for "
-                      "weaker, stronger and accepted");
+                      "give one for each interval, for each standard, for each rating from -3 to 3, for "
+                      "weaker, stronger and accepted, or for same and different");
 }
 
 // A line of a file of answers is a word, a key or a label (K3): each has one meaning.
@@ -267,9 +298,10 @@ Result<void> check_names(const Protocol& protocol, const std::string& path) {
   const bool matches = protocol.task == Task::adjustment && protocol.goal == Goal::match;
   const bool one = protocol.task == Task::amplitude || protocol.task == Task::adjustment;
   if (protocol.task != Task::two_interval && (one != (names == 1)) && !(matches && names == 2))
-    return malformed_at(path, "standards", fmt::format("has {} names", names),
-                        "give two or more in an identification or ordering, else one; to match them, one or "
-                        "two");
+    return malformed_at(
+        path, "standards", fmt::format("has {} names", names),
+        "give two or more in an identification, ordering or fidelity, else one; to match them, one or "
+        "two");
   if (!protocol.intended.empty() && protocol.intended.size() != names)
     return malformed_at(path, "intended",
                         fmt::format("has {} numbers for {} standards", protocol.intended.size(), names),
@@ -323,11 +355,25 @@ Result<void> check_pace(const Protocol& protocol, const std::string& path) {
   return {};
 }
 
+// Each language has all texts that are shown.
+Result<void> check_texts(const Protocol& protocol, const std::string& path) {
+  for (const auto& [language, texts] : protocol.texts)
+    for (const ShownText& each : kShownTexts)
+      if (each.is_shown(protocol) && (texts.*each.member).empty())
+        return malformed_at(path, fmt::format("texts/{}/{}", language, each.name).c_str(),
+                            "this text is shown in a run, and is missing or empty",
+                            fmt::format("add it in the language {}", language));
+  return {};
+}
+
 Result<void> check_protocol(const Protocol& protocol, const std::string& path) {
   TACTO_TRY(check_levels(protocol, path));
   TACTO_TRY(check_names(protocol, path));
   TACTO_TRY(check_answers(protocol, path));
   TACTO_TRY(check_words(protocol, path));
+  TACTO_TRY(check_texts(protocol, path));
+  if (const auto& noise = protocol.masking_noise; noise && noise->high_hz < noise->low_hz + 1)
+    return malformed_at(path, "masking_noise/high_hz", "the band is narrower than 1 Hz", "give a wider band");
   return check_pace(protocol, path);
 }
 
@@ -360,6 +406,20 @@ std::optional<Goal> goal_of(std::string_view word) {
   const auto* const found = std::ranges::find(kGoalWords, word);
   if (found == std::end(kGoalWords)) return std::nullopt;
   return static_cast<Goal>(found - std::begin(kGoalWords));
+}
+
+Result<ProtocolTexts> texts_in(const Protocol& protocol, const std::string& language) {
+  if (const auto found = protocol.texts.find(language); found != protocol.texts.end()) return found->second;
+  std::vector<std::string> languages;
+  for (const auto& [each, texts] : protocol.texts) languages.push_back(each);
+  return fail(
+      ErrorKind::usage, fmt::format("the protocol has no texts in the language '{}'", language), "--language",
+      fmt::format("give one of {}, or add texts/{} to the protocol", fmt::join(languages, ", "), language));
+}
+
+std::string question_of(const Protocol& protocol) {
+  const auto usual = protocol.texts.find(kUsualLanguage);
+  return (usual != protocol.texts.end() ? usual : protocol.texts.begin())->second.question;
 }
 
 bool is_label(std::string_view line) {

@@ -54,6 +54,7 @@ Json rule_at(const Json& rules, const Json::json_pointer& pointer) {
   const Json above = rule_at(rules, pointer.parent_pointer());
   if (above.contains("items")) return above["items"];
   if (above.contains("properties")) return above["properties"].value(pointer.back(), Json());
+  if (above.contains("additionalProperties")) return above["additionalProperties"];
   return {};
 }
 

@@ -21,18 +21,26 @@ constexpr std::size_t kLongestName = 64;
 using Pointer = Json::json_pointer;
 using Visit = std::function<void(const Json& rule, const Pointer& place, const std::string& name)>;
 
-bool is_known(const Json& rule, const std::string& name) {
-  return rule["properties"].contains(name);
+constexpr const char *kNamed = "properties", *kFreelyNamed = "additionalProperties";
+
+bool has_members(const Json& rule) {
+  return rule.contains(kNamed) || (rule.contains(kFreelyNamed) && rule[kFreelyNamed].is_object());
+}
+
+// Of a member; null if it is unknown. Precondition: the rule has members.
+const Json* rule_of(const Json& rule, const std::string& name) {
+  if (rule.contains(kNamed) && rule[kNamed].contains(name)) return &rule[kNamed][name];
+  return rule.contains(kFreelyNamed) && rule[kFreelyNamed].is_object() ? &rule[kFreelyNamed] : nullptr;
 }
 
 // Calls `visit` for each unknown member that is not free; `place` is that of the object.
 void for_each_unknown(const Json& rule, const Json& body, const Pointer& place, const Visit& visit) {
   if (body.is_array() && rule.contains("items"))
     for (std::size_t i = 0; i < body.size(); ++i) for_each_unknown(rule["items"], body[i], place / i, visit);
-  if (!body.is_object() || !rule.contains("properties")) return;
+  if (!body.is_object() || !has_members(rule)) return;
   for (const auto& [name, value] : body.items()) {
-    if (is_known(rule, name))
-      for_each_unknown(rule["properties"][name], value, place / name, visit);
+    if (const Json* const known = rule_of(rule, name))
+      for_each_unknown(*known, value, place / name, visit);
     else if (!name.starts_with(kFreePrefix))
       visit(rule, place, name);
   }
@@ -60,11 +68,12 @@ Json parts_of(const Json& rule, const Json& body) {
     for (const Json& element : body) parts.push_back(parts_of(rule["items"], element));
     if (std::ranges::all_of(parts, [](const Json& part) { return part.is_null(); })) return {};
   }
-  if (!body.is_object() || !rule.contains("properties")) return parts;
+  if (!body.is_object() || !has_members(rule)) return parts;
   for (const auto& [name, value] : body.items()) {
-    if (!is_known(rule, name))
+    const Json* const known = rule_of(rule, name);
+    if (known == nullptr)
       parts[name] = value;
-    else if (Json within = parts_of(rule["properties"][name], value); !within.is_null())
+    else if (Json within = parts_of(*known, value); !within.is_null())
       parts[name] = std::move(within);
   }
   return parts;
@@ -77,10 +86,11 @@ void add_parts(const Json& rule, Json& body, const Json& parts) {
       add_parts(rule["items"], body[i], parts[i]);
   if (!body.is_object() || !parts.is_object()) return;
   for (const auto& [name, value] : parts.items()) {
+    const Json* const known = rule_of(rule, name);
     if (!body.contains(name)) {
-      if (!is_known(rule, name)) body[name] = value;
-    } else if (is_known(rule, name)) {
-      add_parts(rule["properties"][name], body[name], value);
+      if (known == nullptr) body[name] = value;
+    } else if (known != nullptr) {
+      add_parts(*known, body[name], value);
     }
   }
 }

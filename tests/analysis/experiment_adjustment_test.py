@@ -14,6 +14,7 @@ import subprocess
 import time
 
 import numpy as np
+import scipy.signal
 import scipy.stats
 
 import tacto
@@ -107,11 +108,17 @@ def means_of_series_are_compared():
     difference = levels["descending"].mean() - levels["ascending"].mean()
     assert abs(person["hysteresis_db"] - difference) < 1e-6 and person["hysteresis_db_low"] <= difference <= person["hysteresis_db_high"]
     assert abs(20 * np.log10(person["ratio"]) - np.mean([level.mean() for level in levels.values()])) < 1e-6
-    # The ratio 1 is the RMS of the texture on the path, times the gain.
+    # The ratio 1 is the RMS of the texture on the path within 15-500 Hz at the pace, times the gain: by a transform without
+    # treatment of the ends (1 % of this texture), and as the target of a session.
     protocol = json.loads(pathlib.Path("least.protocol.json").read_text())
     position, force, _ = tacto.texture("least/K1")
-    inside = force[(position >= protocol["pace"]["from_m"]) & (position <= protocol["pace"]["to_m"])]
-    assert abs(report["rms_m"] / (report["ratio"] * protocol["gain_m_per_n"] * inside.std()) - 1) < 1e-3
+    inside = (position >= protocol["pace"]["from_m"]) & (position <= protocol["pace"]["to_m"])
+    spectrum = np.fft.rfft(scipy.signal.detrend(force))
+    hertz = np.fft.rfftfreq(len(force), position[1] - position[0]) * protocol["pace"]["speed_mps"]
+    played = np.fft.irfft(np.where((hertz >= 15) & (hertz <= 500), spectrum, 0), len(force))[inside]
+    unit = report["rms_m"] / (report["ratio"] * protocol["gain_m_per_n"])
+    assert abs(unit / np.sqrt(np.mean(played**2)) - 1) < 0.01 and force[inside].std() / unit > 1.03, (unit, force[inside].std())
+    assert report["rms_band"].startswith("15 to 500 Hz") and person["bounds"] == 0
 
 
 def a_killed_run_is_resumed():
@@ -150,16 +157,63 @@ def answers_come_from_a_file():
     pathlib.Path("answers.txt").write_text("0.5\n")
     assert tacto.run_json(*command)["complete"] is False
     pathlib.Path("answers.txt").write_text("0.5\n1.5\n")
-    assert tacto.run_json("experiment", "resume", "match-P01", "--answers", "answers.txt")["complete"] is True
+    done = tacto.run_json("experiment", "resume", "match-P01", "--answers", "answers.txt")
+    assert done["complete"] is True
     rows = [row for row in table("match-P01") if row["answer"]]
     for row, wanted in zip(rows, (0.5, 1.5), strict=True):
-        assert abs(20 * np.log10(float(row["accepted_ratio"]) / wanted)) < 1.001
+        assert abs(20 * np.log10(float(row["accepted_ratio"]) / wanted)) < 1.001 and row["bound"] == ""
+    # Which setting was used is said.
+    assert [(each["attempt"], each["asked_ratio"]) for each in done["settings"]] == [(int(row["attempt"]), wanted) for row, wanted in zip(rows, (0.5, 1.5))]
+    assert all(abs(each["accepted_ratio"] / float(row["accepted_ratio"]) - 1) < 1e-8 for each, row in zip(done["settings"], rows, strict=True))
     entries = journal("match-P01")
     key = {row["name"]: row["code"] for row in json.loads(pathlib.Path("match.key.json").read_text())["stimuli"]}
     assert all(entry["stimuli"] == [key["A"], key["E"]] for entry in entries if entry["event"] == "begun")
     for entry in entries:
         assert entry["event"] != "delivered" or entry["intervals"][0]["last_gain"] == 1
     assert tacto.run_json("experiment", "prove", "match-P01")["proven"] is True
+
+
+def settings_at_the_ends_are_bounds():
+    new_study("ends", repetitions=4, step_db=3)
+    pathlib.Path("answers.txt").write_text("0.05\n4\n1\n0.5\n")
+    done = tacto.run_json("experiment", "run", "ends", "-d", "sim:", "--participant", "P01", "--answers", "answers.txt")
+    rows = table("ends-P01")
+    assert done["complete"] is True and [row["bound"] for row in rows] == ["lower", "upper", "", ""], rows
+    step = 10 ** (3 / 20)
+    assert float(rows[0]["accepted_ratio"]) / step < LOW and float(rows[1]["accepted_ratio"]) * step > HIGH
+    report = tacto.run_json("experiment", "analyse", "ends", "--unblind")
+    assert [person["bounds"] for person in report["people"]] == [2]
+
+
+def a_hurried_finger_is_not_delivered():
+    new_study("hurry", repetitions=2, most_attempts=1, step_db=6)
+    done = tacto.run_json("experiment", "run", "hurry", "-d", "sim:", "--participant", "P01", "--observer", "threshold=30%,hurry=100%")
+    assert (done["abandoned"], done["delivered_and_answered"]) == (2, 0)
+    assert all("fast" in row["why"] for row in table("hurry-P01"))
+
+
+def a_person_is_told_of_an_early_setting():
+    """In real time: the key a before the first stroke ends. The trial is not delivered, and the screen says why."""
+    new_study("early", repetitions=1, step_db=3, lead_s=2)
+    path = pathlib.Path("early.protocol.json")
+    protocol = json.loads(path.read_text())
+    protocol["texts"]["en"]["too_early"] = "PATIENCE"
+    path.write_text(json.dumps(protocol))
+    ours, its = pty.openpty()
+    command = ["setsid", "--ctty", "--wait", tacto.COMMAND, "experiment", "run", "early", "-d", "sim:paced=1", "--participant", "P01"]
+    run = subprocess.Popen(command, stdin=its, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    shown = b""
+    while b"PATIENCE" not in shown:
+        if select.select([run.stderr], [], [], 0.2)[0]:
+            shown += os.read(run.stderr.fileno(), 4096)
+        elif b"space bar" in shown:
+            os.write(ours, b"a" if b"arrow" in shown else b" ")
+        assert run.poll() is None, shown
+    os.write(ours, b"\x03")
+    run.communicate(timeout=120)
+    os.close(ours), os.close(its)
+    judged = [entry for entry in journal("early-P01") if entry["event"] == "delivered"]
+    assert judged[0]["delivered"] is False and any("strokes" in why for why in judged[0]["why"])
 
 
 def a_person_uses_the_arrow_keys():
@@ -205,6 +259,9 @@ def study():
     means_of_series_are_compared()
     a_killed_run_is_resumed()
     answers_come_from_a_file()
+    settings_at_the_ends_are_bounds()
+    a_hurried_finger_is_not_delivered()
+    a_person_is_told_of_an_early_setting()
     a_person_uses_the_arrow_keys()
     other_verbs()
 

@@ -19,6 +19,18 @@ def script(*arguments):
     return {row["condition"]: row for row in csv.DictReader(io.StringIO(done.stdout))}
 
 
+def a_staircase_has_no_pse():
+    """The same model as the verb's: one slope, no lapses."""
+    table = pathlib.Path("export/trials.csv")
+    whole = table.read_text()
+    head, *rows = whole.splitlines()
+    column = head.split(",").index("nominal_stretch")
+    table.write_text("\n".join([head, *(row for row in rows if float(row.split(",")[column]) > 0)]) + "\n")
+    fitted = script()["all"]
+    assert float(fitted["pse"]) == 0 and 0.253 * 0.55 < float(fitted["jnd"]) < 0.253 * 1.45, fitted
+    table.write_text(whole)
+
+
 def the_exported_script_runs():
     tacto.run("experiment", "new", "stretch", "-o", "stretch", "--seed", "lab-7")
     for participant in ("P01", "P02"):
@@ -27,6 +39,7 @@ def the_exported_script_runs():
     fitted = script()["all"]
     # Both observers have the same Weber fraction. 160 trials: its standard error is below 15 % (binomial information).
     assert 0.253 * 0.55 < float(fitted["jnd"]) < 0.253 * 1.45 and abs(float(fitted["pse"])) < 0.15, fitted
+    a_staircase_has_no_pse()
     if not SPEEDS.exists():
         print("skipped: no real data")
         return

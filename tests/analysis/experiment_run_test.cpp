@@ -62,6 +62,15 @@ schema::Protocol three_orders() {
   return protocol;
 }
 
+// Three textures, each beside the sample of each: 3 blocks of 4 trials.
+schema::Protocol twelve_beside_samples() {
+  schema::Protocol protocol = three_orders();
+  protocol.task = schema::Task::fidelity;
+  protocol.standards = {"A", "B", "C"};
+  protocol.repetitions = 1;
+  return protocol;
+}
+
 // A run whose journal is a text: every seventh attempt is not delivered.
 class TextRun {
  public:
@@ -71,6 +80,7 @@ class TextRun {
   int attempts_in_time = 1000;
   // Attempts before this one are interrupted while they are presented.
   int first_presented = 1;
+  std::size_t trials_between_breaks = 1000;
 
   // Begins a run, or resumes what is whole in `journal`. Errors: of parse_journal.
   Result<void> go_on(const std::string& journal) {
@@ -103,12 +113,25 @@ class TextRun {
       if (!trial.arranged.empty()) return schema::AttemptBegun{attempt, trial.name(), {}, {}, trial.block, 0};
       return schema::AttemptBegun{attempt, trial.name(), {"K1", trial.code}, {"a", "b"}, trial.block, 0};
     };
+    steps.rest = [this]() -> Result<bool> {
+      const std::size_t attempts = queue_.attempts().size();
+      if (attempts == 0 || attempts % trials_between_breaks != 0) return true;
+      const schema::BreakTaken taken{30};
+      if (const auto kept = keep(taken); !kept) return schema::forward_error(kept);
+      if (const auto done = queue_.take(taken); !done) return schema::forward_error(done);
+      return true;
+    };
     steps.is_over = [this](const StudyTrial& trial) {
       return trial.block == 1 && static_cast<int>(queue_.attempts().size()) >= attempts_in_time;
     };
     steps.present = [this](const Attempt& attempt) -> Result<std::optional<schema::JournalEntry>> {
       if (attempt.begun.attempt < first_presented) return std::nullopt;
       if (attempt.trial.real) return schema::SamplePlaced{attempt.begun.attempt, attempt.trial.code};
+      if (const std::string& sample = attempt.trial.sample; sample != queue_.sample()) {
+        const schema::SamplePlaced placed{attempt.begun.attempt, sample};
+        if (const auto kept = keep(placed); !kept) return schema::forward_error(kept);
+        if (const auto taken = queue_.take(placed); !taken) return schema::forward_error(taken);
+      }
       for (const std::string& code : attempt.trial.arranged) {
         const schema::StimulusExplored explored{attempt.begun.attempt, code, "a"};
         if (const auto kept = keep(explored); !kept) return schema::forward_error(kept);
@@ -161,8 +184,10 @@ TEST(ExperimentRun, WhatIsNotDeliveredComesAgainAtTheEnd) {
 // Wherever the journal ends: it is resumed, all whole lines stay, and each trial counts once.
 TEST(ExperimentRun, AJournalCutAtEachByteIsResumedWithEachAnswerOnce) {
   TextRun whole;
+  whole.trials_between_breaks = 5;
   ASSERT_TRUE(whole.go_on(""));
   const std::string& text = whole.text();
+  ASSERT_EQ(lines_with(text, R"("event":"break")"), 4u);
   const std::size_t first_line = text.find('\n') + 1;
   for (std::size_t bytes = 1; bytes <= text.size(); ++bytes) {
     const std::string cut = text.substr(0, bytes);
@@ -308,6 +333,42 @@ TEST(ExperimentRun, AJournalOfOrdersCutAtEachByteIsResumed) {
     ASSERT_EQ(counted.size(), 3U) << bytes;
     for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
   }
+}
+
+// A sample stays for its block, and is placed again after an interruption. The journal is cut at each byte.
+TEST(ExperimentRun, AJournalOfSamplesBesideTexturesCutAtEachByteIsResumed) {
+  TextRun whole(twelve_beside_samples());
+  ASSERT_TRUE(whole.go_on(""));
+  const std::string& text = whole.text();
+  ASSERT_EQ(whole.queue().counted(), 12U);
+  ASSERT_EQ(lines_with(text, R"("event":"placed")"), 3U);
+  int own = 0;
+  for (const Attempt& attempt : whole.queue().attempts())
+    own += attempt.counts() && attempt.trial.code == attempt.trial.sample;
+  EXPECT_EQ(own, 6);
+  for (std::size_t bytes = text.find('\n') + 1; bytes <= text.size(); ++bytes) {
+    TextRun resumed(twelve_beside_samples());
+    const auto went_on = resumed.go_on(text.substr(0, bytes));
+    ASSERT_TRUE(went_on) << bytes << ": " << schema::message(went_on.error());
+    ASSERT_TRUE(resumed.queue().has_ended()) << bytes;
+    const auto counted = counted_trials(resumed.queue());
+    ASSERT_EQ(counted.size(), 12U) << bytes;
+    for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
+  }
+}
+
+TEST(ExperimentRun, ATextureBesideNoSampleOrAnotherOneIsRefused) {
+  const schema::Protocol protocol = twelve_beside_samples();
+  const StudyTrial trial = ordered_trials(protocol, key_of(protocol), "P01", 1).front();
+  TrialQueue queue({trial}, 3);
+  ASSERT_TRUE(queue.take(schema::AttemptBegun{1, trial.name(), {}, {}, 1, 0}));
+  EXPECT_FALSE(queue.take(schema::DeliveryJudged{1, true, {}, {}}));
+  EXPECT_FALSE(queue.take(schema::SamplePlaced{1, "K9"}));
+  ASSERT_TRUE(queue.take(schema::SamplePlaced{1, trial.sample}));
+  EXPECT_FALSE(queue.take(schema::AttemptAnswered{1, 1, "same", 0}));
+  ASSERT_TRUE(queue.take(schema::DeliveryJudged{1, true, {}, {}}));
+  ASSERT_TRUE(queue.take(schema::AttemptAnswered{1, 1, "same", 0}));
+  EXPECT_TRUE(queue.attempts().front().counts());
 }
 
 schema::Protocol adaptive(schema::LevelMethod method) {
@@ -491,6 +552,15 @@ TEST(ExperimentRun, AChangedLineInTheMiddleIsRefusedWithItsNumber) {
   const auto last = schema::parse_journal(changed, "j");
   ASSERT_TRUE(last);
   EXPECT_EQ(last->entries.size(), lines_with(text, "\n") - 1);
+}
+
+TEST(ExperimentRun, ABreakIsBetweenTrials) {
+  const schema::Protocol protocol = twenty_trials();
+  TrialQueue queue = queue_of_run(protocol, key_of(protocol), "P01", 1);
+  const StudyTrial trial = queue.next().value();
+  ASSERT_TRUE(queue.take(schema::BreakTaken{1}));
+  ASSERT_TRUE(queue.take(schema::AttemptBegun{1, trial.name(), {}, {}, 1, 0}));
+  EXPECT_FALSE(queue.take(schema::BreakTaken{1}));
 }
 
 TEST(ExperimentRun, AnEntryThatDoesNotFollowIsRefused) {

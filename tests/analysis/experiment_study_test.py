@@ -260,6 +260,9 @@ def levels_follow_the_answers():
         proof = tacto.run_json("experiment", "prove", run)
         assert proof["proven"] is True and proof["delivered"] == proof["trials"] == 12
         tacto.run("experiment", "power", method, "--weber", "15.5%,25.3%", "--spread", "23%", code=5)
+        fitted = tacto.run_json("experiment", "analyse", method, "--unblind")["fits"][0]
+        # Levels of one sign cannot separate the PSE from the JND.
+        assert (fitted["pse"] == 0 and fitted["pse_is_fixed"]) if method == "staircase" else "pse_low" in fitted, fitted
         if method == "quest_plus":
             continue
         level, right = 14, 0  # in steps of 5 %: two right answers down, a wrong one up

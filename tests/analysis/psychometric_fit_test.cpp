@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+#include "tests/analysis/psychometric_observers.hpp"
+
 namespace tacto::analysis {
 namespace {
 
@@ -119,6 +121,77 @@ TEST(PsychometricFit, ABoundIsNoThreshold) {
   PsychometricOptions weibull;
   weibull.shape = Shape::weibull;
   EXPECT_FALSE(fit_psychometric({{0, 1, 10}, {1, 5, 10}, {2, 9, 10}}, weibull));
+}
+
+PsychometricOptions at_zero() {
+  PsychometricOptions options;
+  options.threshold = 0;
+  return options;
+}
+
+// The maximum of the likelihood of one parameter, by scipy.optimize.minimize_scalar; the mirrored answers are
+// the same.
+TEST(PsychometricFit, AFixedThresholdLeavesTheSpread) {
+  std::vector<LevelCount> above = {
+      {0.05, 11, 20}, {0.1, 13, 20}, {0.2, 15, 20}, {0.4, 18, 20}, {0.7, 20, 20}};
+  std::vector<LevelCount> below;
+  for (const auto& [level, yes, trials] : above) below.push_back({-level, trials - yes, trials});
+  PsychometricOptions options = at_zero();
+  options.lapse = 0;
+  for (const auto& levels : {above, below}) {
+    const auto fit = fit_psychometric(levels, options);
+    ASSERT_TRUE(fit) << fit.error().what;
+    EXPECT_EQ(fit->threshold.value, 0);
+    EXPECT_EQ(fit->threshold.low, 0);
+    EXPECT_EQ(fit->threshold.high, 0);
+    EXPECT_NEAR(fit->spread.value, 0.28863946277566, 1e-7);
+    EXPECT_TRUE(fit->spread.low < fit->spread.value && fit->spread.value < fit->spread.high);
+    EXPECT_EQ(fit->freedom, 4U);
+  }
+  EXPECT_NEAR(fit_psychometric(above, options)->spread.low, fit_psychometric(below, options)->spread.low,
+              1e-9);
+  AnswersTable table;
+  table.groups = {{{}, above}};
+  table.pse = 0;
+  PsychometricOptions no_lapse;
+  no_lapse.lapse = 0;
+  const auto of_table = fit_answers(table, no_lapse, [](double) {});
+  ASSERT_TRUE(of_table);
+  EXPECT_EQ(of_table->groups.front().fit.threshold.value, 0);
+}
+
+// Levels on one side, as of a staircase: 200 observers whose intervals of 95 % contain the true spread. The
+// standard error of a share of 200 is 1.5 %; the limit is four of them below 95 %.
+TEST(PsychometricFit, AFixedThresholdKeepsTheCoverage) {
+  ObserverDraws draws(7);
+  const double spread = 0.253 / standard_quantile(Shape::normal, 0.75);
+  int covered = 0;
+  for (int observer = 0; observer < 200; ++observer) {
+    const double inattentive = draws.between(0.01, 0.03);
+    const PsychometricFunction truth{Shape::normal, 0, spread, inattentive / 2, {}};
+    std::vector<LevelCount> levels;
+    for (const double stretch : {0.1, 0.2, 0.3, 0.4, 0.5, 0.7}) {
+      LevelCount& level = levels.emplace_back(LevelCount{stretch, 0, 15});
+      for (int i = 0; i < 15; ++i) level.yes += draws.uniform() < truth(stretch);
+    }
+    const auto fit = fit_psychometric(levels, at_zero());
+    covered += fit && fit->spread.low <= spread && spread <= fit->spread.high;
+  }
+  EXPECT_GE(covered, 178);
+}
+
+TEST(PsychometricFit, WithAFixedThresholdABoundIsNoSpread) {
+  const std::vector<std::vector<LevelCount>> kBounds = {
+      {{0.1, 10, 10}, {0.2, 10, 10}},     // all right
+      {{-0.2, 0, 10}, {-0.1, 0, 10}},     // all right
+      {{0.1, 10, 10}, {0.2, 9, 10}},      // all but one, which is a lapse
+      {{0.1, 5, 10}, {0.2, 5, 10}},       // guesses
+      {{-0.2, 10, 10}, {-0.1, 10, 10}}};  // wrong
+  for (std::size_t i = 0; i < kBounds.size(); ++i) {
+    const auto fit = fit_psychometric(kBounds[i], at_zero());
+    ASSERT_FALSE(fit) << i;
+    EXPECT_EQ(fit.error().kind, schema::ErrorKind::unsuitable);
+  }
 }
 
 TEST(PsychometricFit, InAStudyAPersonWithABoundIsLeftOut) {

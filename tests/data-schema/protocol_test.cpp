@@ -38,7 +38,7 @@ class ProtocolFile : public testing::Test {
     "answers": {"choices": [{"key": "f", "word": "first"}, {"key": "j", "word": "second"}], "begin_key": " "},
     "delivered": {"lost_ticks": 0, "fault_ticks": 0, "late_ticks": 0, "blind_ticks": 0,
                   "removed_by_limits_db": -40, "error_db": -20, "slowest_mps": 0.045, "fastest_mps": 0.085},
-    "texts": {"welcome": "w", "begin": "b", "interval": "i", "question": "q", "end": "e"}})");
+    "texts": {"en": {"welcome": "w", "begin": "b", "interval": "i", "question": "q", "end": "e"}}})");
 };
 
 TEST_F(ProtocolFile, ReadsBack) {
@@ -52,6 +52,53 @@ TEST_F(ProtocolFile, ReadsBack) {
   EXPECT_EQ(stored_files(folder_ / "odd")->front().kind, FileKind::protocol);
   EXPECT_TRUE(check_file({FileKind::protocol, folder_ / "odd.protocol.json"})->findings.empty());
   EXPECT_EQ(protocol->sha256, sha256_of_file(folder_ / "odd.protocol.json").value());
+}
+
+TEST_F(ProtocolFile, TextsAreByLanguageAndEachFaultHasItsPlace) {
+  nlohmann::json other = body_["texts"]["en"];
+  other["question"] = "f", other["x_lab"] = "n";
+  const auto two = read_with("/texts/de", other);
+  ASSERT_TRUE(two) << message(two.error());
+  EXPECT_EQ(texts_in(*two, "de").value().question, "f");
+  EXPECT_EQ(question_of(*two), "q");
+  const auto absent = texts_in(*two, "fr");
+  ASSERT_FALSE(absent);
+  EXPECT_EQ(absent.error().kind, ErrorKind::usage);
+  EXPECT_EQ(nlohmann::json::parse(protocol_text(*two).value())["texts"]["de"], other);
+  const auto one = read_with("/texts", {{"pt-BR", other}});
+  ASSERT_TRUE(one) << message(one.error());
+  EXPECT_EQ(question_of(*one), "f");
+  expect_fault("/texts", nlohmann::json::object(), "/texts");
+  expect_fault("/texts/English", other, "/texts");
+  expect_fault("/texts/en/welcome", "", "/texts/en/welcome");
+  expect_fault("/texts/en/welcome", 3, "/texts/en/welcome");
+  expect_fault("/texts/en/welcom", "w", "/texts/en/welcom");
+  nlohmann::json less = other;
+  less.erase("end");
+  const auto refused = read_with("/texts/de", less);
+  ASSERT_FALSE(refused);
+  EXPECT_TRUE(refused.error().where.find("#/texts/de") != std::string::npos) << refused.error().where;
+}
+
+TEST_F(ProtocolFile, BreaksAndNoiseReadBackAndEachFaultHasItsPlace) {
+  nlohmann::json body = body_;
+  body["breaks"] = {{"after_trials", 20}, {"after_s", 600.0}};
+  body["masking_noise"] = {{"low_hz", 15.0}, {"high_hz", 1500.0}, {"level_db", 65.0}, {"tolerance_db", 3.0}};
+  body["texts"]["en"]["break"] = "p";
+  const auto read = read_with("", body);
+  ASSERT_TRUE(read) << message(read.error());
+  EXPECT_EQ(nlohmann::json::parse(protocol_text(*read).value()), body);
+  expect_fault("/breaks", {{"after_trials", 20}}, "/texts/en/break");
+  const auto expect = [&](const char* pointer, const nlohmann::json& value, const char* place) {
+    nlohmann::json odd = body;
+    odd[nlohmann::json::json_pointer(pointer)] = value;
+    expect_fault("", odd, place);
+  };
+  expect("/breaks", nlohmann::json::object(), "/breaks");
+  expect("/breaks/after_trials", 0, "/breaks/after_trials");
+  expect("/breaks/after_min", 10, "/breaks/after_min");
+  expect("/masking_noise/high_hz", 15.0, "/masking_noise/high_hz");
+  expect("/masking_noise/level_db", 90.0, "/masking_noise/level_db");
 }
 
 TEST_F(ProtocolFile, EachFaultHasItsPlace) {
@@ -102,7 +149,7 @@ nlohmann::json identification(nlohmann::json body, const nlohmann::json& change)
   body.merge_patch(nlohmann::json::parse(R"({
     "task": "identification", "standards": ["A", "B"], "comparisons": ["B"], "conditions": ["virtual", "real"],
     "most_trials": 100, "longest_s": 900.0})"));
-  body["texts"]["place"] = "p";
+  body["texts"]["en"]["place"] = "p";
   body["answers"]["choices"][0]["word"] = "A", body["answers"]["choices"][1]["word"] = "B";
   body.merge_patch(change);
   return body;
@@ -148,7 +195,7 @@ TEST_F(ProtocolFile, AnOrderingAndAnAdjustmentReadBackAndEachFaultHasItsPlace) {
   nlohmann::json ordering = body_, adjustment;
   for (const char* member : {"standard", "keep", "levels"}) ordering.erase(member);
   ordering.merge_patch({{"task", "ordering"}, {"standards", {"A", "B", "C"}}, {"intended", {0.5, 2.0, 1.0}}});
-  ordering["texts"]["left"] = "l";
+  ordering["texts"]["en"]["left"] = "l";
   const auto choices = [](const std::vector<std::string>& words) {
     nlohmann::json all = nlohmann::json::array();
     for (std::size_t i = 0; i < words.size(); ++i)
@@ -156,11 +203,12 @@ TEST_F(ProtocolFile, AnOrderingAndAnAdjustmentReadBackAndEachFaultHasItsPlace) {
     return all;
   };
   adjustment = ordering;
-  adjustment.erase("intended"), adjustment["texts"].erase("left");
+  adjustment.erase("intended"), adjustment["texts"]["en"].erase("left");
   ordering["answers"]["choices"] = choices({"1", "2", "3"});
   adjustment.merge_patch({{"task", "adjustment"}, {"standards", {"A"}}, {"goal", "match"}});
   adjustment.merge_patch({{"smallest_ratio", 0.05}, {"largest_ratio", 4.0}, {"step_db", 1.0}});
   adjustment["answers"]["choices"] = choices({"weaker", "stronger", "accepted"});
+  adjustment["texts"]["en"]["too_early"] = "t";
   const auto read = [&](nlohmann::json body, const nlohmann::json& change) {
     body.merge_patch(change);
     PendingFiles pending;
@@ -174,6 +222,13 @@ TEST_F(ProtocolFile, AnOrderingAndAnAdjustmentReadBackAndEachFaultHasItsPlace) {
     EXPECT_EQ(nlohmann::json::parse(protocol_text(*protocol).value()), body);
   }
   EXPECT_TRUE(read(ordering, {{"intended", nullptr}}));
+  nlohmann::json fidelity = ordering;
+  fidelity.erase("intended"), fidelity["texts"]["en"].erase("left");
+  fidelity.merge_patch({{"task", "fidelity"}});
+  fidelity["texts"]["en"]["place"] = "p", fidelity["answers"]["choices"] = choices({"same", "different"});
+  const auto beside = read(fidelity, nlohmann::json::object());
+  ASSERT_TRUE(beside) << message(beside.error());
+  EXPECT_EQ(nlohmann::json::parse(protocol_text(*beside).value()), fidelity);
   EXPECT_TRUE(read(adjustment, {{"standards", {"A", "B"}}}));
   using Fault = std::tuple<const nlohmann::json*, nlohmann::json, const char*>;
   for (const auto& [body, change, place] :
@@ -182,6 +237,12 @@ TEST_F(ProtocolFile, AnOrderingAndAnAdjustmentReadBackAndEachFaultHasItsPlace) {
         {&ordering, {{"goal", "least"}}, "/goal"},
         {&ordering, {{"standards", nullptr}}, "/standards"},
         {&ordering, {{"standards", {"A", "B"}}, {"intended", nullptr}}, "/answers/choices"},
+        {&ordering, {{"texts", {{"en", {{"left", nullptr}}}}}}, "/texts/en/left"},
+        {&adjustment, {{"texts", {{"en", {{"too_early", nullptr}}}}}}, "/texts/en/too_early"},
+        {&fidelity, {{"standards", {"A"}}}, "/standards"},
+        {&fidelity, {{"intended", {1.0, 2.0, 3.0}}}, "/intended"},
+        {&fidelity, {{"texts", {{"en", {{"place", nullptr}}}}}}, "/texts/en/place"},
+        {&fidelity, {{"answers", {{"choices", choices({"a", "b", "c"})}}}}, "/answers/choices"},
         {&adjustment, {{"standards", {"A", "B", "C"}}}, "/standards"},
         {&adjustment, {{"standards", {"A", "B"}}, {"goal", "least"}}, "/standards"},
         {&adjustment, {{"intended", {1.0, 2.0}}}, "/intended"},
@@ -219,6 +280,7 @@ TEST_F(ProtocolFile, AnIdentificationReadsBackAndEachFaultHasItsPlace) {
                                       {R"({"standards": ["B", "A"]})", "/answers/choices/0/word"},
                                       {R"({"conditions": ["real", "real"]})", "/conditions"},
                                       {R"({"longest_s": null})", "/longest_s"},
+                                      {R"({"texts": {"en": {"place": null}}})", "/texts/en/place"},
                                       {R"({"levels": [0.5, 0.7]})", "/levels"}}) {
     const auto refused = read(nlohmann::json::parse(change));
     ASSERT_FALSE(refused) << change;

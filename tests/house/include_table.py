@@ -143,8 +143,8 @@ MAY_INCLUDE = {
     "analysis/corpus":
         "data-schema/{base command corpus exchange files kinds recording report texture wav} spatial/{features job}",
     "analysis/experiment":
-        "analysis/{page psychometrics} capture/table data-schema/{base experiment files results session texture} firmware-host/core/wire "
-        "playback/{model player prepare render session strokes} spatial/{features transform}",
+        "analysis/{page psychometrics} capture/table data-schema/{base experiment files results session texture wav} firmware-host/core/wire "
+        "playback/{model player prepare render session strokes} spatial/{dsp/filter dsp/fourier features transform}",
     "analysis/design":
         "analysis/page data-schema/{base device report results scene} firmware-host/{core/scene sim/planar} "
         "playback/{prepare/scene stability}",
