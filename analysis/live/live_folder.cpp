@@ -68,10 +68,8 @@ Result<std::string> LiveFolder::file(std::size_t index) const {
 Result<std::vector<float>> LiveFolder::map_of(const std::string& full_name) const {
   for (const std::string& own : files_) {
     std::error_code ignored;
-    if (!fs::path(full_name).is_absolute() ||
-        (!fs::equivalent(own, full_name, ignored) &&
-         !fs::equivalent(own, full_name + std::string(kEnding), ignored)))
-      continue;
+    const std::string sidecar = schema::stem_of(full_name, ".texture") + std::string(kEnding);
+    if (!fs::path(full_name).is_absolute() || !fs::equivalent(own, sidecar, ignored)) continue;
     const auto texture = schema::read_texture(own);
     TACTO_TRY(texture);
     return texture_map(texture->signal.values);

@@ -22,7 +22,7 @@ class LiveFolder {
   std::string list_json() const;
   /// The full name of a texture's sidecar. Errors: not_found.
   schema::Result<std::string> file(std::size_t index) const;
-  /// The texture with this full name, with or without its ending, if it is of this folder: its map, as
+  /// The texture with this full name, by its stem or a file, if it is of this folder: its map, as
   /// LiveTexture::map. Errors: not_found; as read_texture.
   schema::Result<std::vector<float>> map_of(const std::string& full_name) const;
   /// Prepares a texture from its files as they are now, under a new number. Errors: not_found; as
