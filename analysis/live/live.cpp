@@ -32,6 +32,7 @@ using schema::Result;
 
 constexpr int kFirstPort = 7230, kPortsTried = 20;
 constexpr std::string_view kDaemonPath = "/daemon";
+constexpr std::size_t kLongestPath = 256;
 
 std::string_view type_of_asset(std::string_view name) {
   constexpr std::pair<std::string_view, std::string_view> kTypes[] = {
@@ -145,6 +146,7 @@ class Site {
     return answer;
   }
   WebAnswer content(const WebRequest& request) {
+    if (request.path.size() > kLongestPath) return too_long();
     if (request.upgrade)
       return request.path == "/session" || request.path == kDaemonPath ? WebAnswer() : not_found();
     if (request.path == "/loaded") return loaded();
@@ -161,6 +163,12 @@ class Site {
     for (const schema::EmbeddedFile& asset : live_assets())
       if (asset.name == name) return asset_answer(asset);
     return not_found();
+  }
+  static WebAnswer too_long() {
+    WebAnswer answer;
+    answer.status = 414;
+    answer.body = fmt::format("no page has a path of over {} bytes\n", kLongestPath);
+    return answer;
   }
   static WebAnswer not_found() {
     WebAnswer answer;

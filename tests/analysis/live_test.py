@@ -57,6 +57,9 @@ def check_access(server):
     for path in ("/../../etc/passwd", "/..%2f..%2fetc/passwd", "/etc/passwd", "/folder/C.texture.json", "/texture/x", "/texture/0/wav", "/texture/", "/upload/0", "/session"):
         assert server.ask(path).status == 404, path
     assert server.ask("/texture/999").status == 404
+    for size, status in ((256, 404), (257, 414), (5000, 414), (30_000, 414)):
+        assert server.ask("/" + (size - 1) * "a").status == status, size
+    assert server.ask("/" + 5000 * "a", cookie=False).status == 401
 
 
 def check_headers(server):
