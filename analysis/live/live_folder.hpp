@@ -2,12 +2,14 @@
 // The textures of a folder, by index: the page never names a path.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "analysis/live/live_texture.hpp"
+#include "data-schema/report/report.hpp"
 
 namespace tacto::analysis {
 
@@ -16,10 +18,15 @@ class LiveFolder {
   LiveFolder(std::string folder, std::string transducer)
       : folder_(std::move(folder)), transducer_(std::move(transducer)) {}
 
-  /// Reads the folder again. A texture that was listed before keeps its index.
+  /// Reads the folder again, and the textures in it that are new or have changed. A texture that was listed
+  /// before keeps its index.
   void refresh();
-  /// A JSON array of the textures, by name: index, name, length; one that can't be read has the reason.
+  /// JSON: `textures`, by name: index, name, length, RMS, unit, surface, time of the file; one that can't be
+  /// read has the reason. `reason`: why the folder can't be read.
   std::string list_json() const;
+  /// A small picture of a listed texture: as LiveTexture::map, in kThumbnailColumns. Errors: not_found, also
+  /// for a texture that can't be read.
+  schema::Result<std::vector<float>> thumbnail(std::size_t index) const;
   /// The full name of a texture's sidecar. Errors: not_found.
   schema::Result<std::string> file(std::size_t index) const;
   /// The texture with this full name, by its stem or a file, if it is of this folder: its map, as
@@ -30,11 +37,22 @@ class LiveFolder {
   schema::Result<std::size_t> make(std::size_t index);
   /// One of the last kMostMade that were made. Errors: not_found.
   schema::Result<std::shared_ptr<const LiveTexture>> made(std::size_t number) const;
+  /// As make_change(), by the numbers of both. Errors: as made() and make_change().
+  schema::Result<LiveChange> change(std::size_t playing, std::size_t next, double times) const;
 
  private:
-  static constexpr std::size_t kMostMade = 4;
-  std::string folder_, transducer_;
-  std::vector<std::string> files_;  // by index
+  static constexpr std::size_t kMostMade = 4, kThumbnailColumns = 96;
+  // A texture of the list, as its files were at these times.
+  struct Listed {
+    std::string file;  // the sidecar
+    std::filesystem::file_time_type sidecar_time, wav_time;
+    cli::Report row;
+    std::vector<float> thumbnail;
+  };
+  void read_again(Listed& listed, std::size_t index) const;
+
+  std::string folder_, transducer_, reason_;
+  std::vector<Listed> listed_;  // by index
   std::map<std::size_t, std::shared_ptr<const LiveTexture>> made_;
   std::size_t next_ = 0;
 };

@@ -31,6 +31,7 @@ def make_textures():
     side = json.loads(pathlib.Path("folder/C.texture.json").read_text())
     pathlib.Path(f"folder/{ODD_NAME}.texture.json").write_text(json.dumps(side))
     pathlib.Path("folder/broken.texture.json").write_text("{")
+    pathlib.Path("folder/alone.texture.wav").write_bytes(b"RIFF")
     # A sine of 1 mm and 5 mN.
     wav = pathlib.Path("folder/sine.texture.wav")
     soundfile.write(wav, 0.005 * np.sin(2 * np.pi * np.arange(side["data"]["samples"]) / 1000), 1_000_000, subtype="FLOAT")
@@ -79,8 +80,8 @@ def check_headers(server):
 
 def check_textures(server):
     rows = {row["name"]: row for row in server.json("/textures")["textures"]}
-    assert set(rows) == {"C", ODD_NAME, "broken", "sine"}, rows
-    assert "reason" in rows["broken"] and abs(rows["C"]["length_m"] - 0.035) < 0.002, rows
+    assert set(rows) == {"C", ODD_NAME, "alone", "broken", "sine"}, rows
+    assert "reason" in rows["broken"] and "reason" in rows["alone"] and abs(rows["C"]["length_m"] - 0.035) < 0.002, rows
     figures = server.json(f"/texture/{rows['C']['index']}")
     assert figures["rate_hz"] == 16000 and figures["gain_m_per_n"] > 0 and figures["transducer"] == "wiertlewski2011", figures
     bad = server.ask(f"/texture/{rows['broken']['index']}")
@@ -89,9 +90,34 @@ def check_textures(server):
     values = struct.unpack(f"<{len(map_) // 4}f", map_)
     assert len(values) == 4000 and all(least <= most for least, most in zip(values[::2], values[1::2]))
     check_tray(np.frombuffer(server.ask(f"/tray/{figures['made']}").body, "<f4"))
+    check_list(server, rows)
     odd = server.json(f"/texture/{rows[ODD_NAME]['index']}")
     assert odd["made"] != figures["made"] and odd["name"] == ODD_NAME
     return figures["made"], odd["made"]
+
+
+def check_list(server, rows):
+    sine = rows["sine"]
+    assert abs(sine["rms"] / (0.005 / np.sqrt(2)) - 1) < 1e-3 and sine["unit"] == "N" and sine["surface"] == rows["C"]["surface"], sine
+    assert abs(sine["changed_s"] - pathlib.Path("folder/sine.texture.json").stat().st_mtime) < 1e-3, sine
+    small = np.frombuffer(server.ask(f"/thumbnail/{sine['index']}").body, "<f4").reshape(-1, 2)
+    assert len(small) == 96 and np.all(small[:, 0] <= small[:, 1]) and abs(small.max() / 0.005 - 1) < 1e-3
+    assert server.ask(f"/thumbnail/{rows['broken']['index']}").status == 404 and server.ask("/thumbnail/99").status == 404
+    # A file that changes is read again, one that is removed is not listed any more; the others keep their index.
+    broken = pathlib.Path("folder/broken.texture.json")
+    broken.write_text(pathlib.Path("folder/sine.texture.json").read_text())
+    again = {row["name"]: row for row in server.json("/textures")["textures"]}
+    assert again["broken"]["rms"] == sine["rms"] and "reason" not in again["broken"] and again["sine"] == sine, again
+    broken.unlink()
+    assert "broken" not in {row["name"] for row in server.json("/textures")["textures"]}
+    broken.write_text("{")
+    assert {row["name"]: row["index"] for row in server.json("/textures")["textures"]} == {name: row["index"] for name, row in rows.items()}
+
+
+def check_changes(server, made, odd_made):
+    assert server.ask(f"/change/{odd_made}/{made}/1").body != server.ask(f"/change/{odd_made}/{made}/0.5").body
+    for path in (f"{made}/{made}", f"{made}/{made}/1/", f"{made}/{made}/nan", f"{made}/{made}/1e9", f"{made}/-1/1", f"999/{made}/1", f"{made}/999/1", "", "x"):
+        assert server.ask(f"/change/{path}").status == 404, path
 
 
 def check_tray(taps):
@@ -124,6 +150,10 @@ def check_protocol(server, made):
         assert answer["ok"] is False and answer["error"]["fault"] == 3, (text, answer)
     assert page.ask(request="begin", made=999)["error"]["fault"] == 2
     assert page.ask(request="keep")["error"]["fault"] == 4
+    assert page.ask(request="change", made=made, playing=made, times=1)["error"]["fault"] == 4
+    assert page.ask(request="change", made=999, playing=made, times=1)["error"]["fault"] == 2
+    for lacking in ({"made": made, "playing": made}, {"made": made, "times": 1}, {"made": made, "playing": made, "times": 1e7}):
+        assert page.ask(request="change", **lacking)["error"]["fault"] == 3, lacking
     assert page.ask(request="begin", made=made)["ok"]
     assert page.ask(request="keep")["error"]["fault"] == 4  # no tick
     page.ask(request="begin", made=made)
@@ -140,27 +170,38 @@ def check_protocol(server, made):
 def fetch_page(server):
     """The modules that the page runs, for node."""
     pathlib.Path("page").mkdir(exist_ok=True)
-    for name in ("core.js", "engine.js", "finger.js", "core.wasm"):
+    for name in ("compare.js", "core.js", "engine.js", "finger.js", "library.js", "strip.js", "core.wasm"):
         pathlib.Path("page", name).write_bytes(server.ask("/" + name).body)
     pathlib.Path("page/package.json").write_text('{"type": "module"}')
-    shutil.copy(HERE / "live_device.mjs", "page")
+    for script in ("live_device.mjs", "live_pages.mjs"):
+        shutil.copy(HERE / script, "page")
 
 
-def device_log(server, made, seed, seconds, fault=""):
+def device_log(server, made, seed, seconds, kind="", changes=()):
+    """`changes`: (number of another prepared texture, factor of its samples)."""
     for part in ("upload", "tray"):
         pathlib.Path(part).write_bytes(server.ask(f"/{part}/{made}").body)
-    done = subprocess.run(["node", "page/live_device.mjs", "page/core.wasm", "upload", "tray", str(seed), str(seconds), fault, "log"],
+    rows = []
+    for i, (other, times) in enumerate(changes):
+        pathlib.Path(f"change{i}").write_bytes(server.ask(f"/change/{other}/{made}/{times}").body)
+        rows.append({"frames": f"change{i}", "note": {"made": other, "playing": made, "times": times}})
+    pathlib.Path("changes.json").write_text(json.dumps(rows))
+    done = subprocess.run(["node", "page/live_device.mjs", "page/core.wasm", "upload", "tray", str(seed), str(seconds), kind, "log", "changes.json"],
                           capture_output=True, timeout=300)
     assert done.returncode == 0, done.stderr.decode()
     print(f"seed {seed}: {done.stderr.decode().strip()}")
     return pathlib.Path("log").read_bytes()
 
 
-def kept(server, made, log):
+def kept(server, made, log, changes=()):
     page = server.page()
     assert page.ask(request="begin", made=made)["ok"]
-    for at in range(0, len(log), 5000):
-        page.send(log[at:at + 5000])
+    ends = [*(change["at"] for change in changes), len(log)]
+    for begin, end, change in zip([0, *ends], ends, [*changes, None]):
+        for at in range(begin, end, 5000):
+            page.send(log[at:min(at + 5000, end)])
+        if change:
+            assert page.ask(request="change", **change["note"])["ok"]
     answer = page.ask(request="keep")
     if answer.get("event") == "fault":
         assert answer["what"] and answer["remedy"], answer
@@ -171,6 +212,7 @@ def kept(server, made, log):
 
 def check_bits(server, made, odd_made):
     fetch_page(server)
+    subprocess.run(["node", "page/live_pages.mjs"], check=True, timeout=60)
     for seed, which, fault in ((1, made, ""), (2, odd_made, ""), (3, made, "fault")):
         log = device_log(server, which, seed, 6, fault)
         answer = kept(server, which, log)
@@ -180,6 +222,14 @@ def check_bits(server, made, odd_made):
         run("validate", answer["kept"])
         info = run_json("info", answer["kept"])
         assert "simulated" in json.dumps(info) and "browser" in json.dumps(info), info
+    # The texture changes while it plays, with a factor of its samples.
+    change_log = device_log(server, made, 4, 6, "change", [(odd_made, 0.25), (made, 1), (odd_made, -1.3)])
+    changes = json.loads(pathlib.Path("log.changes").read_text())
+    answer = kept(server, made, change_log, changes)
+    report = run_json("replay", answer["kept"])
+    assert report["same_to_the_bit"] and report["ticks_compared"] == answer["ticks"] > 90_000, report
+    wrong = [{**change, "note": {**change["note"], "times": 0.26}} for change in changes]
+    assert not run_json("replay", kept(server, made, change_log, wrong)["kept"], code=5)["same_to_the_bit"]
     # One bit of one drive: the comparison is able to fail. The frame's check has to be right again.
     frame = log.rfind(b"\xa5\x54\x01\x86", 0, len(log) // 2)
     length = struct.unpack_from("<H", log, frame + 4)[0]
@@ -197,15 +247,15 @@ def check_sound(server):
     """The whole chain against a closed form: 5 um at 50 and 100 Hz, and as velocity times f / 200 Hz."""
     index = next(row["index"] for row in server.json("/textures")["textures"] if row["name"] == "sine")
     made = server.json(f"/texture/{index}")["made"]
-    for kind in ("tone", "velocity"):
-        sounds = np.frombuffer(device_log(server, made, 1, 1, kind), "<f4").reshape(2, -1)
-        for part, hz in zip(sounds, (50, 100)):
+    for kind, changes in (("tone", ()), ("velocity", ()), ("tone", [(made, 0.5)])):
+        sounds = np.frombuffer(device_log(server, made, 1, 1, kind, changes), "<f4").reshape(2, -1)
+        for part, hz, times in zip(sounds, (50, 100), (1, changes[0][1] if changes else 1)):
             steady = part[int(0.16 * 16000):int(0.3 * 16000)]  # whole periods
             t = np.arange(len(steady)) / 16000
             amplitude = 2 * abs(np.mean(steady * np.exp(-2j * np.pi * hz * t)))
             # 5 um of full 10 um, through the Butterworth filters of 15 and 500 Hz.
             filters = 1 / np.sqrt((1 + (15 / hz) ** 4) * (1 + (hz / 500) ** 4))
-            expected = 0.5 * filters * (hz / 200 if kind == "velocity" else 1)
+            expected = times * 0.5 * filters * (hz / 200 if kind == "velocity" else 1)
             # The onset of 20 ms through the high-pass has decayed to exp(-2 pi 15 0.71 0.14) = 1e-4; the inverse's error
             # is -72 dB, that of the modelled tray 1e-4.
             assert abs(amplitude / expected - 1) < 1e-3, (kind, hz, amplitude, expected)
@@ -256,6 +306,7 @@ def live_page():
         check_headers(server)
         made, odd_made = check_textures(server)
         check_protocol(server, made)
+        check_changes(server, made, odd_made)
         check_bits(server, made, odd_made)
         check_sound(server)
     assert not [path for path in pathlib.Path("folder").iterdir() if path.name.startswith(".")], "temporary files stay"
