@@ -32,7 +32,7 @@ using schema::fail;
 using schema::Result;
 
 constexpr int kFirstPort = 7230, kPortsTried = 20;
-constexpr std::string_view kDaemonPath = "/daemon", kChangePath = "/change/";
+constexpr std::string_view kDaemonPath = "/daemon", kChangePath = "/change/", kExportPath = "/export/";
 constexpr std::size_t kLongestPath = 256;
 
 std::string_view type_of_asset(std::string_view name) {
@@ -170,6 +170,12 @@ class Site {
       const auto picture = folder_.thumbnail(*index);
       return picture ? bytes_answer(*picture) : error_answer(picture.error());
     }
+    if (const auto index = number_after("/spectrogram/", request.path)) return spectrogram(*index);
+    if (request.path.starts_with(kExportPath))
+      return exported(std::string_view(request.path).substr(kExportPath.size()), request.query);
+    for (const std::string_view part : {"cells", "known"})
+      if (const auto number = number_after(fmt::format("/{}/", part), request.path))
+        return cells_of(part, *number);
     if (request.path.starts_with(kChangePath))
       return change(std::string_view(request.path).substr(kChangePath.size()));
     for (const std::string_view part : {"upload", "map", "tray"})
@@ -180,6 +186,33 @@ class Site {
     for (const schema::EmbeddedFile& asset : live_assets())
       if (asset.name == name) return asset_answer(asset);
     return not_found();
+  }
+  WebAnswer spectrogram(std::size_t index) {
+    const auto number = folder_.make_spectrogram(index);
+    return number ? json_answer(spectrogram_json(*number, **folder_.spectrogram(*number)))
+                  : error_answer(number.error());
+  }
+  WebAnswer cells_of(std::string_view part, std::size_t number) {
+    const auto live = folder_.spectrogram(number);
+    if (!live) return error_answer(live.error());
+    const schema::Spectrogram& spectrogram = (*live)->spectrogram;
+    return bytes_answer(part == "cells" ? stored_cells(spectrogram) : known_limits(spectrogram));
+  }
+  // "NUMBER/FORM"
+  WebAnswer exported(std::string_view what, const std::string& query) {
+    std::size_t number = 0;
+    if (!read_number(what, number)) return not_found();
+    const auto live = folder_.spectrogram(number);
+    if (!live) return error_answer(live.error());
+    const auto part = parse_spectrogram_part(query);
+    if (!part) return error_answer(part.error());
+    auto file = spectrogram_file(**live, *part, std::string(what));
+    if (!file) return error_answer(file.error());
+    WebAnswer answer;
+    answer.type = "application/octet-stream";
+    answer.body = std::move(*file);
+    answer.headers.emplace_back("content-disposition:", "attachment");
+    return answer;
   }
   // "NEXT/PLAYING/TIMES"
   WebAnswer change(std::string_view numbers) {

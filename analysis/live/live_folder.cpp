@@ -124,13 +124,11 @@ Result<std::size_t> LiveFolder::make(std::size_t index) {
   TACTO_TRY(own);
   auto texture = make_live_texture(*own, transducer_);
   TACTO_TRY(texture);
-  made_.emplace(next_, std::make_shared<const LiveTexture>(std::move(*texture)));
-  if (made_.size() > kMostMade) made_.erase(made_.begin());
-  return next_++;
+  return made_.add(std::move(*texture));
 }
 
 Result<std::shared_ptr<const LiveTexture>> LiveFolder::made(std::size_t number) const {
-  if (const auto found = made_.find(number); found != made_.end()) return found->second;
+  if (auto found = made_.find(number)) return found;
   return schema::fail(schema::ErrorKind::not_found, "this texture is not prepared any more",
                       std::to_string(number), "choose it again");
 }
@@ -141,6 +139,20 @@ Result<LiveChange> LiveFolder::change(std::size_t playing, std::size_t next, dou
   const auto to = made(next);
   TACTO_TRY(to);
   return make_change(**from, **to, times);
+}
+
+Result<std::size_t> LiveFolder::make_spectrogram(std::size_t index) {
+  const auto own = file(index);
+  TACTO_TRY(own);
+  auto spectrogram = make_live_spectrogram(*own);
+  TACTO_TRY(spectrogram);
+  return spectrograms_.add(std::move(*spectrogram));
+}
+
+Result<std::shared_ptr<const LiveSpectrogram>> LiveFolder::spectrogram(std::size_t number) const {
+  if (auto found = spectrograms_.find(number)) return found;
+  return schema::fail(schema::ErrorKind::not_found, "this spectrogram is not there any more",
+                      std::to_string(number), "choose its texture again");
 }
 
 std::string figures_json(std::size_t made, const LiveTexture& texture) {

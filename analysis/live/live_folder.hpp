@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The textures of a folder, by index: the page never names a path.
+// The textures of a folder and their spectrograms, by index: the page never names a path.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,31 @@
 #include <string>
 #include <vector>
 
+#include "analysis/live/live_spectrogram.hpp"
 #include "analysis/live/live_texture.hpp"
 #include "data-schema/report/report.hpp"
 
 namespace tacto::analysis {
+
+/// The newest values, by numbers that are not used again.
+template <class Value, std::size_t most>
+class NewestValues {
+ public:
+  std::size_t add(Value value) {
+    values_.emplace(next_, std::make_shared<const Value>(std::move(value)));
+    if (values_.size() > most) values_.erase(values_.begin());
+    return next_++;
+  }
+  /// Null if there is none of this number, or none any more.
+  std::shared_ptr<const Value> find(std::size_t number) const {
+    const auto found = values_.find(number);
+    return found == values_.end() ? nullptr : found->second;
+  }
+
+ private:
+  std::map<std::size_t, std::shared_ptr<const Value>> values_;
+  std::size_t next_ = 0;
+};
 
 class LiveFolder {
  public:
@@ -35,13 +56,18 @@ class LiveFolder {
   /// Prepares a texture from its files as they are now, under a new number. Errors: not_found; as
   /// make_live_texture.
   schema::Result<std::size_t> make(std::size_t index);
-  /// One of the last kMostMade that were made. Errors: not_found.
+  /// One of the last kMostMade textures that were made. Errors: not_found.
   schema::Result<std::shared_ptr<const LiveTexture>> made(std::size_t number) const;
   /// As make_change(), by the numbers of both. Errors: as made() and make_change().
   schema::Result<LiveChange> change(std::size_t playing, std::size_t next, double times) const;
+  /// Makes the spectrogram of a texture from its files as they are now, under a new number. Errors:
+  /// not_found; as make_live_spectrogram.
+  schema::Result<std::size_t> make_spectrogram(std::size_t index);
+  /// One of the last kMostSpectrograms. Errors: not_found.
+  schema::Result<std::shared_ptr<const LiveSpectrogram>> spectrogram(std::size_t number) const;
 
  private:
-  static constexpr std::size_t kMostMade = 4, kThumbnailColumns = 96;
+  static constexpr std::size_t kMostMade = 4, kMostSpectrograms = 2, kThumbnailColumns = 96;
   // A texture of the list, as its files were at these times.
   struct Listed {
     std::string file;  // the sidecar
@@ -53,8 +79,8 @@ class LiveFolder {
 
   std::string folder_, transducer_, reason_;
   std::vector<Listed> listed_;  // by index
-  std::map<std::size_t, std::shared_ptr<const LiveTexture>> made_;
-  std::size_t next_ = 0;
+  NewestValues<LiveTexture, kMostMade> made_;
+  NewestValues<LiveSpectrogram, kMostSpectrograms> spectrograms_;
 };
 
 /// The figures of a texture, for the page: a JSON object.

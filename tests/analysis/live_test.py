@@ -12,6 +12,7 @@ import struct
 import subprocess
 import sys
 
+import netCDF4
 import numpy as np
 import scipy.signal
 import soundfile
@@ -170,7 +171,7 @@ def check_protocol(server, made):
 def fetch_page(server):
     """The modules that the page runs, for node."""
     pathlib.Path("page").mkdir(exist_ok=True)
-    for name in ("compare.js", "core.js", "engine.js", "finger.js", "library.js", "strip.js", "core.wasm"):
+    for name in ("cells.js", "compare.js", "core.js", "engine.js", "finger.js", "library.js", "strip.js", "core.wasm"):
         pathlib.Path("page", name).write_bytes(server.ask("/" + name).body)
     pathlib.Path("page/package.json").write_text('{"type": "module"}')
     for script in ("live_device.mjs", "live_pages.mjs"):
@@ -210,9 +211,64 @@ def kept(server, made, log, changes=()):
     return answer
 
 
+def check_spectrogram(server):
+    """The cells are those of the verb's file, the page says the same number, and exports are the verb's files."""
+    index = next(row["index"] for row in server.json("/textures")["textures"] if row["name"] == "C")
+    about = server.json(f"/spectrogram/{index}")
+    number = about["made"]
+    run("spectrogram", "folder/C", *(part for form in ("nc", "png", "svg", "csv") for part in ("-o", f"C.{form}")))
+    with netCDF4.Dataset("C.nc") as file:
+        density, positions = np.array(file["density"]), np.array(file["position"])
+        frequencies, known = np.array(file["spatial_frequency"]), np.array([file["known_from"], file["known_to"]]).T
+        assert file["density"].units == about["cell_unit"], about
+    for part in ("cells", "known"):
+        pathlib.Path(part).write_bytes(server.ask(f"/{part}/{number}").body)
+    cells = np.fromfile("cells", "<f4").reshape(about["rows"], about["bins"])
+    assert np.array_equal(cells, density)
+    assert np.allclose(1e3 * (about["first_position_m"] + about["hop_m"] * np.arange(about["rows"])), positions, rtol=0, atol=1e-9)
+    assert np.allclose(1e-3 * about["frequency_step_per_m"] * np.arange(about["bins"]), frequencies, rtol=1e-12, atol=0)
+    assert np.allclose(1e-3 * np.fromfile("known", "<f4").reshape(-1, 2), known, rtol=1e-6, atol=0)  # float32
+    # Hover a cell: the same number.
+    draw = np.random.default_rng(34)
+    places = np.stack([draw.uniform(0, 0.035, 50), draw.uniform(0, 15e3, 50)], 1)
+    pathlib.Path("hover.json").write_text(json.dumps({"about": about, "cells": "cells", "known": "known", "places": places.tolist()}))
+    said = subprocess.run(["node", "page/live_pages.mjs", "hover.json"], capture_output=True, text=True, timeout=60)
+    assert said.returncode == 0, said.stderr
+    for (position_m, per_m), words in zip(places, json.loads(said.stdout)):
+        cell = np.abs(positions - 1e3 * position_m).argmin(), np.abs(frequencies - 1e-3 * per_m).argmin()
+        assert np.float32(words.split("; ")[-2 if "not measured" in words else -1].split()[0]) == density[cell], (words, density[cell])
+    check_exports(server, number, density, positions, frequencies)
+
+
+def check_exports(server, number, density, positions, frequencies):
+    for form in ("nc", "png", "svg", "csv"):
+        assert server.ask(f"/export/{number}/{form}?range_db=60").body == pathlib.Path(f"C.{form}").read_bytes(), form
+    run("spectrogram", "folder/C", "-o", "other.png", "--formants", "--dynamic-range", "40dB", "--min-frequency", "0.2/mm")
+    answer = server.ask(f"/export/{number}/png?range_db=40&formants=1&low_per_m=200")
+    assert answer.body == pathlib.Path("other.png").read_bytes() and answer.headers["content-disposition"] == "attachment"
+    # A selection: the same cells, fewer of them.
+    selection = "from_m=0.0101&to_m=0.02&high_per_m=2000"
+    rows, bins = (positions >= 10.1 - 1e-9) & (positions <= 20 + 1e-9), frequencies <= 2 + 1e-9
+    pathlib.Path("part.nc").write_bytes(server.ask(f"/export/{number}/nc?{selection}").body)
+    with netCDF4.Dataset("part.nc") as file:
+        assert np.array_equal(np.array(file["density"]), density[rows][:, bins]) and np.array_equal(np.array(file["position"]), positions[rows])
+    run("validate", "part.nc")
+    table = server.ask(f"/export/{number}/csv?{selection}").body.decode().splitlines()
+    assert len(table) == 1 + rows.sum() and len(table[1].split(",")) == 3 + bins.sum()
+    picture = server.ask(f"/export/{number}/png?{selection}&low_per_m=100").body
+    assert picture.startswith(b"\x89PNG") and picture != pathlib.Path("C.png").read_bytes()
+    for query, status, fault in (("from_m=1", 422, 4), ("from_m=0.02&to_m=0.01", 422, 4), ("from_m=x", 422, 1), ("from_m=nan", 422, 1), ("path=1", 422, 1),
+                                 ("range_db=-1", 422, 1), ("low_per_m=9000&high_per_m=9001", 422, 4), ("range_db", 422, 1)):
+        refused = server.ask(f"/export/{number}/png?{query}")
+        assert refused.status == status and json.loads(refused.body)["error"]["fault"] == fault, (query, refused.body)
+    for path in (f"{number}/wav", f"{number}/", f"{number}", "99/png", "x/png", f"{number}/../png"):
+        assert server.ask(f"/export/{path}").status == 404, path
+    assert server.ask("/spectrogram/99").status == 404 and server.ask("/cells/99").status == 404
+    broken = next(row["index"] for row in server.json("/textures")["textures"] if row["name"] == "broken")
+    assert server.ask(f"/spectrogram/{broken}").status == 422
+
+
 def check_bits(server, made, odd_made):
-    fetch_page(server)
-    subprocess.run(["node", "page/live_pages.mjs"], check=True, timeout=60)
     for seed, which, fault in ((1, made, ""), (2, odd_made, ""), (3, made, "fault")):
         log = device_log(server, which, seed, 6, fault)
         answer = kept(server, which, log)
@@ -307,6 +363,8 @@ def live_page():
         made, odd_made = check_textures(server)
         check_protocol(server, made)
         check_changes(server, made, odd_made)
+        fetch_page(server)
+        check_spectrogram(server)
         check_bits(server, made, odd_made)
         check_sound(server)
     assert not [path for path in pathlib.Path("folder").iterdir() if path.name.startswith(".")], "temporary files stay"

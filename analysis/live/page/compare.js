@@ -31,7 +31,7 @@ export function fullScale(sides, gains) {
 
 /** Both gains, what equal RMS has changed, and both RMS. */
 export function compareWords(sides, gains, equal) {
-  if (sides.B === null) return 'Press B beside a texture of the list to compare it with the chosen one, which is A.';
+  if (sides.B === null) return 'Press “as B” at a texture of the list to compare it with the chosen one, which is A.';
   const side = (name) => {
     const {figures} = sides[name], times = gains[name] / figures.gain_m_per_n, db = 20 * Math.log10(Math.abs(times));
     const changed = Math.abs(times - 1) < 5e-4 ? 'its default' : `${times.toFixed(3)} times its default (${db > 0 ? '+' : ''}${db.toFixed(1)} dB)`;

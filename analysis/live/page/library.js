@@ -97,8 +97,9 @@ export class Library {
     const picture = make('canvas', {ariaHidden: 'true'});
     const words = `${(1e3 * row.length_m).toFixed(1)} mm, RMS ${withPrefix(row.rms, row.unit)}${row.surface ? `, surface ${row.surface}` : ''}`;
     const a = make('button', {type: 'button', className: 'texture', onclick: () => this.choose(row)}, row.name, make('small', {}, words), picture);
-    const b = make('button', {type: 'button', ariaLabel: `Compare with ${row.name} as B`, onclick: () => this.chooseB(row)}, 'B');
-    item.append(a, make('div', {className: 'row'}, b));
+    const b = make('button', {type: 'button', ariaLabel: `Compare with ${row.name} as B`, onclick: () => this.chooseB(row)}, 'as B');
+    const look = make('a', {href: `explorer.html#${row.index}`, ariaLabel: `Spectrogram of ${row.name}`}, 'Spectrogram');
+    item.append(a, make('div', {className: 'row'}, b, look));
     this.markItem(item);
     this.seen.observe(item);
     return item;
