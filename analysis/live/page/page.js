@@ -105,6 +105,7 @@ let choices = 0;
 async function choose(name, row) {
   const mine = ++choices, side = sides.A === null ? 'A' : name;
   const loading = side === 'B' && row.index === library.chosen.B ? null : load(row.index);
+  loading?.catch(() => {});  // it is awaited below
   say('');
   stop();
   chosen = null;
@@ -361,13 +362,14 @@ at('strokes').addEventListener('click', (event) => {
 });
 
 // A and B, by buttons and by their keys.
-for (const name of ['A', 'B']) at(`side-${name}`).addEventListener('click', () => hearSide(name));
+function press(name) { if (name !== heard) hearSide(name); }
+for (const name of ['A', 'B']) at(`side-${name}`).addEventListener('click', () => press(name));
 for (const place of [strip, at('compare')])
   place.addEventListener('keydown', (event) => {
     const name = event.key.toUpperCase();
     if (!['A', 'B'].includes(name) || event.repeat || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
-    hearSide(name);
+    press(name);
   });
 at('equal').addEventListener('input', () => {
   gains = gainsOf(sides, at('equal').checked);
