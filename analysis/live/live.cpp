@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -31,7 +32,8 @@ using schema::fail;
 using schema::Result;
 
 constexpr int kFirstPort = 7230, kPortsTried = 20;
-constexpr std::string_view kDaemonPath = "/daemon";
+constexpr std::string_view kDaemonPath = "/daemon", kChangePath = "/change/", kExportPath = "/export/";
+constexpr std::size_t kLongestPath = 256;
 
 std::string_view type_of_asset(std::string_view name) {
   constexpr std::pair<std::string_view, std::string_view> kTypes[] = {
@@ -90,6 +92,7 @@ class Page final : public WebConversation {
     const auto request = schema::parse_live_request(text);
     TACTO_TRY(request);
     if (request->verb == schema::LiveVerb::begin) return begin(request->made);
+    if (request->verb == schema::LiveVerb::change) return change(*request);
     if (request->verb == schema::LiveVerb::keep) return keep();
     return fail(ErrorKind::usage, "this page is its own device", "request", "steer the daemon on its page");
   }
@@ -102,9 +105,18 @@ class Page final : public WebConversation {
     session_ = std::move(*session);
     return schema::ControlFields{{"begun", static_cast<std::int64_t>(made)}};
   }
+  Result<schema::ControlFields> change(const schema::LiveRequest& request) {
+    const auto change = folder_.change(request.playing, request.made, request.times);
+    TACTO_TRY(change);
+    if (session_ == nullptr) return nothing_played();
+    TACTO_TRY(session_->change(*change));
+    return schema::ControlFields{{"changed", static_cast<std::int64_t>(request.made)}};
+  }
+  static tl::unexpected<schema::Error> nothing_played() {
+    return fail(ErrorKind::unsuitable, "there is nothing to keep", "the page", "play first");
+  }
   Result<schema::ControlFields> keep() {
-    if (session_ == nullptr)
-      return fail(ErrorKind::unsuitable, "there is nothing to keep", "the page", "play first");
+    if (session_ == nullptr) return nothing_played();
     const auto session = std::exchange(session_, nullptr);
     const auto kept = session->keep();
     TACTO_TRY(kept);
@@ -145,6 +157,7 @@ class Site {
     return answer;
   }
   WebAnswer content(const WebRequest& request) {
+    if (request.path.size() > kLongestPath) return too_long();
     if (request.upgrade)
       return request.path == "/session" || request.path == kDaemonPath ? WebAnswer() : not_found();
     if (request.path == "/loaded") return loaded();
@@ -153,6 +166,18 @@ class Site {
       return json_answer(folder_.list_json());
     }
     if (const auto index = number_after("/texture/", request.path)) return texture(*index);
+    if (const auto index = number_after("/thumbnail/", request.path)) {
+      const auto picture = folder_.thumbnail(*index);
+      return picture ? bytes_answer(*picture) : error_answer(picture.error());
+    }
+    if (const auto index = number_after("/spectrogram/", request.path)) return spectrogram(*index);
+    if (request.path.starts_with(kExportPath))
+      return exported(std::string_view(request.path).substr(kExportPath.size()), request.query);
+    for (const std::string_view part : {"cells", "known"})
+      if (const auto number = number_after(fmt::format("/{}/", part), request.path))
+        return cells_of(part, *number);
+    if (request.path.starts_with(kChangePath))
+      return change(std::string_view(request.path).substr(kChangePath.size()));
     for (const std::string_view part : {"upload", "map", "tray"})
       if (const auto number = number_after(fmt::format("/{}/", part), request.path))
         return bytes_of(part, *number);
@@ -161,6 +186,60 @@ class Site {
     for (const schema::EmbeddedFile& asset : live_assets())
       if (asset.name == name) return asset_answer(asset);
     return not_found();
+  }
+  WebAnswer spectrogram(std::size_t index) {
+    const auto number = folder_.make_spectrogram(index);
+    return number ? json_answer(spectrogram_json(*number, **folder_.spectrogram(*number)))
+                  : error_answer(number.error());
+  }
+  WebAnswer cells_of(std::string_view part, std::size_t number) {
+    const auto live = folder_.spectrogram(number);
+    if (!live) return error_answer(live.error());
+    const schema::Spectrogram& spectrogram = (*live)->spectrogram;
+    return bytes_answer(part == "cells" ? stored_cells(spectrogram) : known_limits(spectrogram));
+  }
+  // "NUMBER/FORM"
+  WebAnswer exported(std::string_view what, const std::string& query) {
+    std::size_t number = 0;
+    if (!read_number(what, number)) return not_found();
+    const auto live = folder_.spectrogram(number);
+    if (!live) return error_answer(live.error());
+    const auto part = parse_spectrogram_part(query);
+    if (!part) return error_answer(part.error());
+    auto file = spectrogram_file(**live, *part, std::string(what));
+    if (!file) return error_answer(file.error());
+    WebAnswer answer;
+    answer.type = "application/octet-stream";
+    answer.body = std::move(*file);
+    answer.headers.emplace_back("content-disposition:", "attachment");
+    return answer;
+  }
+  // "NEXT/PLAYING/TIMES"
+  WebAnswer change(std::string_view numbers) {
+    std::size_t next = 0, playing = 0;
+    double times = 0;
+    if (!read_number(numbers, next) || !read_number(numbers, playing) || !read_number(numbers, times) ||
+        !numbers.empty() || !(std::abs(times) <= schema::kMostTimes))
+      return not_found();
+    const auto change = folder_.change(playing, next, times);
+    return change ? bytes_answer(joined(change->frames)) : error_answer(change.error());
+  }
+  // Takes a number, and a slash behind it, from the beginning of a text.
+  template <class Number>
+  static bool read_number(std::string_view& text, Number& number) {
+    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (failed != std::errc()) return false;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (text.empty()) return true;
+    if (text.front() != '/' || text.size() == 1) return false;
+    text.remove_prefix(1);
+    return true;
+  }
+  static WebAnswer too_long() {
+    WebAnswer answer;
+    answer.status = 414;
+    answer.body = fmt::format("no page has a path of over {} bytes\n", kLongestPath);
+    return answer;
   }
   static WebAnswer not_found() {
     WebAnswer answer;
@@ -176,11 +255,9 @@ class Site {
   }
   static std::optional<std::size_t> number_after(std::string_view beginning, std::string_view path) {
     if (!path.starts_with(beginning)) return std::nullopt;
-    const std::string_view digits = path.substr(beginning.size());
+    std::string_view digits = path.substr(beginning.size());
     std::size_t number = 0;
-    const auto [end, failed] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    return failed == std::errc() && end == digits.data() + digits.size() ? std::optional(number)
-                                                                         : std::nullopt;
+    return read_number(digits, number) && digits.empty() ? std::optional(number) : std::nullopt;
   }
   WebAnswer texture(std::size_t index) {
     const auto number = folder_.make(index);
@@ -198,9 +275,12 @@ class Site {
     const LiveTexture& live = **made;
     if (part == "map") return bytes_answer(live.map);
     if (part == "tray") return bytes_answer(live.tray);
-    std::vector<std::uint8_t> frames;
-    for (const auto& frame : live.upload) frames.insert(frames.end(), frame.begin(), frame.end());
-    return bytes_answer(frames);
+    return bytes_answer(joined(live.upload));
+  }
+  static std::vector<std::uint8_t> joined(const std::vector<Frame>& frames) {
+    std::vector<std::uint8_t> bytes;
+    for (const Frame& frame : frames) bytes.insert(bytes.end(), frame.begin(), frame.end());
+    return bytes;
   }
 
   LiveAccess access_;

@@ -239,7 +239,7 @@ void LiveDaemon::gone(const schema::Error& why) {
 
 // `stop` and `disarm` are for every page.
 Result<void> LiveDaemon::ask(Page& page, const schema::LiveRequest& request) {
-  if (request.verb == LiveVerb::begin || request.verb == LiveVerb::keep)
+  if (request.verb == LiveVerb::begin || request.verb == LiveVerb::change || request.verb == LiveVerb::keep)
     return fail(ErrorKind::usage, "this page has no device of its own", "request",
                 "use the page of textures");
   const bool stops = request.verb == LiveVerb::stop || request.verb == LiveVerb::disarm;

@@ -2,9 +2,9 @@
 #include "analysis/live/live_folder.hpp"
 
 #include <algorithm>
-#include <filesystem>
+#include <chrono>
+#include <set>
 
-#include "data-schema/report/report.hpp"
 #include "data-schema/texture/texture.hpp"
 #include "playback/wasm/browser_board.hpp"
 
@@ -15,63 +15,102 @@ namespace fs = std::filesystem;
 
 using schema::Result;
 
-constexpr std::string_view kEnding = ".texture.json";
+constexpr std::string_view kEnding = ".texture.json", kWavEnding = ".texture.wav";
 
 std::string name_of(const std::string& file) {
   const std::string name = fs::path(file).filename().string();
   return name.substr(0, name.size() - kEnding.size());
 }
 
-cli::Report row_of(std::size_t index, const std::string& file) {
-  cli::Report row;
-  row.add("index", index).add("name", name_of(file));
-  const auto texture = schema::read_texture(file);
-  if (!texture) return std::move(row.add("reason", schema::message(texture.error())));
-  const schema::SpaceSignal& signal = texture->signal;
-  row.add("length_m", signal.pitch_m * static_cast<double>(signal.values.size()));
-  return row;
+std::string wav_of(const std::string& sidecar) {
+  return sidecar.substr(0, sidecar.size() - kEnding.size()) + std::string(kWavEnding);
+}
+
+// The earliest time if there is no such file.
+fs::file_time_type time_of(const std::string& file) {
+  std::error_code failed;
+  const auto time = fs::last_write_time(file, failed);
+  return failed ? fs::file_time_type::min() : time;
+}
+
+double unix_s(fs::file_time_type time) {
+  return std::chrono::duration<double>(std::chrono::file_clock::to_sys(time).time_since_epoch()).count();
 }
 
 }  // namespace
 
-void LiveFolder::refresh() {
-  std::vector<std::string> found;
-  std::error_code ended;
-  for (fs::directory_iterator at(folder_, ended), end; !ended && at != end; at.increment(ended)) {
-    std::error_code ignored;
-    if (std::string path = at->path().string(); path.ends_with(kEnding) && at->is_regular_file(ignored))
-      found.push_back(std::move(path));
+void LiveFolder::read_again(Listed& listed, std::size_t index) const {
+  listed.sidecar_time = time_of(listed.file);
+  listed.wav_time = time_of(wav_of(listed.file));
+  listed.row = cli::Report();
+  listed.row.add("index", index).add("name", name_of(listed.file));
+  listed.thumbnail.clear();
+  const auto texture = schema::read_texture(listed.file);
+  if (!texture) {
+    listed.row.add("reason", schema::message(texture.error()));
+    return;
   }
-  std::ranges::sort(found);
-  for (std::string& path : found)
-    if (std::ranges::find(files_, path) == files_.end()) files_.push_back(std::move(path));
+  const schema::SpaceSignal& signal = texture->signal;
+  listed.row.add("length_m", signal.pitch_m * static_cast<double>(signal.values.size()))
+      .add("rms", rms_about_mean(signal.values))
+      .add("unit", texture->unit)
+      .add("surface", texture->surface)
+      .add("changed_s", unix_s(std::max(listed.sidecar_time, listed.wav_time)));
+  listed.thumbnail = texture_map(signal.values, kThumbnailColumns);
+}
+
+// A WAV without its sidecar is listed, too: as one that can't be read.
+void LiveFolder::refresh() {
+  std::set<std::string> found;
+  std::error_code failed;
+  for (fs::directory_iterator at(folder_, failed), end; !failed && at != end; at.increment(failed)) {
+    std::error_code ignored;
+    std::string path = at->path().string();
+    if (!at->is_regular_file(ignored)) continue;
+    if (path.ends_with(kWavEnding)) path.replace(path.size() - kWavEnding.size(), kWavEnding.size(), kEnding);
+    if (path.ends_with(kEnding)) found.insert(std::move(path));
+  }
+  reason_ = failed ? failed.message() : std::string();
+  for (const std::string& path : found)
+    if (std::ranges::find(listed_, path, &Listed::file) == listed_.end())
+      listed_.push_back({path, {}, {}, {}, {}});
+  for (std::size_t i = 0; i < listed_.size(); ++i)
+    if (Listed& one = listed_[i];
+        one.sidecar_time != time_of(one.file) || one.wav_time != time_of(wav_of(one.file)) || one.row.empty())
+      read_again(one, i);
 }
 
 std::string LiveFolder::list_json() const {
-  std::vector<std::pair<std::string, std::size_t>> by_name;
-  for (std::size_t i = 0; i < files_.size(); ++i)
-    if (schema::is_file(files_[i])) by_name.emplace_back(files_[i], i);
-  std::ranges::sort(by_name);
+  std::vector<const Listed*> by_name;
+  for (const Listed& one : listed_)
+    if (std::max(one.sidecar_time, one.wav_time) > fs::file_time_type::min()) by_name.push_back(&one);
+  std::ranges::sort(by_name, {}, &Listed::file);
   std::vector<cli::Report> rows;
-  for (const auto& [file, index] : by_name) rows.push_back(row_of(index, file));
+  for (const Listed* const one : by_name) rows.push_back(one->row);
   cli::Report list;
   list.add("textures", std::move(rows));
+  if (!reason_.empty()) list.add("reason", reason_);
   return list.json();
 }
 
+Result<std::vector<float>> LiveFolder::thumbnail(std::size_t index) const {
+  if (index < listed_.size() && !listed_[index].thumbnail.empty()) return listed_[index].thumbnail;
+  return schema::fail(schema::ErrorKind::not_found, "there is no picture of this index",
+                      std::to_string(index), "load the page again");
+}
+
 Result<std::string> LiveFolder::file(std::size_t index) const {
-  if (index < files_.size()) return fs::absolute(files_[index]).lexically_normal().string();
+  if (index < listed_.size()) return fs::absolute(listed_[index].file).lexically_normal().string();
   return schema::fail(schema::ErrorKind::not_found, "there is no texture of this index",
                       std::to_string(index), "load the page again");
 }
 
 Result<std::vector<float>> LiveFolder::map_of(const std::string& full_name) const {
-  for (const std::string& own : files_) {
+  for (const Listed& listed : listed_) {
+    const std::string& own = listed.file;
     std::error_code ignored;
-    if (!fs::path(full_name).is_absolute() ||
-        (!fs::equivalent(own, full_name, ignored) &&
-         !fs::equivalent(own, full_name + std::string(kEnding), ignored)))
-      continue;
+    const std::string sidecar = schema::stem_of(full_name, ".texture") + std::string(kEnding);
+    if (!fs::path(full_name).is_absolute() || !fs::equivalent(own, sidecar, ignored)) continue;
     const auto texture = schema::read_texture(own);
     TACTO_TRY(texture);
     return texture_map(texture->signal.values);
@@ -85,15 +124,35 @@ Result<std::size_t> LiveFolder::make(std::size_t index) {
   TACTO_TRY(own);
   auto texture = make_live_texture(*own, transducer_);
   TACTO_TRY(texture);
-  made_.emplace(next_, std::make_shared<const LiveTexture>(std::move(*texture)));
-  if (made_.size() > kMostMade) made_.erase(made_.begin());
-  return next_++;
+  return made_.add(std::move(*texture));
 }
 
 Result<std::shared_ptr<const LiveTexture>> LiveFolder::made(std::size_t number) const {
-  if (const auto found = made_.find(number); found != made_.end()) return found->second;
+  if (auto found = made_.find(number)) return found;
   return schema::fail(schema::ErrorKind::not_found, "this texture is not prepared any more",
                       std::to_string(number), "choose it again");
+}
+
+Result<LiveChange> LiveFolder::change(std::size_t playing, std::size_t next, double times) const {
+  const auto from = made(playing);
+  TACTO_TRY(from);
+  const auto to = made(next);
+  TACTO_TRY(to);
+  return make_change(**from, **to, times);
+}
+
+Result<std::size_t> LiveFolder::make_spectrogram(std::size_t index) {
+  const auto own = file(index);
+  TACTO_TRY(own);
+  auto spectrogram = make_live_spectrogram(*own);
+  TACTO_TRY(spectrogram);
+  return spectrograms_.add(std::move(*spectrogram));
+}
+
+Result<std::shared_ptr<const LiveSpectrogram>> LiveFolder::spectrogram(std::size_t number) const {
+  if (auto found = spectrograms_.find(number)) return found;
+  return schema::fail(schema::ErrorKind::not_found, "this spectrogram is not there any more",
+                      std::to_string(number), "choose its texture again");
 }
 
 std::string figures_json(std::size_t made, const LiveTexture& texture) {
@@ -104,6 +163,7 @@ std::string figures_json(std::size_t made, const LiveTexture& texture) {
       .add("name", name_of(texture.file))
       .add("start_m", program.start_m)
       .add("length_m", program.length_m)
+      .add("rms", texture.rms)
       .add("gain_m_per_n", double{program.prepared.gain_m_per_n})
       .add("tray_peak_m", program.tray_peak_m)
       .add("displacement_limit_m", transducer.displacement_limit_m)

@@ -62,6 +62,14 @@ Result<std::unique_ptr<LiveSession>> LiveSession::begin(const LiveTexture& textu
 
 LiveSession::~LiveSession() = default;
 
+Result<void> LiveSession::change(const LiveChange& change) {
+  if (recorder_ == nullptr) return odd_log("comes after the session's end");
+  recorder_->change({ticks_, steady_ns(), change.program});
+  for (const Frame& frame : change.frames) recorder_->command({ticks_, steady_ns(), frame});
+  recorder_->event({ticks_, steady_ns(), "texture changed to " + change.program.textures.front().file});
+  return {};
+}
+
 Result<void> LiveSession::take(std::span<const std::uint8_t> log) {
   if (recorder_ == nullptr) return odd_log("comes after the session's end");
   wire::Frame frame;

@@ -32,6 +32,9 @@ class LiveSession {
   static schema::Result<std::unique_ptr<LiveSession>> begin(const LiveTexture& texture);
   ~LiveSession();
 
+  /// The page's device has accepted the frames of another texture; what comes of the log begins with the
+  /// command that changes to it. Errors: malformed, after the session's end.
+  schema::Result<void> change(const LiveChange& change);
   /// Any part of the log. Errors: malformed, for bytes that are not frames, frames that are no part of such a
   /// log, or ticks that come twice; unsuitable, after kMostTicks. After an error the session ends here.
   schema::Result<void> take(std::span<const std::uint8_t> log);

@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <complex>
+#include <functional>
 #include <memory>
+#include <numeric>
 
+#include "data-schema/base/statistics.hpp"
 #include "data-schema/texture/texture.hpp"
 #include "firmware-host/core/firmware/firmware.hpp"
 #include "firmware-host/link/client.hpp"
 #include "firmware-host/link/hosted_board.hpp"
 #include "playback/model/chain.hpp"
+#include "playback/prepare/texture_change.hpp"
 #include "playback/prepare/upload.hpp"
 #include "playback/wasm/browser_board.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
@@ -60,14 +64,15 @@ class RestingBoard final : public firmware_host::Transport {
 };
 static_assert(browser::kProfileSamples == firmware_host::HostedProfile::kSamples);
 
-Result<std::vector<std::vector<std::uint8_t>>> upload_frames(const playback::Prepared& prepared,
-                                                             const std::string& name) {
+// The frames that `send` sends to the board, each as it was accepted. `name`: for errors.
+Result<std::vector<Frame>> frames_of(const std::string& name,
+                                     const std::function<Result<void>(firmware_host::Client&)>& send) {
   auto client = firmware_host::Client::connect(std::make_unique<RestingBoard>(), "the page");
   TACTO_TRY(client);
-  std::vector<std::vector<std::uint8_t>> frames;
+  std::vector<Frame> frames;
   (*client)->listen(
       [&](std::span<const std::uint8_t> frame) { frames.emplace_back(frame.begin(), frame.end()); });
-  if (const auto sent = playback::upload(**client, prepared); !sent) {
+  if (const auto sent = send(**client); !sent) {
     schema::Error error = sent.error();
     error.where = name;
     return tl::unexpected(error);
@@ -85,17 +90,23 @@ playback::PrepareOptions page_options() {
 
 }  // namespace
 
-std::vector<float> texture_map(const std::vector<double>& values) {
+std::vector<float> texture_map(const std::vector<double>& values, std::size_t columns) {
   std::vector<float> map;
-  for (std::size_t column = 0; column < kMapColumns; ++column) {
-    const std::size_t first = std::min(column * values.size() / kMapColumns, values.size() - 1);
-    const std::size_t end = std::max((column + 1) * values.size() / kMapColumns, first + 1);
+  for (std::size_t column = 0; column < columns; ++column) {
+    const std::size_t first = std::min(column * values.size() / columns, values.size() - 1);
+    const std::size_t end = std::max((column + 1) * values.size() / columns, first + 1);
     const auto [least, most] = std::minmax_element(values.begin() + static_cast<std::ptrdiff_t>(first),
                                                    values.begin() + static_cast<std::ptrdiff_t>(end));
     map.push_back(static_cast<float>(*least));
     map.push_back(static_cast<float>(*most));
   }
   return map;
+}
+
+double rms_about_mean(std::vector<double> values) {
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  for (double& value : values) value -= mean;
+  return schema::rms_of(values);
 }
 
 std::vector<float> tray_response(const schema::Transducer& transducer) {
@@ -124,12 +135,29 @@ Result<LiveTexture> make_live_texture(const std::string& file, const std::string
   auto program = playback::make_program(request, transducer, page_options());
   TACTO_TRY(program);
   live.program = std::move(*program);
-  auto upload = upload_frames(live.program.prepared, file);
+  auto upload = frames_of(
+      file, [&](firmware_host::Client& client) { return playback::upload(client, live.program.prepared); });
   TACTO_TRY(upload);
   live.upload = std::move(*upload);
+  live.rms = rms_about_mean(texture->signal.values);
   live.map = texture_map(texture->signal.values);
   live.tray = tray_response(live.program.session.transducer);
   return live;
+}
+
+// At rest the board accepts the same frames as while it plays. The device has one gain, which belongs to the
+// texture that it got at rest, so the samples are scaled.
+Result<LiveChange> make_change(const LiveTexture& playing, const LiveTexture& next, double times) {
+  const playback::Prepared& to = next.program.prepared;
+  TACTO_TRY(playback::check_texture_change(playing.program.prepared, to, browser::kProfileSamples));
+  auto frames = frames_of(next.file, [&](firmware_host::Client& client) {
+    return playback::upload_next(client, to, double{to.gain_m_per_n} / times);
+  });
+  TACTO_TRY(frames);
+  LiveChange change{std::move(*frames), next.program.session};
+  for (schema::SessionTexture& texture : change.program.textures)
+    texture.gain_m_per_n = times * double{playing.program.prepared.gain_m_per_n};
+  return change;
 }
 
 }  // namespace tacto::analysis

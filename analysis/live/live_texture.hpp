@@ -10,11 +10,14 @@
 
 namespace tacto::analysis {
 
+using Frame = std::vector<std::uint8_t>;  ///< of the wire
+
 struct LiveTexture {
   std::string file;  ///< the sidecar
   playback::Program program;
   /// The frames of playback::upload() to the page's board, each as it was accepted.
-  std::vector<std::vector<std::uint8_t>> upload;
+  std::vector<Frame> upload;
+  double rms = 0;  ///< of the texture, about its mean
   /// Of the texture in kMapColumns equal parts of its length: the least and the greatest value of each.
   std::vector<float> map;
   /// The tray's displacement, m, for a drive of 1 V in one tick, from that tick on: the transducer's linear
@@ -29,8 +32,20 @@ inline constexpr std::size_t kTrayTaps = 512;
 /// Errors: as make_program and upload.
 schema::Result<LiveTexture> make_live_texture(const std::string& file, const std::string& transducer);
 
-/// LiveTexture::map.
-std::vector<float> texture_map(const std::vector<double>& values);
+/// Another texture that the page's board plays next.
+struct LiveChange {
+  std::vector<Frame> frames;       ///< before the command that changes to it
+  schema::SessionProgram program;  ///< for the session
+};
+/// The change from `playing`, which the board got at rest, to `next`, whose samples are multiplied by
+/// `times`. Errors: as check_texture_change.
+schema::Result<LiveChange> make_change(const LiveTexture& playing, const LiveTexture& next, double times);
+
+/// LiveTexture::map, in so many parts.
+std::vector<float> texture_map(const std::vector<double>& values, std::size_t columns = kMapColumns);
+
+/// About their mean, which no drive has.
+double rms_about_mean(std::vector<double> values);
 
 /// The impulse response of the tray at the page's rate.
 std::vector<float> tray_response(const schema::Transducer& transducer);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "data-schema/json/json_schema.hpp"
 #include "data-schema/json/json_text.hpp"
@@ -13,14 +14,16 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 10> kLiveVerbs = {"begin", "keep", "steer", "status", "load",
-                                                         "arm",   "play", "stop",  "disarm", "gain"};
+constexpr std::array<std::string_view, 11> kLiveVerbs = {
+    "begin", "change", "keep", "steer", "status", "load", "arm", "play", "stop", "disarm", "gain"};
 
-// The member that a request cannot do without.
-std::string_view needed_by(LiveVerb verb) {
-  if (verb == LiveVerb::begin) return "made";
-  if (verb == LiveVerb::load) return "texture";
-  return verb == LiveVerb::gain ? "times_default" : "";
+// The members that a request cannot do without.
+std::vector<std::string_view> needed_by(LiveVerb verb) {
+  if (verb == LiveVerb::begin) return {"made"};
+  if (verb == LiveVerb::change) return {"made", "playing", "times"};
+  if (verb == LiveVerb::load) return {"texture"};
+  if (verb == LiveVerb::gain) return {"times_default"};
+  return {};
 }
 
 template <class Value>
@@ -43,10 +46,13 @@ Result<LiveRequest> parse_live_request(std::string_view text) {
   LiveRequest request;
   request.verb =
       static_cast<LiveVerb>(std::ranges::find(kLiveVerbs, text_or(*body, "request")) - kLiveVerbs.begin());
-  if (const std::string_view needed = needed_by(request.verb); !needed.empty() && !body->contains(needed))
-    return fail(ErrorKind::malformed, fmt::format("the request contains no '{}'", needed),
-                fmt::format("{}#/{}", where, needed), "add it");
+  for (const std::string_view needed : needed_by(request.verb))
+    if (!body->contains(needed))
+      return fail(ErrorKind::malformed, fmt::format("the request contains no '{}'", needed),
+                  fmt::format("{}#/{}", where, needed), "add it");
   request.made = body->value("made", std::size_t{0});
+  request.playing = body->value("playing", std::size_t{0});
+  request.times = body->value("times", 1.0);
   request.id = value_in<std::int64_t>(*body, "id");
   request.texture = value_in<std::size_t>(*body, "texture");
   request.times_default = value_in<double>(*body, "times_default");

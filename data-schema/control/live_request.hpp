@@ -12,13 +12,18 @@
 
 namespace tacto::schema {
 
-/// begin: from now on the page sends the log of a playback of this texture. keep: the log becomes a session.
-/// steer: this page steers the daemon from now on. The others are the daemon's.
-enum class LiveVerb { begin, keep, steer, status, load, arm, play, stop, disarm, gain };
+/// begin: from now on the page sends the log of a playback of this texture. change: its device has the frames
+/// of another one, and the log goes on with the change to it. keep: the log becomes a session. steer: this
+/// page steers the daemon from now on. The others are the daemon's.
+enum class LiveVerb { begin, change, keep, steer, status, load, arm, play, stop, disarm, gain };
+
+inline constexpr double kMostTimes = 1e6;  ///< magnitude of LiveRequest::times
 
 struct LiveRequest {
   LiveVerb verb = LiveVerb::keep;
-  std::size_t made = 0;                 ///< begin: the number of the prepared texture
+  std::size_t made = 0;                 ///< begin, change: the number of the prepared texture
+  std::size_t playing = 0;              ///< change: that of the texture with which the session began
+  double times = 1;                     ///< change: factor of the samples
   std::optional<std::int64_t> id;       ///< comes back in the daemon's answer
   std::optional<std::size_t> texture;   ///< load: index in the folder
   std::optional<double> times_default;  ///< gain

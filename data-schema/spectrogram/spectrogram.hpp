@@ -66,6 +66,13 @@ struct Spectrogram : SpectrogramHeader {
   float at(std::size_t p, std::size_t k) const { return cells[p * bins + k]; }
 };
 
+/// The cells' unit in files, as UDUNITS reads it: densities "N2 mm", "(m/s)2 mm", "mm" for the unit "1";
+/// amplitudes "N", "m/s", "1".
+std::string cell_unit(const SpectrogramHeader& header);
+
+/// The factor from a cell to that unit.
+float cell_factor(Scaling scaling);
+
 /// Writes netCDF-4: variables `density` (unit^2 mm) or `amplitude` (unit), `position` (mm),
 /// `spatial_frequency` (1/mm), `known` (0 or 1 a cell: what the recording could know; 1 throughout where its
 /// band is not said) and its limits by position `known_from` and `known_to` (1/mm), window and scaling as

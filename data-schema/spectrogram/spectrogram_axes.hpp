@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Common parts of spectrogram files: units, and the comparison of axes. Internal to this folder.
+// Common parts of spectrogram files: the comparison of axes. Internal to this folder.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,6 @@
 namespace tacto::schema {
 
 inline constexpr double kMillimetres = 1e3;  ///< in a metre; also unit^2 mm in one unit^2 m
-
-/// The cells' unit as UDUNITS reads it: densities "N2 mm", "(m/s)2 mm", "mm" for the unit "1"; amplitudes
-/// "N", "m/s", "1".
-std::string cell_unit(const SpectrogramHeader& header);
-
-/// The factor from a cell to that unit.
-float cell_factor(Scaling scaling);
 
 /// Checks that a header has cells, and shares frequency axis, quantity, scaling, windowing, and (up to the
 /// end of the shorter) positions with the first one of the file. Errors: unsuitable, naming the difference.

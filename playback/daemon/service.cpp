@@ -260,6 +260,12 @@ std::string Service::resolved(const std::string& file) const {
   return config_.files.empty() ? file : (fs::path(config_.files) / file).string();
 }
 
+// For clients with another working folder.
+std::string Service::full_name(const std::string& file) const {
+  std::error_code ignored;
+  return fs::absolute(resolved(file), ignored).lexically_normal().string();
+}
+
 Result<void> Service::may_begin(const char* what) const {
   if (!loader_.target()) return {};
   return fail(ErrorKind::usage, fmt::format("can't {} while a texture is being prepared", what),
@@ -331,7 +337,7 @@ Result<ControlFields> Service::load(Program program) {
   const bool changes = player_->state() != PlayerState::idle;
   const double fade_s = load_request_.fade_s.value_or(kUsualFadeS);
   TACTO_TRY(player_->load(std::move(program), fade_s));
-  loaded_ = file;
+  loaded_ = full_name(file);
   passes_to_hz_ = passes_to_hz;
   loaded_gain_m_per_n_ = gain_m_per_n, default_gain_m_per_n_ = default_m_per_n;
   loop_period_m_ = period_m, loop_seam_m_ = seam_m;
@@ -356,7 +362,7 @@ Result<ControlFields> Service::load(ForceProgram forces) {
   for (std::size_t i = 0; i < forces.notes.size(); ++i)
     fields.emplace_back(fmt::format("note_{}", i + 1), forces.notes[i]);
   TACTO_TRY(player_->load(std::move(forces)));
-  loaded_ = load_request_.file;
+  loaded_ = full_name(load_request_.file);
   loop_period_m_ = loop_seam_m_ = 0;
   filter_.reset();
   publish_idle_status();

@@ -80,6 +80,7 @@ class Service {
   schema::Result<double> factor_of(const schema::ControlRequest& request) const;
   void add_present_gain(schema::ControlFields& fields, double factor) const;
   std::string resolved(const std::string& file) const;
+  std::string full_name(const std::string& file) const;
   std::string next_session() const;
   PrepareOptions options();
   TickBudget budget() const;

@@ -162,14 +162,18 @@ Result<void> upload(Client& client, const Prepared& prepared) {
   return client.command(wire::Gain{prepared.gain_m_per_n});
 }
 
-Result<void> upload_change(Client& client, const Prepared& prepared, double device_gain_m_per_n,
-                           double fade_s) {
+Result<void> upload_next(Client& client, const Prepared& prepared, double device_gain_m_per_n) {
   const double times = prepared.gain_m_per_n / device_gain_m_per_n;
   if (!std::isfinite(times))
     return fail(ErrorKind::unsuitable, "plays with a gain of 0, to which no texture can be scaled",
                 client.where(), "disarm, and load it again");
   if (auto sent = send_levels(client, prepared, times); !sent) return sent;
-  if (auto sent = send_tracking(client, prepared); !sent) return sent;
+  return send_tracking(client, prepared);
+}
+
+Result<void> upload_change(Client& client, const Prepared& prepared, double device_gain_m_per_n,
+                           double fade_s) {
+  if (auto sent = upload_next(client, prepared, device_gain_m_per_n); !sent) return sent;
   return client.command(wire::Change{static_cast<float>(fade_s)});
 }
 

@@ -21,11 +21,15 @@ schema::Result<void> check_upload(const firmware_host::Client& client, const Pre
 /// Client::command().
 schema::Result<void> upload(firmware_host::Client& client, const Prepared& prepared);
 
-/// Sends another texture to a device that is armed with one by upload(), and starts a cross-fade over fade_s
-/// (0 to 10): levels, samples, full detail. Everything else is unchanged, also the device's gain (m/N, not
+/// Sends another texture to a device that is armed with one by upload(): levels, samples, full detail; it
+/// waits there for a change to it. Everything else is unchanged, also the device's gain (m/N, not
 /// 0), which is common to both: samples are sent times prepared.gain_m_per_n / device_gain_m_per_n.
 /// Precondition: check_texture_change(). Errors: unsuitable, for a device's gain of 0; device, as of
 /// Client::command(); then the current texture continues.
+schema::Result<void> upload_next(firmware_host::Client& client, const Prepared& prepared,
+                                 double device_gain_m_per_n);
+
+/// The same, and starts a cross-fade over fade_s (0 to 10).
 schema::Result<void> upload_change(firmware_host::Client& client, const Prepared& prepared,
                                    double device_gain_m_per_n, double fade_s);
 

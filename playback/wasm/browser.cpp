@@ -16,7 +16,7 @@ constexpr size_t kInputBytes = 65536, kLogBytes = 65536;
 constexpr uint32_t kBlockTicks = 1024;
 
 // Steering commands, by the number that the page uses.
-enum class Steering : uint32_t { arm, play, stop, disarm, gain };
+enum class Steering : uint32_t { arm, play, stop, disarm, gain, change };
 
 struct Device {
   wire::Channel channel;
@@ -88,8 +88,8 @@ core::Hal hal() noexcept {
   return hal;
 }
 
-// Receives the frame in device.frame. True if it is accepted; then it is in the log, if it is a command.
-bool obey(size_t size) noexcept {
+// Receives the frame in device.frame. True if it is accepted; then it is in the log, if it `logs`.
+bool obey(size_t size, bool logs) noexcept {
   const wire::FrameHeader header{wire::kProtocolMajor, device.frame[3],
                                  static_cast<uint16_t>(size - wire::kHeaderSize - wire::kCheckSize),
                                  device.sequence++};
@@ -99,15 +99,15 @@ bool obey(size_t size) noexcept {
   device.answer.code = wire::AnswerCode::unknown_type;
   device.firmware->poll();
   const bool accepted = device.answer.code == wire::AnswerCode::ok;
-  return accepted && (!device.logs || append_to_log(device.frame, device.frame_size));
+  return accepted && (!logs || append_to_log(device.frame, device.frame_size));
 }
 
 template <class Message>
 bool say(const Message& message) noexcept {
-  return obey(wire::encode_frame(message, 0, device.frame, sizeof device.frame));
+  return obey(wire::encode_frame(message, 0, device.frame, sizeof device.frame), device.logs);
 }
 
-bool steer(Steering steering, float gain) noexcept {
+bool steer(Steering steering, float value) noexcept {
   switch (steering) {
     case Steering::arm:
       return say(wire::Arm{wire::DriveSource::profile, 1000 * kRateHz});
@@ -118,7 +118,9 @@ bool steer(Steering steering, float gain) noexcept {
     case Steering::disarm:
       return say(wire::Disarm{});
     case Steering::gain:
-      return say(wire::Gain{gain});
+      return say(wire::Gain{value});
+    case Steering::change:
+      return say(wire::Change{value});
   }
   return false;
 }
@@ -151,26 +153,28 @@ extern "C" {
   return kBlockTicks;
 }
 
-/// Gives the whole frames in the first `size` bytes of the input to the device. Returns the bytes of the
-/// frames that it accepted: fewer than `size` if one was refused or the last one is not whole.
+/// Gives the whole frames in the first `size` bytes of the input to the device: a texture, or while it plays
+/// the next one. They are not in the log, because the server has made them. Returns the bytes of the frames
+/// that it accepted: fewer than `size` if one was refused or the last one is not whole.
 [[clang::export_name("upload")]] uint32_t upload(uint32_t size) {
-  device.logs = false;
+  if (device.firmware->drive_state() == wire::DriveState::idle) device.logs = false;
   uint32_t used = 0;
   wire::FrameHeader header;
   while (size - used >= wire::kHeaderSize && wire::read_header(input_bytes + used, header)) {
     const uint32_t whole = wire::kHeaderSize + header.length + wire::kCheckSize;
     if (header.length > wire::kMaxPayload || whole > size - used) break;
     for (uint32_t i = 0; i < whole; ++i) device.frame[i] = input_bytes[used + i];
-    if (!obey(whole)) break;
+    if (!obey(whole, false)) break;
     used += whole;
   }
   return used;
 }
 
-/// Arms, plays, stops, disarms, or sets the gain (m/N). From arming on there is a log. True if accepted.
-[[clang::export_name("steer")]] bool steer(uint32_t steering, float gain) {
+/// Arms, plays, stops, disarms, sets the gain (m/N), or changes to the next texture (seconds of the fade).
+/// From arming on there is a log. True if accepted.
+[[clang::export_name("steer")]] bool steer(uint32_t steering, float value) {
   device.logs = true;
-  return steer(static_cast<Steering>(steering), gain);
+  return steer(static_cast<Steering>(steering), value);
 }
 
 /// Whether the finger touches. Otherwise the encoder is not read: after 10 ms the drive falls, and at rest

@@ -16,6 +16,8 @@ import sys
 import tempfile
 import time
 
+import netCDF4
+import numpy as np
 from live_client import WebSocket, live
 from run_daemon import Client, daemon, prepare_files
 from tacto import in_folder, run, run_json
@@ -85,7 +87,8 @@ class Browser:
         self.mouse("mouseReleased", *box)
 
     def key(self, key, kinds=("rawKeyDown", "keyUp")):
-        codes = {"ArrowRight": 39, "ArrowLeft": 37, "Home": 36, "End": 35, "Tab": 9, "Enter": 13, "Escape": 27, " ": 32}
+        codes = {"ArrowRight": 39, "ArrowLeft": 37, "Home": 36, "End": 35, "Tab": 9, "Enter": 13, "Escape": 27, " ": 32, "ArrowUp": 38, "ArrowDown": 40,
+                 "a": 65, "b": 66, "+": 187, "0": 48}
         for kind in kinds:
             text = {"Enter": "\r", " ": " "}.get(key) if kind == "rawKeyDown" else None
             self.ask("Input.dispatchKeyEvent", type="keyDown" if text else kind, key=key, windowsVirtualKeyCode=codes[key],
@@ -203,6 +206,91 @@ def check_playing(chrome):
     chrome.wait("document.getElementById('state-word').textContent.startsWith('stopped')")
 
 
+def check_compare(chrome):
+    """A and B by keys while the finger moves; the kept session has both changes."""
+    choose_by_keys(chrome, "C")
+    chrome.value(f"[...document.querySelectorAll('#textures li')].find((i) => i.querySelector('.texture').firstChild.textContent === {json.dumps(ODD_NAME)}).querySelector('.row button').focus()")
+    chrome.key("Enter")
+    chrome.wait("!document.getElementById('side-B').disabled && document.getElementById('compare-words').textContent.includes('RMS')")
+    chrome.value("document.getElementById('equal').focus()")
+    chrome.key(" ")
+    assert chrome.value("document.getElementById('equal').checked") and "its default" in chrome.text("compare-words")  # a copy: equal before
+    chrome.value("document.getElementById('strip').focus()")
+    chrome.key("Home")
+    chrome.wait("Number(document.getElementById('strip').ariaValueNow) < 0.2")
+    chrome.key("ArrowRight", kinds=("rawKeyDown",))
+    for place, key, other in ((2, "b", "a"), (8, "a", "b")):
+        chrome.wait(f"Number(document.getElementById('strip').ariaValueNow) > {place}")
+        chrome.key(key)
+        chrome.wait(f"document.getElementById('side-{key.upper()}').ariaPressed === 'true' && document.getElementById('side-{other.upper()}').ariaPressed === 'false'")
+    chrome.wait("Number(document.getElementById('strip').ariaValueNow) > 14")
+    chrome.key("ArrowRight", kinds=("keyUp",))
+    path = keep(chrome, 0.27 * 16000)  # 0.2 to 14 mm at 50 mm/s
+    words = json.dumps(run_json("session", path)) + pathlib.Path(path).read_bytes().decode("latin-1")
+    assert words.count("texture changed to ") == 2, "both changes"
+    # B at rest: it plays from the next touch on, as the texture of the session.
+    chrome.value("document.getElementById('side-B').focus()")
+    chrome.key("Enter")
+    chrome.wait(f"document.getElementById('strip-title').textContent === {json.dumps(ODD_NAME)}")
+    chrome.value("document.querySelector('#strokes button[data-speed=\"100\"]').click()")
+    chrome.wait("Number(document.getElementById('strip').ariaValueNow) > 30")
+    assert pathlib.Path(keep(chrome, 0.29 * 16000)).name.startswith(ODD_NAME)
+
+
+def check_list(chrome):
+    names = "[...document.querySelectorAll('#textures .texture')].map((b) => b.firstChild.textContent)"
+    chrome.value("document.getElementById('search').focus()")
+    chrome.ask("Input.insertText", text="onerror")
+    chrome.wait(f"{names}.length === 1")
+    assert chrome.value(names) == [ODD_NAME] and chrome.text("count").startswith("1 of 2")
+    chrome.value("document.getElementById('search').select()")
+    chrome.ask("Input.insertText", text="none of them")
+    chrome.wait(f"{names}.length === 0")
+    chrome.value("document.getElementById('search').select()")
+    chrome.ask("Input.insertText", text=" ")
+    chrome.wait(f"{names}.length === 2")
+    # The picture of each is drawn once it is seen.
+    chrome.wait("[...document.querySelectorAll('#textures canvas')].every((c) => c.getContext('2d').getImageData(c.width >> 1, c.height >> 1, 1, 1).data[3] === 255)")
+
+
+def check_explorer(chrome, server):
+    """The number under the cross-hair is that of the verb's file, by keys and by mouse; zoom; an export."""
+    run("spectrogram", "folder/C", "-o", "C.nc")
+    with netCDF4.Dataset("C.nc") as file:
+        density, positions, frequencies = (np.array(file[name]) for name in ("density", "position", "spatial_frequency"))
+    index = next(row["index"] for row in server.json("/textures")["textures"] if row["name"] == "C")
+    chrome.ask("Page.navigate", url=f"{server.address.split('?')[0]}explorer.html#{index}")
+    chrome.wait("document.getElementById('cell')?.textContent.startsWith('position')")
+
+    def cell():
+        words = chrome.text("cell")
+        at = (np.abs(positions - float(words.split()[1])).argmin(), np.abs(frequencies - float(words.split("frequency ")[1].split()[0])).argmin())
+        assert np.float32(words.split(" N2 mm")[0].split()[-1]) == density[at], (words, density[at])
+        return at
+
+    first = cell()
+    chrome.value("document.getElementById('plot').focus()")
+    for key, step in (("ArrowRight", (1, 0)), ("ArrowUp", (0, 1)), ("ArrowLeft", (-1, 0))):
+        before = cell()
+        chrome.key(key)
+        assert np.array_equal(np.subtract(cell(), before), step), key
+    x, y = chrome.value("(() => { const r = document.getElementById('plot').getBoundingClientRect(); return [r.x + 0.4 * r.width, r.y + 0.3 * r.height]; })()")
+    chrome.ask("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+    assert cell() != first
+    view = "['from', 'to', 'low', 'high'].map((id) => Number(document.getElementById(id).value))"
+    whole = chrome.value(view)
+    chrome.key("+")
+    part = chrome.value(view)
+    assert part[0] >= whole[0] and part[1] - part[0] < 0.6 * (whole[1] - whole[0]) and part[3] - part[2] < whole[3] - whole[2], part
+    chrome.key("0")
+    assert chrome.value(view) == whole
+    check_names(chrome)
+    check_looks(chrome)
+    press(chrome, "part")
+    chrome.value("document.querySelector('#exports button[data-form=\"png\"]').click()")
+    chrome.wait("document.getElementById('exported').textContent === 'C.png: all'")
+
+
 def check_without_sound(chrome):
     """Without AudioContext the engine runs on a timer, and the page says so."""
     script = chrome.ask("Page.addScriptToEvaluateOnNewDocument", source="delete window.AudioContext")["identifier"]
@@ -224,14 +312,14 @@ def check_names(chrome):
     # Everything is reached by Tab, and the focus is visible.
     chrome.value("document.activeElement.blur()")
     seen = set()
-    for _ in range(60):
+    for _ in range(100):
         chrome.key("Tab")
-        where, outline = chrome.value("[document.activeElement.id || document.activeElement.textContent, parseFloat(getComputedStyle(document.activeElement).outlineWidth)]")
+        where, outline = chrome.value("[document.activeElement.id || document.activeElement.ariaLabel || document.activeElement.textContent, parseFloat(getComputedStyle(document.activeElement).outlineWidth)]")
         if where in seen:
             break
         seen.add(where)
         assert outline >= 2, where
-    reachable = chrome.value("[...document.querySelectorAll('button, input, select, [tabindex=\"0\"], summary')].filter((e) => !e.disabled).map((e) => e.id || e.textContent)")
+    reachable = chrome.value("[...document.querySelectorAll('button, input, select, [tabindex=\"0\"], summary')].filter((e) => !e.disabled).map((e) => e.id || e.ariaLabel || e.textContent)")
     assert set(reachable) <= seen, set(reachable) - seen
 
 
@@ -337,15 +425,24 @@ def live_in_chromium():
     with live("folder") as server, browser(server.address) as chrome:
         assert chrome.value("location.search") == "", "the token stays out of the address"
         check_playing(chrome)
+        check_compare(chrome)
+        check_list(chrome)
         check_names(chrome)
         check_looks(chrome)
         check_without_sound(chrome)
+        check_explorer(chrome, server)
         assert chrome.console == [], chrome.console
     prepare_files()
     with live(".", "--socket", "control") as server, browser(server.address) as chrome:
         check_device(chrome, server)
         check_fault(chrome, server)
         assert chrome.console == [], chrome.console
+
+
+def take_pictures(chrome, folder, name):
+    for width in (1300, 400):
+        for dark in (False, True):
+            chrome.picture(folder / f"{name}-{width}-{'dark' if dark else 'light'}.png", width, dark)
 
 
 def pictures(folder):
@@ -355,17 +452,16 @@ def pictures(folder):
         stroke_by_mouse(chrome)
         chrome.value("document.querySelector('#strokes button[data-speed=\"20\"]').click()")
         time.sleep(1)
-        for width in (1300, 400):
-            for dark in (False, True):
-                chrome.picture(folder / f"live-{width}-{'dark' if dark else 'light'}.png", width, dark)
+        take_pictures(chrome, folder, "live")
+        chrome.ask("Page.navigate", url=server.address.split("?")[0] + "explorer.html#2")
+        chrome.wait("document.getElementById('cell')?.textContent.startsWith('position')")
+        take_pictures(chrome, folder, "live-explorer")
     prepare_files()
     on_host = {"loop": "host", "device": "sim:rate=2kHz", "most_late_percent": 100}
     with live(".", "--socket", "control") as server, browser(server.address) as chrome, device_page(chrome, server, STROKES, **on_host):
         play_on_device(chrome)
         time.sleep(2)
-        for width in (1300, 400):
-            for dark in (False, True):
-                chrome.picture(folder / f"live-device-{width}-{'dark' if dark else 'light'}.png", width, dark)
+        take_pictures(chrome, folder, "live-device")
 
 
 if __name__ == "__main__":

@@ -161,13 +161,15 @@ def one_page_steers(server):
 
 def a_page_that_played_leaves_the_device_armed(server):
     client = Client()
-    client.must(request="load", file="oak")
+    client.must(request="load", file="oak")  # relative to the daemon's folder
+    assert client.must(request="status")["loaded"] == str(pathlib.Path("oak").resolve())
     client.must(request="arm")
     page = Page(server)
     page.event("steering", lambda event: event["here"])
     page.event("daemon", lambda event: event["here"])
     page.must("play")
     page.event("state", lambda event: event["state"] == "playing")
+    assert len(server.ask("/loaded").body) == 2000 * 2 * 4
     page.close()
     wait_until(client, lambda status: status["state"] == "armed")
     client.must(request="disarm")

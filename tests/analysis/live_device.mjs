@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs the page's own modules (beside this file) without a browser: the device under random programs of the finger.
-// Arguments: core.wasm, upload, tray, seed, seconds, kind, output. Kinds: "" writes the log of the wire; "fault" too, with
-// a jump of the encoder at its end; "tone" and "velocity" write the sound (float32) of strokes at 50 and 100 mm/s.
+// Arguments: core.wasm, upload, tray, seed, seconds, kind, output, and a JSON list of changes {frames (a file), note}.
+// Kinds: "" writes the log of the wire; "fault" too, with a jump of the encoder at its end; "change" too, with changes of
+// the texture, and OUTPUT.changes: a list of {at (the byte of the log), note}; "tone" and "velocity" write the sound
+// (float32) of strokes at 50 and 100 mm/s, with the first change between them if there is one.
 import {readFileSync, writeFileSync} from 'node:fs';
 import {Core, METRES_PER_COUNT, RATE_HZ} from './core.js';
 import {Engine} from './engine.js';
 import {FOLLOWER_HZ, Finger} from './finger.js';
 
-const [wasm, upload, tray, seed, seconds, kind, output] = process.argv.slice(2);
+const [wasm, upload, tray, seed, seconds, kind, output, list] = process.argv.slice(2);
 const module = new WebAssembly.Module(readFileSync(wasm));
 
 let state = Number(seed);
@@ -25,11 +27,15 @@ function check(holds, what) {
   process.exit(1);
 }
 
-const log = [];
+const changes = list ? JSON.parse(readFileSync(list, 'utf8')).map(({frames, note}) => (
+  {what: 'change', upload: new Uint8Array(readFileSync(frames)), fade_s: 0.05, note})) : [];
+
+const log = [], changed = [];
 let seen = {};
 const engine = new Engine(module, (report) => {
   seen = {...seen, ...report};
   if (report.log) log.push(report.log);
+  if (report.what === 'changed' && report.accepted) changed.push({at: log.reduce((sum, part) => sum + part.length, 0), note: report.note});
 });
 const frames = new Uint8Array(readFileSync(upload)), taps = readFileSync(tray);
 engine.obey({what: 'texture', upload: frames, tray: new Float32Array(taps.buffer, taps.byteOffset, taps.length / 4), full_m: 1e-5});
@@ -45,6 +51,8 @@ if (kind === 'tone' || kind === 'velocity') {
       engine.advance(64);
       sounds.push(...engine.sounds.subarray(0, 64));
     }
+    if (changes.length > 0) engine.obey(changes[0]);
+    for (let ticks = 0; ticks < 0.1 * RATE_HZ; ticks += 64) engine.advance(64);
   }
   writeFileSync(output, new Uint8Array(Float32Array.from(sounds).buffer));
   process.exit(0);
@@ -63,6 +71,7 @@ function advance(ticks) {
   time_s += ticks / RATE_HZ;
 }
 function act() {
+  if (kind === 'change') engine.obey(changes[Math.floor(random() * changes.length)]);
   const choice = Math.floor(random() * 7);
   if (choice !== 6) pointer = null;
   if (choice === 0) engine.obey({what: 'stroke', velocity_mps: between(0.02, 0.1), from_m: 0, end_m: LENGTH_M});
@@ -132,4 +141,6 @@ check(engine.core.takeLog().length === 0, 'everything is in the log');
   check(Math.abs(METRES_PER_COUNT - 1e-6) < 1e-15 && new Core(module).state === 'idle', 'a new device is idle');
 }
 
+check(kind !== 'change' || changed.length > 5, 'the texture has changed several times');
 writeFileSync(output, Buffer.concat(log));
+writeFileSync(`${output}.changes`, JSON.stringify(changed));

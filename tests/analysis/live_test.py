@@ -12,6 +12,7 @@ import struct
 import subprocess
 import sys
 
+import netCDF4
 import numpy as np
 import scipy.signal
 import soundfile
@@ -31,6 +32,7 @@ def make_textures():
     side = json.loads(pathlib.Path("folder/C.texture.json").read_text())
     pathlib.Path(f"folder/{ODD_NAME}.texture.json").write_text(json.dumps(side))
     pathlib.Path("folder/broken.texture.json").write_text("{")
+    pathlib.Path("folder/alone.texture.wav").write_bytes(b"RIFF")
     # A sine of 1 mm and 5 mN.
     wav = pathlib.Path("folder/sine.texture.wav")
     soundfile.write(wav, 0.005 * np.sin(2 * np.pi * np.arange(side["data"]["samples"]) / 1000), 1_000_000, subtype="FLOAT")
@@ -57,6 +59,9 @@ def check_access(server):
     for path in ("/../../etc/passwd", "/..%2f..%2fetc/passwd", "/etc/passwd", "/folder/C.texture.json", "/texture/x", "/texture/0/wav", "/texture/", "/upload/0", "/session"):
         assert server.ask(path).status == 404, path
     assert server.ask("/texture/999").status == 404
+    for size, status in ((256, 404), (257, 414), (5000, 414), (30_000, 414)):
+        assert server.ask("/" + (size - 1) * "a").status == status, size
+    assert server.ask("/" + 5000 * "a", cookie=False).status == 401
 
 
 def check_headers(server):
@@ -76,8 +81,8 @@ def check_headers(server):
 
 def check_textures(server):
     rows = {row["name"]: row for row in server.json("/textures")["textures"]}
-    assert set(rows) == {"C", ODD_NAME, "broken", "sine"}, rows
-    assert "reason" in rows["broken"] and abs(rows["C"]["length_m"] - 0.035) < 0.002, rows
+    assert set(rows) == {"C", ODD_NAME, "alone", "broken", "sine"}, rows
+    assert "reason" in rows["broken"] and "reason" in rows["alone"] and abs(rows["C"]["length_m"] - 0.035) < 0.002, rows
     figures = server.json(f"/texture/{rows['C']['index']}")
     assert figures["rate_hz"] == 16000 and figures["gain_m_per_n"] > 0 and figures["transducer"] == "wiertlewski2011", figures
     bad = server.ask(f"/texture/{rows['broken']['index']}")
@@ -86,9 +91,34 @@ def check_textures(server):
     values = struct.unpack(f"<{len(map_) // 4}f", map_)
     assert len(values) == 4000 and all(least <= most for least, most in zip(values[::2], values[1::2]))
     check_tray(np.frombuffer(server.ask(f"/tray/{figures['made']}").body, "<f4"))
+    check_list(server, rows)
     odd = server.json(f"/texture/{rows[ODD_NAME]['index']}")
     assert odd["made"] != figures["made"] and odd["name"] == ODD_NAME
     return figures["made"], odd["made"]
+
+
+def check_list(server, rows):
+    sine = rows["sine"]
+    assert abs(sine["rms"] / (0.005 / np.sqrt(2)) - 1) < 1e-3 and sine["unit"] == "N" and sine["surface"] == rows["C"]["surface"], sine
+    assert abs(sine["changed_s"] - pathlib.Path("folder/sine.texture.json").stat().st_mtime) < 1e-3, sine
+    small = np.frombuffer(server.ask(f"/thumbnail/{sine['index']}").body, "<f4").reshape(-1, 2)
+    assert len(small) == 96 and np.all(small[:, 0] <= small[:, 1]) and abs(small.max() / 0.005 - 1) < 1e-3
+    assert server.ask(f"/thumbnail/{rows['broken']['index']}").status == 404 and server.ask("/thumbnail/99").status == 404
+    # A file that changes is read again, one that is removed is not listed any more; the others keep their index.
+    broken = pathlib.Path("folder/broken.texture.json")
+    broken.write_text(pathlib.Path("folder/sine.texture.json").read_text())
+    again = {row["name"]: row for row in server.json("/textures")["textures"]}
+    assert again["broken"]["rms"] == sine["rms"] and "reason" not in again["broken"] and again["sine"] == sine, again
+    broken.unlink()
+    assert "broken" not in {row["name"] for row in server.json("/textures")["textures"]}
+    broken.write_text("{")
+    assert {row["name"]: row["index"] for row in server.json("/textures")["textures"]} == {name: row["index"] for name, row in rows.items()}
+
+
+def check_changes(server, made, odd_made):
+    assert server.ask(f"/change/{odd_made}/{made}/1").body != server.ask(f"/change/{odd_made}/{made}/0.5").body
+    for path in (f"{made}/{made}", f"{made}/{made}/1/", f"{made}/{made}/nan", f"{made}/{made}/1e9", f"{made}/-1/1", f"999/{made}/1", f"{made}/999/1", "", "x"):
+        assert server.ask(f"/change/{path}").status == 404, path
 
 
 def check_tray(taps):
@@ -121,6 +151,10 @@ def check_protocol(server, made):
         assert answer["ok"] is False and answer["error"]["fault"] == 3, (text, answer)
     assert page.ask(request="begin", made=999)["error"]["fault"] == 2
     assert page.ask(request="keep")["error"]["fault"] == 4
+    assert page.ask(request="change", made=made, playing=made, times=1)["error"]["fault"] == 4
+    assert page.ask(request="change", made=999, playing=made, times=1)["error"]["fault"] == 2
+    for lacking in ({"made": made, "playing": made}, {"made": made, "times": 1}, {"made": made, "playing": made, "times": 1e7}):
+        assert page.ask(request="change", **lacking)["error"]["fault"] == 3, lacking
     assert page.ask(request="begin", made=made)["ok"]
     assert page.ask(request="keep")["error"]["fault"] == 4  # no tick
     page.ask(request="begin", made=made)
@@ -137,27 +171,38 @@ def check_protocol(server, made):
 def fetch_page(server):
     """The modules that the page runs, for node."""
     pathlib.Path("page").mkdir(exist_ok=True)
-    for name in ("core.js", "engine.js", "finger.js", "core.wasm"):
+    for name in ("cells.js", "compare.js", "core.js", "engine.js", "finger.js", "library.js", "strip.js", "core.wasm"):
         pathlib.Path("page", name).write_bytes(server.ask("/" + name).body)
     pathlib.Path("page/package.json").write_text('{"type": "module"}')
-    shutil.copy(HERE / "live_device.mjs", "page")
+    for script in ("live_device.mjs", "live_pages.mjs"):
+        shutil.copy(HERE / script, "page")
 
 
-def device_log(server, made, seed, seconds, fault=""):
+def device_log(server, made, seed, seconds, kind="", changes=()):
+    """`changes`: (number of another prepared texture, factor of its samples)."""
     for part in ("upload", "tray"):
         pathlib.Path(part).write_bytes(server.ask(f"/{part}/{made}").body)
-    done = subprocess.run(["node", "page/live_device.mjs", "page/core.wasm", "upload", "tray", str(seed), str(seconds), fault, "log"],
+    rows = []
+    for i, (other, times) in enumerate(changes):
+        pathlib.Path(f"change{i}").write_bytes(server.ask(f"/change/{other}/{made}/{times}").body)
+        rows.append({"frames": f"change{i}", "note": {"made": other, "playing": made, "times": times}})
+    pathlib.Path("changes.json").write_text(json.dumps(rows))
+    done = subprocess.run(["node", "page/live_device.mjs", "page/core.wasm", "upload", "tray", str(seed), str(seconds), kind, "log", "changes.json"],
                           capture_output=True, timeout=300)
     assert done.returncode == 0, done.stderr.decode()
     print(f"seed {seed}: {done.stderr.decode().strip()}")
     return pathlib.Path("log").read_bytes()
 
 
-def kept(server, made, log):
+def kept(server, made, log, changes=()):
     page = server.page()
     assert page.ask(request="begin", made=made)["ok"]
-    for at in range(0, len(log), 5000):
-        page.send(log[at:at + 5000])
+    ends = [*(change["at"] for change in changes), len(log)]
+    for begin, end, change in zip([0, *ends], ends, [*changes, None]):
+        for at in range(begin, end, 5000):
+            page.send(log[at:min(at + 5000, end)])
+        if change:
+            assert page.ask(request="change", **change["note"])["ok"]
     answer = page.ask(request="keep")
     if answer.get("event") == "fault":
         assert answer["what"] and answer["remedy"], answer
@@ -166,8 +211,64 @@ def kept(server, made, log):
     return answer
 
 
+def check_spectrogram(server):
+    """The cells are those of the verb's file, the page says the same number, and exports are the verb's files."""
+    index = next(row["index"] for row in server.json("/textures")["textures"] if row["name"] == "C")
+    about = server.json(f"/spectrogram/{index}")
+    number = about["made"]
+    run("spectrogram", "folder/C", *(part for form in ("nc", "png", "svg", "csv") for part in ("-o", f"C.{form}")))
+    with netCDF4.Dataset("C.nc") as file:
+        density, positions = np.array(file["density"]), np.array(file["position"])
+        frequencies, known = np.array(file["spatial_frequency"]), np.array([file["known_from"], file["known_to"]]).T
+        assert file["density"].units == about["cell_unit"], about
+    for part in ("cells", "known"):
+        pathlib.Path(part).write_bytes(server.ask(f"/{part}/{number}").body)
+    cells = np.fromfile("cells", "<f4").reshape(about["rows"], about["bins"])
+    assert np.array_equal(cells, density)
+    assert np.allclose(1e3 * (about["first_position_m"] + about["hop_m"] * np.arange(about["rows"])), positions, rtol=0, atol=1e-9)
+    assert np.allclose(1e-3 * about["frequency_step_per_m"] * np.arange(about["bins"]), frequencies, rtol=1e-12, atol=0)
+    assert np.allclose(1e-3 * np.fromfile("known", "<f4").reshape(-1, 2), known, rtol=1e-6, atol=0)  # float32
+    # Hover a cell: the same number.
+    draw = np.random.default_rng(34)
+    places = np.stack([draw.uniform(0, 0.035, 50), draw.uniform(0, 15e3, 50)], 1)
+    pathlib.Path("hover.json").write_text(json.dumps({"about": about, "cells": "cells", "known": "known", "places": places.tolist()}))
+    said = subprocess.run(["node", "page/live_pages.mjs", "hover.json"], capture_output=True, text=True, timeout=60)
+    assert said.returncode == 0, said.stderr
+    for (position_m, per_m), words in zip(places, json.loads(said.stdout)):
+        cell = np.abs(positions - 1e3 * position_m).argmin(), np.abs(frequencies - 1e-3 * per_m).argmin()
+        assert np.float32(words.split("; ")[-2 if "not measured" in words else -1].split()[0]) == density[cell], (words, density[cell])
+    check_exports(server, number, density, positions, frequencies)
+
+
+def check_exports(server, number, density, positions, frequencies):
+    for form in ("nc", "png", "svg", "csv"):
+        assert server.ask(f"/export/{number}/{form}?range_db=60").body == pathlib.Path(f"C.{form}").read_bytes(), form
+    run("spectrogram", "folder/C", "-o", "other.png", "--formants", "--dynamic-range", "40dB", "--min-frequency", "0.2/mm")
+    answer = server.ask(f"/export/{number}/png?range_db=40&formants=1&low_per_m=200")
+    assert answer.body == pathlib.Path("other.png").read_bytes() and answer.headers["content-disposition"] == "attachment"
+    # A selection: the same cells, fewer of them.
+    selection = "from_m=0.0101&to_m=0.02&high_per_m=2000"
+    rows, bins = (positions >= 10.1 - 1e-9) & (positions <= 20 + 1e-9), frequencies <= 2 + 1e-9
+    pathlib.Path("part.nc").write_bytes(server.ask(f"/export/{number}/nc?{selection}").body)
+    with netCDF4.Dataset("part.nc") as file:
+        assert np.array_equal(np.array(file["density"]), density[rows][:, bins]) and np.array_equal(np.array(file["position"]), positions[rows])
+    run("validate", "part.nc")
+    table = server.ask(f"/export/{number}/csv?{selection}").body.decode().splitlines()
+    assert len(table) == 1 + rows.sum() and len(table[1].split(",")) == 3 + bins.sum()
+    picture = server.ask(f"/export/{number}/png?{selection}&low_per_m=100").body
+    assert picture.startswith(b"\x89PNG") and picture != pathlib.Path("C.png").read_bytes()
+    for query, status, fault in (("from_m=1", 422, 4), ("from_m=0.02&to_m=0.01", 422, 4), ("from_m=x", 422, 1), ("from_m=nan", 422, 1), ("path=1", 422, 1),
+                                 ("range_db=-1", 422, 1), ("low_per_m=9000&high_per_m=9001", 422, 4), ("range_db", 422, 1)):
+        refused = server.ask(f"/export/{number}/png?{query}")
+        assert refused.status == status and json.loads(refused.body)["error"]["fault"] == fault, (query, refused.body)
+    for path in (f"{number}/wav", f"{number}/", f"{number}", "99/png", "x/png", f"{number}/../png"):
+        assert server.ask(f"/export/{path}").status == 404, path
+    assert server.ask("/spectrogram/99").status == 404 and server.ask("/cells/99").status == 404
+    broken = next(row["index"] for row in server.json("/textures")["textures"] if row["name"] == "broken")
+    assert server.ask(f"/spectrogram/{broken}").status == 422
+
+
 def check_bits(server, made, odd_made):
-    fetch_page(server)
     for seed, which, fault in ((1, made, ""), (2, odd_made, ""), (3, made, "fault")):
         log = device_log(server, which, seed, 6, fault)
         answer = kept(server, which, log)
@@ -177,6 +278,14 @@ def check_bits(server, made, odd_made):
         run("validate", answer["kept"])
         info = run_json("info", answer["kept"])
         assert "simulated" in json.dumps(info) and "browser" in json.dumps(info), info
+    # The texture changes while it plays, with a factor of its samples.
+    change_log = device_log(server, made, 4, 6, "change", [(odd_made, 0.25), (made, 1), (odd_made, -1.3)])
+    changes = json.loads(pathlib.Path("log.changes").read_text())
+    answer = kept(server, made, change_log, changes)
+    report = run_json("replay", answer["kept"])
+    assert report["same_to_the_bit"] and report["ticks_compared"] == answer["ticks"] > 90_000, report
+    wrong = [{**change, "note": {**change["note"], "times": 0.26}} for change in changes]
+    assert not run_json("replay", kept(server, made, change_log, wrong)["kept"], code=5)["same_to_the_bit"]
     # One bit of one drive: the comparison is able to fail. The frame's check has to be right again.
     frame = log.rfind(b"\xa5\x54\x01\x86", 0, len(log) // 2)
     length = struct.unpack_from("<H", log, frame + 4)[0]
@@ -194,15 +303,15 @@ def check_sound(server):
     """The whole chain against a closed form: 5 um at 50 and 100 Hz, and as velocity times f / 200 Hz."""
     index = next(row["index"] for row in server.json("/textures")["textures"] if row["name"] == "sine")
     made = server.json(f"/texture/{index}")["made"]
-    for kind in ("tone", "velocity"):
-        sounds = np.frombuffer(device_log(server, made, 1, 1, kind), "<f4").reshape(2, -1)
-        for part, hz in zip(sounds, (50, 100)):
+    for kind, changes in (("tone", ()), ("velocity", ()), ("tone", [(made, 0.5)])):
+        sounds = np.frombuffer(device_log(server, made, 1, 1, kind, changes), "<f4").reshape(2, -1)
+        for part, hz, times in zip(sounds, (50, 100), (1, changes[0][1] if changes else 1)):
             steady = part[int(0.16 * 16000):int(0.3 * 16000)]  # whole periods
             t = np.arange(len(steady)) / 16000
             amplitude = 2 * abs(np.mean(steady * np.exp(-2j * np.pi * hz * t)))
             # 5 um of full 10 um, through the Butterworth filters of 15 and 500 Hz.
             filters = 1 / np.sqrt((1 + (15 / hz) ** 4) * (1 + (hz / 500) ** 4))
-            expected = 0.5 * filters * (hz / 200 if kind == "velocity" else 1)
+            expected = times * 0.5 * filters * (hz / 200 if kind == "velocity" else 1)
             # The onset of 20 ms through the high-pass has decayed to exp(-2 pi 15 0.71 0.14) = 1e-4; the inverse's error
             # is -72 dB, that of the modelled tray 1e-4.
             assert abs(amplitude / expected - 1) < 1e-3, (kind, hz, amplitude, expected)
@@ -253,6 +362,9 @@ def live_page():
         check_headers(server)
         made, odd_made = check_textures(server)
         check_protocol(server, made)
+        check_changes(server, made, odd_made)
+        fetch_page(server)
+        check_spectrogram(server)
         check_bits(server, made, odd_made)
         check_sound(server)
     assert not [path for path in pathlib.Path("folder").iterdir() if path.name.startswith(".")], "temporary files stay"

@@ -3,7 +3,7 @@
 
 export const RATE_HZ = 16000;
 export const METRES_PER_COUNT = 1e-6;
-const STEERING = {arm: 0, play: 1, stop: 2, disarm: 3, gain: 4};
+const STEERING = {arm: 0, play: 1, stop: 2, disarm: 3, gain: 4, change: 5};
 export const STATES = ['idle', 'armed', 'playing', 'fault'];
 
 export class Core {
@@ -22,20 +22,26 @@ export class Core {
    * @param {Uint8Array} frames */
   upload(frames) {
     for (let at = 0; at < frames.length;) {
-      const part = frames.subarray(at, at + this.input.length);
-      this.input.set(part);
-      const used = this.device.upload(part.length);
+      const used = this.uploadPart(frames, at);
       if (used === 0) return false;
       at += used;
     }
     return true;
   }
 
+  /** The same for the first whole frames from `at` on, of `most` bytes together; returns their bytes, 0 if one is refused.
+   * @param {Uint8Array} frames */
+  uploadPart(frames, at, most = this.input.length) {
+    const part = frames.subarray(at, at + most);
+    this.input.set(part);
+    return this.device.upload(part.length);
+  }
+
   /** False if the device refuses it.
-   * @param {'arm'|'play'|'stop'|'disarm'|'gain'} what
-   * @param {number} [gain_m_per_n] */
-  steer(what, gain_m_per_n = 0) {
-    return this.device.steer(STEERING[what], gain_m_per_n) !== 0;
+   * @param {'arm'|'play'|'stop'|'disarm'|'gain'|'change'} what
+   * @param {number} [value] of gain: m/N; of change: seconds of the fade */
+  steer(what, value = 0) {
+    return this.device.steer(STEERING[what], value) !== 0;
   }
 
   /** Ticks at the first `ticks` counts; then `drives` has the drive of each, in volts. */

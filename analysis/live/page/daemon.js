@@ -2,13 +2,14 @@
 // The page of the device: shows what tactographd does, and steers it.
 
 import {css, drawFinger, drawMap, sized, Trace} from './strip.js';
-import {CELL_S, Cells, contactWords, decodeTicks, lateRows, limitWords, roundUp, Spectrum, SPECTRUM_LENGTH, stateOf} from './ticks.js';
+import {CELL_S, Cells, contactWords, decodeTicks, gainWords, lateRows, limitWords, placeWords, roundUp, Spectrum, SPECTRUM_LENGTH, Speeds, stateOf} from './ticks.js';
 
 const RECONNECT_MS = 500;
 const BEAT_MS = 400;             // the daemon stops the drive after 2 s without a word of the page that armed
 const LONGEST_SHOWN_S = 10;
 const CALM_MS = 250;             // between figures; with prefers-reduced-motion also between pictures
 const SPECTRUM_DB = 60;          // of the picture
+const SETTLES_MS = 500;
 
 const at = (id) => document.getElementById(id);
 const calm = matchMedia('(prefers-reduced-motion: reduce)');
@@ -17,9 +18,10 @@ const gain = at('gain');
 
 let socket = null, server = false;
 let daemon = null, status = {}, steering = {here: false, taken: false};  // the newest events
-let cells = new Cells(), spectrum = new Spectrum(), last = null;  // last: the newest tick
+let cells = new Cells(), spectrum = new Spectrum(), speeds = new Speeds(), last = null;  // last: the newest tick
 let step = 1, m_per_count = null, missed = 0;
 let map = null, mapOf = null, seen = {from_m: 0, to_m: 0};
+let shown = 'lost';                // the state in one word
 let held = [];                   // cells of a pause
 let heard_ms = 0, beat_ms = 0, worded_ms = 0, mapDrawn = false, paused = false;
 let numbers = 0, waiting = new Map();  // requests without an answer, by id
@@ -45,7 +47,17 @@ function forget(why) {
   waiting = new Map();
   steering = {here: false, taken: false};
   status = {};
+  last = map = mapOf = mine = null;
+  missed = 0;
+  cells = new Cells();
+  spectrum = new Spectrum();
+  speeds = new Speeds();
+  trace.clear(1);
+  held = [];
+  mapDrawn = false;
+  put('map-hint', '');
   show();
+  showFigures();  // also in a pause
 }
 
 /** The daemon's answer; fails with its error's text. */
@@ -94,9 +106,13 @@ function hearDaemon(message) {
 function hearStatus(message) {
   if (message.loaded !== status.loaded || message.length_m !== status.length_m || message.start_m !== status.start_m) mapDrawn = false;
   status = message;
-  if (Math.abs(status.encoder_count) >= 1000) m_per_count = status.position_m / status.encoder_count;
+  if (Math.abs(status.encoder_count) >= 1000 && !withForces()) m_per_count = status.position_m / status.encoder_count;
   if (mapOf !== (status.loaded ?? '')) fetchMap();
-  if (!adjusting && document.activeElement !== gain && status.gain_times_default !== undefined) gain.value = status.gain_times_default;
+  speeds.take(status.device_s, status.speed_mps);
+  // A status that was on its way with the answer may still have the gain before it.
+  if (adjusting || performance.now() - adjusted_ms < SETTLES_MS) return;
+  if (mine !== null && status.gain_times_default !== mine.effective) mine = null;  // another client has set it since
+  if (status.gain_times_default !== undefined) gain.value = status.gain_times_default;
 }
 
 function hearTicks(message) {
@@ -144,7 +160,8 @@ function stop() {
   if (status.state === 'armed' || status.state === 'playing') request('stop');
 }
 
-let wanted = null, adjusting = false;
+let wanted = null, adjusting = false, adjusted_ms = -Infinity;
+let mine = null;                 // {asked, effective}: the gain, if this page has set it
 async function adjust() {
   wanted = Number(gain.value);
   showGain();
@@ -154,29 +171,36 @@ async function adjust() {
     const asked = wanted;
     wanted = null;
     const answer = await request('gain', {times_default: asked});
-    if (answer !== null) status = {...status, gain_times_default: answer.gain_times_default, gain_m_per_n: answer.gain_m_per_n};
+    if (answer === null) continue;
+    status = {...status, gain_times_default: answer.gain_times_default, gain_m_per_n: answer.gain_m_per_n};
+    mine = {asked, effective: answer.gain_times_default};
+    adjusted_ms = performance.now();
   }
   adjusting = false;
   showGain();
 }
 
 // Words.
+const withForces = () => status.x_m !== undefined;  // then the pictures show the magnitude of the force
+
 function showGain() {
   const {gain_times_default: effective, gain_m_per_n} = status;
-  const words = effective === undefined ? 'no gain: load a texture'
-      : `asked ${Number(gain.value).toFixed(2)}, effective ${effective.toFixed(2)} (${(1e3 * gain_m_per_n).toFixed(3)} mm/N)`;
-  put('gain-words', words);
+  put('gain-words', gainWords({forces: withForces(), asked: wanted ?? mine?.asked, effective, gain_m_per_n}));
 }
 
 function show() {
   const silent_ms = performance.now() - heard_ms;
   const {state, words} = stateOf({server, daemon, state: status.state, silent_ms});
   const loaded = status.loaded !== undefined, here = state !== 'lost';
-  at('state').dataset.state = state;
+  at('state').dataset.state = shown = state;
   put('state-word', words);
   put('fault', state === 'fault' && status.fault ? `fault: ${status.fault}` : '');
-  if (daemon?.here) put('device', `${daemon.device_name}, ${daemon.device}${daemon.device.startsWith('sim:') ? ' (simulated)' : ''}`);
+  if (!daemon?.here) put('device', 'The device of the daemon');
+  else put('device', `${daemon.device_name}, ${daemon.device}${daemon.device.startsWith('sim:') ? ' (simulated)' : ''}`);
   put('loaded', loaded ? status.loaded.replace(/^.*\//, '').replace(/\.(texture|scene)\.json$/, '') : 'No texture is loaded');
+  const force = withForces();
+  put('trace-title', force ? 'Force' : 'Drive');
+  put('spectrum-title', force ? 'Spectrum of the force on the hand' : 'Spectrum of the drive under the finger');
   put('steers', !here ? 'Nothing can be steered.' : steering.taken ? 'Another page steers; this one watches, and can stop.' : 'This page steers the daemon.');
   at('steer').hidden = !steering.taken;
   const may = {steer: steering.taken, load: at('texture').value !== '' && state !== 'fault', arm: state === 'idle' && loaded,
@@ -187,9 +211,14 @@ function show() {
 }
 
 function showFigures() {
-  const place = `finger at ${mm(placeOf())}, ${(1e3 * (status.speed_mps ?? 0)).toFixed(0)} mm/s; drive ${(status.drive_v ?? 0).toFixed(2)} V, RMS ${(status.drive_rms_v ?? 0).toFixed(2)} V, peak ${(status.drive_peak_v ?? 0).toFixed(2)} V`;
-  put('place', status.ticks > 0 ? place : 'no ticks yet');
-  at('strip').setAttribute('aria-label', `Finger on the texture: ${status.ticks > 0 ? place : 'no ticks yet'}`);
+  const lost = shown === 'lost', place = lost ? '–' : status.ticks > 0 ? placeWords(status, placeOf()) : 'no ticks yet';
+  put('place', place);
+  at('strip').setAttribute('aria-label', `${withForces() ? 'Hand along x' : 'Finger on the texture'}: ${lost ? 'lost' : place}`);
+  if (lost) {
+    for (const id of ['contact', 'limits', 'ticks', 'session', 'latency', 'trace-words', 'spectrum-words']) put(id, '–');
+    at('late').hidden = true;
+    return;
+  }
   put('contact', last === null ? '–' : contactWords(last.flags));
   put('limits', limitWords(status, last?.flags ?? 0));
   const count = (name) => status[name] ?? 0;
@@ -221,10 +250,10 @@ function showLate() {
 }
 
 // Pictures.
-const unit = () => (status.x_m === undefined ? 'V' : 'N');  // of a device with forces: the magnitude of the force
+const unit = () => (withForces() ? 'N' : 'V');
 
 function placeOf() {
-  const place_m = status.position_m ?? 0;
+  const place_m = status.position_m ?? status.x_m ?? 0;
   return last === null || m_per_count === null ? place_m : place_m + (last.count - status.encoder_count) * m_per_count;
 }
 
@@ -250,7 +279,7 @@ function drawSpectrum() {
     const level = Math.max(0, 1 + 20 * Math.log10(Math.max(values[k], 1e-9) / top) / SPECTRUM_DB);
     ink.fillRect(k / shown * width, height * (1 - level), Math.max(1, width / shown - 0.5), height * level);
   }
-  const speed = Math.abs(status.speed_mps ?? 0), period = speed > 1e-3 ? `, at this speed a period of ${mm(speed / (peak * hz))}` : '';
+  const speed = speeds.steady(1 / hz), period = speed > 1e-3 ? `, at this speed a period of ${mm(speed / (peak * hz))}` : '';
   const largest = values[peak] > 1e-3 ? `largest: ${values[peak].toFixed(3)} ${unit()} at ${(peak * hz).toFixed(0)} Hz${period}; ` : '';
   put('spectrum-words', `${largest}0 to ${(shown * hz).toFixed(0)} Hz, last ${(1 / hz).toFixed(2)} s; upper edge ${top} ${unit()}, lower edge ${SPECTRUM_DB} dB below`);
 }
@@ -267,6 +296,7 @@ function draw(now_ms) {
   const wordy = now_ms - worded_ms >= CALM_MS;
   if (wordy) worded_ms = now_ms;
   if (wordy) show();  // also when nothing is heard
+  if (wordy && shown === 'lost') showFigures();
   if (paused || (calm.matches && !wordy)) return;
   const strip = view();
   if (!mapDrawn) drawMap(at('map'), map && {map, start_m: status.start_m, length_m: status.length_m}, strip, at('colours').value);

@@ -7,6 +7,7 @@ import {Finger} from './finger.js';
 const BLOCK = 32;                  // ticks: the finger touches or not for a whole block
 const REPORT_TICKS = 256;          // a report every 16 ms
 const CELL_TICKS = 32;             // of the trace: one column for 2 ms
+const PART = 32768;                // bytes of the next texture's frames for each block
 const LOUDEST = 0.7;               // of full scale
 const RELEASE = Math.exp(-1 / (0.2 * RATE_HZ));
 
@@ -81,7 +82,13 @@ export class Engine {
     this.sound = new Sound(1);
     this.sounds = new Float32Array(this.core.counts.length);
     this.count = 0;
+    this.forgetChanges();
     this.clear();
+  }
+
+  forgetChanges() {
+    this.coming = this.next = null;  // changes of the texture: of which parts are uploaded, and the one after it
+    this.fading = 0;                 // ticks
   }
 
   clear() {
@@ -98,6 +105,7 @@ export class Engine {
       case 'texture': return this.load(message);
       case 'play': return this.play(message.gain_m_per_n);
       case 'stop': return this.stop();
+      case 'change': this.next = message; break;
       case 'gain': this.core.steer('gain', message.gain_m_per_n); break;
       case 'sound': this.sound.volume = message.volume; this.sound.velocity = message.velocity; break;
       case 'down': finger.down(message.time_s, message.place_m); break;
@@ -115,6 +123,7 @@ export class Engine {
     const {velocity, volume} = this.sound;
     this.sound = Object.assign(new Sound(full_m), {velocity, volume});
     this.finger = new Finger();
+    this.forgetChanges();
     this.loaded = this.core.upload(upload);
     this.clear();
     this.report({what: 'loaded', accepted: this.loaded});
@@ -128,6 +137,7 @@ export class Engine {
 
   // The drive falls, then the device is idle.
   stop() {
+    this.forgetChanges();
     this.finger.lift();
     if (this.core.state !== 'idle') this.core.steer('disarm');
   }
@@ -136,11 +146,29 @@ export class Engine {
   advance(ticks) {
     for (let done = 0; done < ticks;) {
       const block = Math.min(BLOCK, ticks - done);
+      this.change(block);
       this.runBlock(block, done);
       done += block;
       this.ticks += block;
       if (this.ticks >= REPORT_TICKS) this.tell();
     }
+  }
+
+  // Changes the texture while it plays: its frames part by part, so that no block of sound waits for them, then the fade.
+  // The log up to there is sent before the report, the change itself after it.
+  change(block) {
+    this.fading = Math.max(0, this.fading - block);
+    if (this.coming === null && this.next !== null && this.fading === 0) [this.coming, this.next] = [{...this.next, at: 0}, null];
+    const coming = this.coming;
+    if (coming === null) return;
+    const used = ['armed', 'playing'].includes(this.core.state) ? this.core.uploadPart(coming.upload, coming.at, PART) : 0;
+    coming.at += used;
+    if (used > 0 && coming.at < coming.upload.length) return;
+    this.coming = null;
+    this.tell();
+    const accepted = used > 0 && this.core.steer('change', coming.fade_s);
+    if (accepted) this.fading = Math.ceil(coming.fade_s * RATE_HZ) + 2 * BLOCK;
+    this.report({what: 'changed', accepted, note: coming.note});
   }
 
   runBlock(block, at) {

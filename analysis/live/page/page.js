@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: chooses a texture, moves the finger, shows what the device does, keeps sessions.
 
+import {compareWords, fullScale, gainsOf, largestLevel} from './compare.js';
 import {startDevice} from './device.js';
+import {Library} from './library.js';
 import {drawFinger, drawMap, Trace} from './strip.js';
 
 const IDLE_S = 30;              // without motion: then the drive falls and the session ends
 const LONGEST_S = 590;          // of a session; the server accepts 600
 const MOST_LEVEL = 4;
 const RECONNECT_MS = 2000;
+const FADE_S = 0.05;            // from A to B and back
 const LIMITS = [[8, 'amplitude'], [16, 'slew'], [64, 'energy']];  // flags of ticks (WIRE.md)
 const CALM_MS = 250;            // between figures; with prefers-reduced-motion also between pictures
 
@@ -18,7 +21,12 @@ const calm = matchMedia('(prefers-reduced-motion: reduce)');
 
 const compiled = WebAssembly.compileStreaming(get('core.wasm'));
 let device = null, starting = null, socket = null;
-let chosen = null;              // {figures, map}
+let sides = {A: null, B: null}, heard = 'A';  // textures (load), and the one that is heard
+let chosen = null;              // the side that is heard, once the device has it
+let gains = {A: 0, B: 0};       // m/N, at level 1
+let base = {made: 0, gain_m_per_n: 0};  // what the device got at rest
+let stale = false;              // the device has another side now: it gets the one that is heard before it plays again
+const brought = new Map();      // frames of changes, by path: promises
 let last = {state: 'idle', touches: false, place_m: 0, speed_mps: 0};  // the last report
 let fitted = true;              // the strip shows the whole texture
 let playing = false;            // asked for
@@ -79,24 +87,11 @@ async function get(path) {
 }
 
 // Textures.
-async function listTextures() {
-  const {textures} = await (await get('textures')).json();
-  const rows = textures.map((row) => {
-    const item = document.createElement('li');
-    if (row.reason !== undefined) {
-      item.append(Object.assign(document.createElement('p'), {textContent: `${row.name} can't be read: ${row.reason}`}));
-      return item;
-    }
-    const button = Object.assign(document.createElement('button'), {type: 'button'});
-    button.append(row.name, Object.assign(document.createElement('small'), {textContent: mm(row.length_m, 1)}));
-    button.onclick = () => choose(row.index, button).catch((error) => say(error.message));
-    item.append(button);
-    return item;
-  });
-  at('textures').replaceChildren(...rows);
-  if (rows.length === 0) at('textures').append(Object.assign(document.createElement('li'),
-    {textContent: 'This folder has no textures. Make them with tactograph spatial, or see tactograph demo.'}));
-}
+const library = new Library({
+  list: at('textures'), search: at('search'), order: at('order'), count: at('count'), colours: at('colours'), get,
+  choose: (row) => choose('A', row).catch((error) => say(error.message)),
+  chooseB: (row) => choose('B', row).catch((error) => say(error.message)),
+});
 
 async function load(index) {
   const figures = await (await get(`texture/${index}`)).json();
@@ -106,61 +101,117 @@ async function load(index) {
 }
 
 let choices = 0;
-async function choose(index, button) {
-  const mine = ++choices;
+/** `name`: the side that it will be; the texture that is B already is taken away. */
+async function choose(name, row) {
+  const mine = ++choices, side = sides.A === null ? 'A' : name;
+  const loading = side === 'B' && row.index === library.chosen.B ? null : load(row.index);
+  loading?.catch(() => {});  // it is awaited below
   say('');
   stop();
   chosen = null;
   session = 'none';
-  const loading = load(index);
-  starting ??= compiled.then((module) => startDevice(module, report));
-  device = await starting;
-  sound();
-  await until(() => last.state === 'idle');
-  const {figures, map, tray, upload} = await loading;
-  if (mine !== choices) return;  // another texture has been chosen since
-  last.what = '';
-  const full_m = Math.min(figures.tray_peak_m || Infinity, figures.displacement_limit_m);
-  device.send({what: 'texture', upload, tray, full_m});
-  await until(() => last.what === 'loaded');
-  if (!last.accepted) throw new Error('the device in this page refused the texture; load the page again');
-  chosen = {figures, map};
-  for (const other of at('textures').querySelectorAll('button')) other.removeAttribute('aria-current');
-  button.setAttribute('aria-current', 'true');
+  try {
+    starting ??= compiled.then((module) => startDevice(module, report));
+    device = await starting;
+    sound();
+    await until(() => last.state === 'idle');
+    const loaded = await loading;
+    if (mine !== choices) return;  // another texture has been chosen since
+    sides = {...sides, [side]: loaded};
+    heard = 'A';
+    brought.clear();
+    library.mark({...library.chosen, [side]: loaded && row.index});
+    last.what = '';
+    loadHeard();
+    await until(() => last.what === 'loaded');
+    if (!last.accepted) throw new Error('the device in this page refused the texture; load the page again');
+  } finally {
+    if (mine === choices) chosen = sides[heard];
+    showState();
+  }
   showTexture();
 }
 
+// Gives the resting device the side that is heard.
+function loadHeard() {
+  gains = gainsOf(sides, at('equal').checked);
+  const {figures, upload, tray} = sides[heard];
+  base = {made: figures.made, gain_m_per_n: gains[heard]};
+  stale = false;
+  device.send({what: 'texture', upload, tray, full_m: fullScale(sides, gains)});
+}
+
+// The frames that change the playing device to a side, with what the server needs to know of it.
+function broughtFor(name) {
+  const note = {made: sides[name].figures.made, playing: base.made, times: gains[name] / base.gain_m_per_n};
+  const path = `change/${note.made}/${note.playing}/${note.times}`;
+  if (!brought.has(path)) brought.set(path, get(path).then((answer) => answer.arrayBuffer()).then((bytes) => new Uint8Array(bytes)));
+  return brought.get(path).then((upload) => ({what: 'change', upload, fade_s: FADE_S, note}));
+}
+
+/** Hear this side: at once with a cross-fade while it plays, else from the next touch on. */
+async function hearSide(name) {
+  if (sides[name] === null || chosen === null) return;
+  heard = name;
+  chosen = sides[name];
+  stale = true;
+  showSides();
+  if (!playing) return;
+  const message = await broughtFor(name).catch((error) => say(error.message));
+  if (message && playing && heard === name) device.send(message);
+}
+
 function showTexture() {
-  const {figures} = chosen;
+  if (chosen === null) return;
+  level.max = largestLevel(sides, gains, MOST_LEVEL);
+  level.value = Math.min(1, level.max);
+  trace.clear(1.2 * fullScale(sides, gains));
+  fitted = true;
+  last = {...last, place_m: chosen.figures.start_m};
+  showSides();
+  showView();
+  showState();
+}
+
+function showSides() {
+  const {figures} = chosen, equal = at('equal').checked, most = largestLevel(sides, gains, MOST_LEVEL);
   at('strip-title').textContent = figures.name;
   at('notes').replaceChildren(...[`Transducer: ${figures.transducer}.`, ...figures.notes ?? []].map((text) =>
     Object.assign(document.createElement('li'), {textContent: text})));
-  const most = Math.floor(100 * Math.min(MOST_LEVEL, figures.displacement_limit_m / figures.tray_peak_m)) / 100;
   level.max = most;
-  level.value = Math.min(1, most);
-  at('level-hint').textContent = `Displacement for force: ${(1e3 * figures.gain_m_per_n).toFixed(3)} mm/N at level 1. Largest level: ${most}` +
+  at('level-hint').textContent = `Displacement for force: ${(1e3 * gains[heard]).toFixed(3)} mm/N at level 1. Largest level: ${most}` +
     (most < MOST_LEVEL ? `; above it the tray could move more than its ${(1e6 * figures.displacement_limit_m).toFixed(0)} µm.` : '.');
-  trace.clear(Math.min(figures.displacement_limit_m, 1.2 * figures.tray_peak_m || Infinity));
-  fitted = true;
+  for (const name of ['A', 'B']) {
+    at(`side-${name}`).disabled = sides[name] === null;
+    at(`side-${name}`).setAttribute('aria-pressed', String(name === heard));
+    at(`side-${name}`).lastChild.textContent = ` ${sides[name]?.figures.name ?? 'none'}`;
+  }
+  at('equal').disabled = sides.B === null;
+  at('compare-words').textContent = compareWords(sides, gains, equal);
   showLevel();
-  showView();
-  last = {...last, place_m: figures.start_m};
-  showState();
+  mapDrawn = false;
+}
+
+// From the first texture's beginning to the last one's end, so that the finger stays in its place when the side changes.
+function span() {
+  const all = [sides.A, sides.B].filter((side) => side !== null).map(({figures}) => figures);
+  const start_m = Math.min(...all.map((figures) => figures.start_m));
+  return {start_m, length_m: Math.max(...all.map((figures) => figures.start_m + figures.length_m)) - start_m};
 }
 
 // The view: what the strip shows.
 function view() {
-  const from_m = (chosen?.figures.start_m ?? 0) + 1e-3 * Number(start.value);
+  const from_m = (chosen ? span().start_m : 0) + 1e-3 * Number(start.value);
   return {from_m, to_m: from_m + 1e-3 * Number(scale.value || 1) * strip.clientWidth};
 }
 
 function showView() {
   if (chosen === null) return;
   if (fitted) {
-    scale.value = Math.ceil(1e8 * chosen.figures.length_m / strip.clientWidth) / 1e5;
+    scale.value = Math.ceil(1e8 * span().length_m / strip.clientWidth) / 1e5;
     start.value = 0;
   }
-  const {from_m, to_m} = view(), beyond_mm = 1e3 * (chosen.figures.length_m - (to_m - from_m));
+  const {from_m, to_m} = view(), beyond_mm = 1e3 * (span().length_m - (to_m - from_m));
   start.max = Math.max(0, beyond_mm);
   start.disabled = beyond_mm <= 0.1;
   strip.setAttribute('aria-valuemin', (1e3 * from_m).toFixed(2));
@@ -169,7 +220,7 @@ function showView() {
 }
 
 // Playing.
-function gain() { return chosen.figures.gain_m_per_n * Number(level.value); }
+function gain() { return base.gain_m_per_n * Number(level.value); }
 
 /** Starts the device if it rests. False if there is nothing to play. */
 function play() {
@@ -178,12 +229,14 @@ function play() {
   if (playing) return true;
   if (last.state !== 'idle') return false;  // it still falls
   say('');
-  send(JSON.stringify({request: 'begin', made: chosen.figures.made}));
+  if (stale) loadHeard();
+  send(JSON.stringify({request: 'begin', made: base.made}));
   device.send({what: 'play', gain_m_per_n: gain()});
   session = socket.readyState === WebSocket.OPEN ? 'open' : 'none';
   if (session === 'open') at('kept').textContent = 'Keep stops and writes the session into the folder of the textures.';
   playing = true;
   began_ms = performance.now();
+  if (sides.B !== null) for (const name of ['A', 'B']) broughtFor(name).catch(() => {});  // ready for its key
   last = {...last, state: 'armed'};
   showState();
   return true;
@@ -210,8 +263,16 @@ function report(message) {
     last = {...last, ...message};
   }
   if (message.what === 'ticks') hearTicks(message);
+  if (message.what === 'changed') hearChanged(message);
+  if (message.what === 'loaded' && !message.accepted && playing) stop();  // choose() says it of a texture that is new
   waiting = waiting.filter(({when, done}) => !when() || done());
   showState();
+}
+
+// The log goes on with the change, so the server has to know of it first.
+function hearChanged({accepted, note}) {
+  if (accepted && session === 'open') send(JSON.stringify({request: 'change', ...note}));
+  if (!accepted && playing) say('The device did not change the texture. Press Stop, then touch again.');
 }
 
 function hearTicks(message) {
@@ -300,12 +361,29 @@ at('strokes').addEventListener('click', (event) => {
   device.send({what: 'stroke', velocity_mps: 1e-3 * speed, from_m: start_m, end_m: start_m + length_m});
 });
 
+// A and B, by buttons and by their keys.
+function press(name) { if (name !== heard) hearSide(name); }
+for (const name of ['A', 'B']) at(`side-${name}`).addEventListener('click', () => press(name));
+for (const place of [strip, at('compare')])
+  place.addEventListener('keydown', (event) => {
+    const name = event.key.toUpperCase();
+    if (!['A', 'B'].includes(name) || event.repeat || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault();
+    press(name);
+  });
+at('equal').addEventListener('input', () => {
+  gains = gainsOf(sides, at('equal').checked);
+  hearSide(heard);
+  setLevel();
+});
+
 // Controls.
 function showLevel() { at('level-value').textContent = Number(level.value).toFixed(2); }
-level.addEventListener('input', () => {
+function setLevel() {
   showLevel();
   if (playing) device.send({what: 'gain', gain_m_per_n: gain()});
-});
+}
+level.addEventListener('input', setLevel);
 
 function sound() {
   const on = at('sound').getAttribute('aria-pressed') === 'true';
@@ -356,7 +434,7 @@ async function begin() {
   history.replaceState(null, '', '/');  // the token is in a cookie now
   connect();
   requestAnimationFrame(draw);
-  await Promise.all([compiled, listTextures()]);
+  await Promise.all([compiled, library.read()]);
 }
 
 begin().catch((error) => say(error.message));

@@ -13,6 +13,13 @@ function colourAt(points, part) {
   return points[i].map((c, k) => Math.round(c + (at - i) * (points[i + 1][k] - c)));
 }
 
+/** 256 colours of a map, dark to light, each as a pixel of ImageData. */
+export function palette(name) {
+  const bytes = new Uint8ClampedArray(4 * 256);
+  for (let i = 0; i < 256; ++i) bytes.set([...colourAt(COLOURS[name], i / 255), 255], 4 * i);
+  return new Uint32Array(bytes.buffer);
+}
+
 // A canvas with as many pixels as the screen has there; `fresh` if its size has changed.
 export function sized(canvas) {
   const ratio = window.devicePixelRatio || 1;

@@ -83,6 +83,27 @@ export class Spectrum {
   }
 }
 
+const STEADY = 0.1;         // part of the mean speed
+const SPEEDS_KEPT_S = 60;   // the longest span
+
+/** Whether the finger's speed is steady: a spectrum has one spatial period only then. */
+export class Speeds {
+  constructor() { this.seen = []; }
+  take(time_s, speed_mps) {
+    if (!Number.isFinite(time_s) || !Number.isFinite(speed_mps)) return;
+    if (time_s < this.seen.at(-1)?.time_s) this.seen = [];  // a new clock
+    this.seen.push({time_s, speed_mps});
+    this.seen = this.seen.filter((one) => one.time_s > time_s - SPEEDS_KEPT_S);
+  }
+  /** The mean speed (m/s, without sign) of the last `span_s`, if all speeds in it are within STEADY of it; else null. */
+  steady(span_s) {
+    const from_s = this.seen.at(-1)?.time_s - span_s, speeds = this.seen.filter(({time_s}) => time_s >= from_s).map((one) => one.speed_mps);
+    if (!(this.seen[0]?.time_s <= from_s)) return null;  // not seen for that long
+    const mean = speeds.reduce((sum, speed) => sum + speed, 0) / speeds.length;
+    return speeds.every((speed) => Math.abs(speed - mean) <= STEADY * Math.abs(mean)) ? Math.abs(mean) : null;
+  }
+}
+
 // Fast Fourier transform in place, radix 2 (Cooley and Tukey 1965).
 function transform(re, im) {
   const n = re.length;
@@ -111,6 +132,24 @@ export function stateOf({server, daemon, state, silent_ms}) {
   const runs = state === 'armed' || state === 'playing';
   if (runs && silent_ms > SILENT_MS) return {state: 'lost', words: 'lost: the daemon does not answer'};
   return {state, words: state === 'lost' ? 'lost: the device does not answer' : state};
+}
+
+/** `asked`: undefined if another client has set the gain. */
+export function gainWords({forces, asked, effective, gain_m_per_n}) {
+  if (forces) return 'a scene of forces has no gain';
+  if (effective === undefined) return 'no gain: load a texture';
+  const is = `${effective.toFixed(2)} (${(1e3 * gain_m_per_n).toFixed(3)} mm/N)`;
+  return asked === undefined ? is : `asked ${asked.toFixed(2)}, effective ${is}`;
+}
+
+/** Where the finger is and what it gets; of a device with forces the hand, along its axes. */
+export function placeWords(status, place_m) {
+  const mm = (metres) => `${(1e3 * metres).toFixed(2)} mm`, fixed = (name) => (status[name] ?? 0).toFixed(2);
+  if (status.x_m === undefined)
+    return `finger at ${mm(place_m)}, ${(1e3 * (status.speed_mps ?? 0)).toFixed(0)} mm/s; drive ${fixed('drive_v')} V, RMS ${fixed('drive_rms_v')} V, peak ${fixed('drive_peak_v')} V`;
+  const axes = ['x', 'y', 'z'].filter((axis) => status[`${axis}_m`] !== undefined);
+  return `hand at ${axes.map((axis) => `${axis} ${mm(status[`${axis}_m`])}`).join(', ')}; force ` +
+      `${axes.map((axis) => `${axis} ${fixed(`force_${axis}_n`)} N`).join(', ')}; peak ${fixed('force_peak_n')} N`;
 }
 
 export function contactWords(flags) {

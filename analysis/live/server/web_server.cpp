@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kWaitMs = 50;
 constexpr std::size_t kChunk = 32768;
+constexpr std::uint16_t kMostHeader = 32768;  // bytes; beyond it libwebsockets closes without an answer
 constexpr unsigned kTooLong = LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE;
 
 // What a connection is sending or talking about. libwebsockets allocates a pointer to it.
@@ -230,6 +231,7 @@ class LibwebsocketsServer final : public WebServer {
     about.iface = "127.0.0.1";
     about.protocols = kProtocols;
     about.user = &server_;
+    about.max_http_header_data = kMostHeader;
     about.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_DISABLE_IPV6;
     about.gid = static_cast<gid_t>(-1);
     about.uid = static_cast<uid_t>(-1);
