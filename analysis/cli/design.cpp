@@ -214,7 +214,10 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   auto scene = schema::read_scene(file);
   TACTO_TRY(scene);
   warn_of_newer(file, *scene);
-  if (!scene->pieces.empty()) return design_pieces(o, *scene, file, *request);
+  if (!scene->pieces.empty()) {
+    TACTO_TRY(playback::read_reliefs(*scene, file, request->rate_hz));
+    return design_pieces(o, *scene, file, *request);
+  }
   const double limit = playback::stiffness_limit_of(request->device, request->rate_hz, request->hand);
   TACTO_TRY(playback::set_filters(*scene, limit, file));
   TACTO_TRY(playback::read_reliefs(*scene, file, request->rate_hz));

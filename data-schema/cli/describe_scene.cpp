@@ -112,6 +112,10 @@ cli::Report row_of(const Piece& piece) {
     for (const auto& [name, value] : kHandSurfaceNumbers)
       row.add(value == &HandSurface::amplitude ? "hand_surface_amplitude" : name,
               (*piece.hand_surface).*value);
+  if (piece.texture)
+    row.add("texture", to_string(piece.texture->type))
+        .add("texture_file", piece.texture->file)
+        .add("texture_gain", piece.texture_gain);
   return row;
 }
 

@@ -90,6 +90,9 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
                 fmt::format("the kinetic friction {:g} is above the static friction {:g}{}", kinetic, least,
                             piece.sliders.empty() ? "" : ", with each slider at its worse end"),
                 where + "/kinetic_friction", "choose a static friction that is not smaller");
+  if (!piece.texture && (piece.texture_gain != 1 || piece.sliders.contains("texture_gain")))
+    return fail(ErrorKind::unsuitable, "the gain of a texture, but there is none", where + "/texture_gain",
+                "give `texture`, or leave texture_gain out");
   if (piece.transient && piece.hand_surface)
     return fail(ErrorKind::unsuitable, "a piece has one transient", where + "/hand_surface",
                 "leave out `transient` or `hand_surface`");

@@ -50,6 +50,15 @@ inline constexpr HandSurfaceNumber kHandSurfaceNumbers[] = {
     {"surface_stiffness_n_per_m", &HandSurface::surface_stiffness_n_per_m},
     {"amplitude", &HandSurface::amplitude}};
 
+enum class PieceTextureType { recording };
+
+/// What a surface adds to the force of its wall.
+struct PieceTexture {
+  PieceTextureType type = PieceTextureType::recording;
+  std::string file;     ///< recording: stem or file name of a texture, from the scene's folder
+  double steepest = 0;  ///< not in the file, once it was read: of a recording N/m at a gain of 1
+};
+
 struct Piece {
   std::string name;  ///< different for each piece of a scene
   PieceShape shape = PieceShape::plane;
@@ -72,6 +81,8 @@ struct Piece {
   double integral_leak_per_s = 0;                            ///< share of that force which is lost per second
   std::optional<ContactTransient> transient = std::nullopt;  ///< or hand_surface, or none
   std::optional<HandSurface> hand_surface = std::nullopt;
+  std::optional<PieceTexture> texture = std::nullopt;
+  double texture_gain = 1;
   std::map<std::string, SliderRange> sliders = {};  ///< of kWallNumbers that change, by their names
 };
 
@@ -89,7 +100,8 @@ inline constexpr PieceNumber kWallNumbers[] = {{"stiffness_n_per_m", &Piece::sti
                                                {"integral_leak_per_s", &Piece::integral_leak_per_s},
                                                {"static_friction", &Piece::static_friction, true},
                                                {"kinetic_friction", &Piece::kinetic_friction, true},
-                                               {"viscous_n_s_per_m", &Piece::viscous_n_s_per_m, true}};
+                                               {"viscous_n_s_per_m", &Piece::viscous_n_s_per_m, true},
+                                               {"texture_gain", &Piece::texture_gain, true}};
 
 /// Under its name in the file, with its slider.
 NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number);
@@ -104,5 +116,8 @@ std::string_view to_string(PieceShape shape);
 
 /// "ghost", "add".
 std::string_view to_string(PieceContact contact);
+
+/// "recording".
+std::string_view to_string(PieceTextureType type);
 
 }  // namespace tacto::schema

@@ -10,6 +10,7 @@ namespace tacto::schema {
 namespace {
 
 constexpr std::array<std::string_view, 5> kShapeWords = {"plane", "sphere", "cylinder", "quadric", "mesh"};
+constexpr std::array<std::string_view, 1> kTextureWords = {"recording"};
 
 // Before the numbers of the wall; each is written if it is not 0.
 constexpr PieceNumber kShapeNumbers[] = {{"thickness_m", &Piece::thickness_m},
@@ -33,10 +34,22 @@ void write_wall(const Piece& piece, Json& body) {
     if (number.slider)
       body[each.name] = {{"value", number.value},
                          {"slider", {{"from", number.slider->from}, {"to", number.slider->to}}}};
-    else if (number.value != 0 || each.value == &Piece::stiffness_n_per_m ||
+    else if (number.value != Piece().*each.value || each.value == &Piece::stiffness_n_per_m ||
              (each.value == &Piece::kinetic_friction && piece.static_friction > 0))
       body[each.name] = number.value;
   }
+}
+
+PieceTexture piece_texture_from(const Json& body) {
+  PieceTexture texture;
+  const auto type = std::ranges::find(kTextureWords, text_or(body, "type"));
+  texture.type = static_cast<PieceTextureType>(type - kTextureWords.begin());
+  texture.file = text_or(body, "file");
+  return texture;
+}
+
+Json piece_texture_body(const PieceTexture& texture) {
+  return {{"type", to_string(texture.type)}, {"file", texture.file}};
 }
 
 }  // namespace
@@ -47,6 +60,10 @@ std::string_view to_string(PieceShape shape) {
 
 std::string_view to_string(PieceContact contact) {
   return contact == PieceContact::add ? "add" : "ghost";
+}
+
+std::string_view to_string(PieceTextureType type) {
+  return kTextureWords[static_cast<std::size_t>(type)];
 }
 
 NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number) {
@@ -65,7 +82,7 @@ std::vector<Piece> slider_ends(const Piece& piece) {
     const bool stiffens = number.value == &Piece::stiffness_n_per_m;
     for (std::size_t i = 0; i < ends.size(); ++i)
       ends[i].*number.value =
-          (damps && i % 2 == 0) || (stiffens && i >= 2) ? least_value(with) : largest_value(with);
+          (damps && i % 2 == 0) || (stiffens && i >= 2) ? least_value(with) : farthest_value(with);
   }
   for (Piece& end : ends) end.sliders.clear();
   return ends;
@@ -95,6 +112,7 @@ Piece piece_from(const Json& body) {
     for (const auto& [name, value] : kHandSurfaceNumbers)
       (*piece.hand_surface).*value = number_or(body["hand_surface"], name, HandSurface().*value);
   }
+  if (body.contains("texture")) piece.texture = piece_texture_from(body["texture"]);
   return piece;
 }
 
@@ -115,6 +133,7 @@ Json piece_body(const Piece& piece) {
   if (piece.hand_surface)
     for (const auto& [name, value] : kHandSurfaceNumbers)
       body["hand_surface"][name] = (*piece.hand_surface).*value;
+  if (piece.texture) body["texture"] = piece_texture_body(*piece.texture);
   return body;
 }
 

@@ -37,6 +37,7 @@ namespace {
 constexpr int kCostTicks = 500, kCostRuns = 5;
 
 struct SceneOnDevice {
+  std::string file;
   schema::Device device;
   PreparedScene scene;
   core::ForceSetup setup;
@@ -73,7 +74,7 @@ Result<SceneOnDevice> scene_on_device(const std::string& scene_name, const std::
   if (!scene->layers.empty())
     cli::warn(fmt::format("{}: its {} layers of a tray are left out", file, scene->layers.size()));
   for (const std::string& note : limits_of_device(*prepared, *device, *setup, hand)) cli::warn(note);
-  return SceneOnDevice{std::move(*device), std::move(*prepared), *setup, std::move(held)};
+  return SceneOnDevice{file, std::move(*device), std::move(*prepared), *setup, std::move(held)};
 }
 
 Result<std::optional<schema::Hand>> hand_of(const std::string& name) {
@@ -272,7 +273,7 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
   one.pieces = {piece};
   one.point_radius_m = on.scene.point_radius_m;
   one.contact = on.scene.contact;
-  const auto alone = prepare_pieces(one, {}, on.device, double{on.setup.rate_hz}, std::nullopt);
+  const auto alone = prepare_pieces(one, on.file, on.device, double{on.setup.rate_hz}, std::nullopt);
   TACTO_TRY(alone);
   Report row;
   row.add("piece", piece.name).add("shape", to_string(piece.shape));
@@ -282,6 +283,20 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
   if (piece.damping_n_s_per_m > 0) row.add("damping_n_s_per_m", piece.damping_n_s_per_m);
   if (piece.stiffness_n_per_m > 0)
     row.add("force_limit_at_displacement_m", on.device.peak_force_n / piece.stiffness_n_per_m);
+  for (const schema::PieceNumber& number : schema::kWallNumbers) {
+    const bool rubs = number.value == &schema::Piece::static_friction ||
+                      number.value == &schema::Piece::kinetic_friction ||
+                      number.value == &schema::Piece::viscous_n_s_per_m;
+    if (rubs && piece.*number.value > 0) row.add(number.name, piece.*number.value);
+  }
+  if (piece.texture) {
+    row.add("texture", to_string(piece.texture->type)).add("texture_gain", piece.texture_gain);
+    row.add("texture_stiffness_n_per_m", std::abs(piece.texture_gain) * piece.texture->steepest);
+    const Relief& relief = *on.scene.reliefs.textures.at(piece.texture->file);
+    if (relief.highest_per_m > 0)
+      row.add("texture_whole_to_mps", relief.whole_to_mps(double{on.setup.rate_hz}))
+          .add("texture_zero_from_mps", relief.zero_from_mps(double{on.setup.rate_hz}));
+  }
   if (piece.arrest_mass_kg > 0)
     row.add("arrest_in_one_tick_to_mps",
             on.device.peak_force_n / (piece.arrest_mass_kg * double{on.setup.rate_hz}));

@@ -60,10 +60,13 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
   };
   for (const schema::Patch& patch : scene->patches)
     if (!std::ranges::all_of(patch.layers, in_folder)) return false;
-  for (const schema::Piece& piece : scene->pieces)
+  for (const schema::Piece& piece : scene->pieces) {
     if (!piece.mesh.empty() &&
         !is_within(folder, schema::mesh_path(schema::texture_in_scene(path, piece.mesh))))
       return false;
+    if (piece.texture && !serves_texture(folder, schema::texture_in_scene(path, piece.texture->file)))
+      return false;
+  }
   return std::ranges::all_of(scene->layers, [&](const schema::Layer& layer) {
     return layer.visit([&](const schema::TextureLayer& texture) {
       return serves_texture(folder, schema::texture_in_scene(path, texture.texture));

@@ -26,7 +26,7 @@ class PiecesWorkload {
     for (uint32_t i = 0; i < kPieces; ++i) {
       block_.layers[i] = {kKinds[i], static_cast<uint16_t>(i * kWords),
                           i * static_cast<uint32_t>(sizeof(core::PieceTable) / sizeof(uint32_t))};
-      const float wall[core::kPieceNumbers] = {2000, 4, 0.1F, 3000, 2, 0.5F, 0.6F, 0.4F, 1};
+      const float wall[core::kPieceNumbers] = {2000, 4, 0.1F, 3000, 2, 0.5F, 0.6F, 0.4F, 1, 1};
       for (uint32_t j = 0; j < core::kPieceNumbers; ++j) block_.numbers[i * kWords + j] = wall[j];
     }
     block_.tables[0] = {{0, 0, -2000}, {1e-6F, 0, -3e-6F}, {0.28F, 0, 0.96F}, {}};

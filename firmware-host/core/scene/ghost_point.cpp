@@ -2,6 +2,7 @@
 #include "firmware-host/core/scene/ghost_point.hpp"
 
 #include "firmware-host/core/kernel/finite.hpp"
+#include "firmware-host/core/scene/piece_texture.hpp"
 
 namespace tacto::core {
 namespace {
@@ -487,7 +488,10 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
         adds ? from + touch.depth_m * normal : difference(ghost_, origin_of(table), step_m);
     if (arrives)
       state.anchor_m = state.last_m = on;  // a hand that begins in a piece is not held from elsewhere
-    sum = sum + normal_n * normal + friction_force(number, state, normal_n, normal, on, hand.speed_mps);
+    const SpaceVector of_texture =
+        texture_force(table, number, state, normal_n, normal, on, hand.speed_mps, setup.rate_hz);
+    sum = sum + normal_n * normal + of_texture +
+          friction_force(number, state, normal_n, normal, on, hand.speed_mps);
   }
   return sum;
 }

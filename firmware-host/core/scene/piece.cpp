@@ -259,7 +259,8 @@ bool nearest_face(const PieceTable& quadric, SpaceVector hand, SpaceVector& near
 
 float wall_force(const float* number, const TransientTable& transient, WallState& state,
                  const WallTouch& touch) noexcept {
-  if (!(touch.depth_m > 0) && touch.outside_m > kLetGo_m) state = {};
+  if (!(touch.depth_m > 0) && touch.outside_m > kLetGo_m)
+    state = {0, 0, 0, 0, 0, {}, {}, state.line, state.path};
   const float s = state.transient_n, c = state.turning_n, *const step = transient.step;
   const bool ended = s * s + c * c < kTransientEnd_n * kTransientEnd_n;
   state.transient_n = ended ? 0 : s + (step[0] * s + step[1] * c);

@@ -87,6 +87,8 @@ struct WallState {
   float touched = 0;                     ///< 1 from the first tick of a contact on
   float transient_n = 0, turning_n = 0;  ///< s and c of the transient (TransientTable)
   SpaceVector anchor_m, last_m;          ///< of the friction, and the place of the last tick
+  SpaceVector line;                      ///< of the path, a unit vector; 0 before the first way
+  uint32_t path = 0;                     ///< along a recorded texture: 2^32 is once forth and back
 };
 static_assert(sizeof(WallState) == kWallStateWords * sizeof(float));
 

@@ -29,6 +29,7 @@ constexpr float kMostAtomForce = 1;  // N per unit
 constexpr float kMostPiece_kg = 100, kMostFriction = 10, kMostIntegral = 1e7F, kMostLeak_per_s = 1000;
 constexpr float kMostTransient_n_s_per_m = 1e6F;
 constexpr float kLeastLoss = 1e-6F;  // of a transient from tick to tick
+constexpr float kMostPasses_per_m = 1e6F;
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
 constexpr float kThinnestSkin_m = 1e-12F, kThickestSkin_m = 1e-3F;
 
@@ -83,7 +84,8 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
              within(number[kPieceIntegralLeak], 0, kMostLeak_per_s) &&
              within(number[kPieceStaticFriction], 0, kMostFriction) &&
              within(number[kPieceKineticFriction], 0, kMostFriction) &&
-             within(number[kPieceViscous], 0, kMostDamping_n_s_per_m);
+             within(number[kPieceViscous], 0, kMostDamping_n_s_per_m) &&
+             within(number[kPieceTextureGain], -kMostForceGain, kMostForceGain);
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
       break;
@@ -223,13 +225,34 @@ bool sound(const PieceTable& table, SceneLayerKind kind) noexcept {
          within(table.form[kPieceSize], 0, kLargestPiece_m);
 }
 
+bool sound(const PieceTextureTable& table) noexcept {
+  return table.kind == static_cast<uint32_t>(PieceTextureKind::recording) &&
+         within(table.passes_per_m, 0, kMostPasses_per_m);
+}
+
+// Behind the `words` of its piece, which it adds to.
+SceneFault check_texture(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                         uint32_t& words) noexcept {
+  constexpr uint32_t kHead = sizeof(PieceTextureTable) / sizeof(uint32_t);
+  const auto& piece = table_of<PieceTable>(view, layer);
+  if (piece.texture == 0) return SceneFault::none;
+  if (piece.texture != words || room - words < kHead) return SceneFault::structure;
+  if (!sound(texture_of(piece))) return SceneFault::value;
+  words += kHead;
+  uint32_t of_relief = 0;
+  const SceneLayer behind{layer.kind, layer.first_number, layer.table + words};
+  const SceneFault fault = check_relief(view, behind, 1, kLargestCoefficient_m, room - words, of_relief);
+  words += of_relief;
+  return fault;
+}
+
 SceneFault check_piece(const SceneView& view, const SceneLayer& layer, uint32_t room,
                        uint32_t& words) noexcept {
   words = sizeof(PieceTable) / sizeof(uint32_t);
   if (words > room) return SceneFault::structure;
-  return sound(table_of<PieceTable>(view, layer), static_cast<SceneLayerKind>(layer.kind))
-             ? SceneFault::none
-             : SceneFault::value;
+  if (!sound(table_of<PieceTable>(view, layer), static_cast<SceneLayerKind>(layer.kind)))
+    return SceneFault::value;
+  return check_texture(view, layer, room, words);
 }
 
 bool sound(const MeshNode& node, uint32_t place, const MeshTable& table) noexcept {
@@ -260,7 +283,7 @@ SceneFault check_mesh(const SceneView& view, const SceneLayer& layer, uint32_t r
     if (triangles_of(table)[i] >= table.vertices) return SceneFault::structure;
   for (uint64_t i = 0; i < uint64_t{3} * table.vertices; ++i)
     if (!within(vertices_of(table)[i], -kLargestPiece_m, kLargestPiece_m)) return SceneFault::value;
-  return SceneFault::none;
+  return check_texture(view, layer, room, words);
 }
 
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,

@@ -73,10 +73,11 @@ enum PieceNumber : uint32_t {
   kPieceStaticFriction = 6,
   kPieceKineticFriction = 7,
   kPieceViscous = 8,
-  kPieceNumbers = 9
+  kPieceTextureGain = 9,
+  kPieceNumbers = 10
 };
 /// Behind these numbers of a piece: its state (WallState), 0 in a block.
-inline constexpr uint32_t kWallStateWords = 11;
+inline constexpr uint32_t kWallStateWords = 15;
 enum FieldNumber : uint32_t { kFieldScale = 0, kFieldZ = 1 };
 enum ForceMapNumber : uint32_t { kForceMapGain = 0 };
 
@@ -275,8 +276,9 @@ struct PieceTable {
   float rest_m[3] = {};
   float form[kPieceFormWords] = {};
   TransientTable transient = {};
+  uint32_t texture = 0;  ///< words from its beginning to its PieceTextureTable; 0: none
 };
-static_assert(sizeof(PieceTable) == 88);
+static_assert(sizeof(PieceTable) == 92);
 
 /// A triangle mesh: this, then the nodes, the triangles as three vertices each (u32), counter-clockwise from
 /// outside, and the vertices as three coordinates each (f32, m, from the origin of the piece).
@@ -285,7 +287,7 @@ struct MeshTable {
   float skin_m = 0;  ///< distance that the ghost keeps from the triangles; half of it is never undercut
   uint32_t nodes = 0, triangles = 0, vertices = 0;
 };
-static_assert(sizeof(MeshTable) == 104);
+static_assert(sizeof(MeshTable) == 108);
 
 inline constexpr uint32_t kMostLeafTriangles = 7;
 
@@ -306,6 +308,24 @@ inline const uint32_t* triangles_of(const MeshTable& table) noexcept {
 }
 inline const float* vertices_of(const MeshTable& table) noexcept {
   return reinterpret_cast<const float*>(triangles_of(table) + 3 * static_cast<uint64_t>(table.triangles));
+}
+
+enum class PieceTextureKind : uint32_t { recording = 1 };
+
+/// Behind all other words of a piece, and before the relief of its texture (ReliefTable).
+struct PieceTextureTable {
+  uint32_t kind = 0;       ///< PieceTextureKind
+  float passes_per_m = 0;  ///< of a recording: forth and back, along the path
+};
+static_assert(sizeof(PieceTextureTable) == 8);
+
+/// Precondition: it has one.
+inline const PieceTextureTable& texture_of(const PieceTable& table) noexcept {
+  return *reinterpret_cast<const PieceTextureTable*>(reinterpret_cast<const uint32_t*>(&table) +
+                                                     table.texture);
+}
+inline const ReliefTable& relief_of(const PieceTextureTable& texture) noexcept {
+  return *reinterpret_cast<const ReliefTable*>(&texture + 1);
 }
 
 /// A block that was read; it points into its memory.

@@ -89,14 +89,20 @@ void add_wall(Piece& sum, const Piece& other) {
   sum.integral_n_per_m_s += other.integral_n_per_m_s;
 }
 
-bool rubs(const Piece& piece) {
-  return piece.static_friction > 0 || piece.viscous_n_s_per_m > 0;
+double texture_stiffness_n_per_m(const Piece& piece) {
+  return piece.texture ? std::abs(piece.texture_gain) * piece.texture->steepest : 0;
 }
 
-// Along its surface, while it holds: a spring and a damper.
+bool rubs(const Piece& piece) {
+  return piece.static_friction > 0 || piece.viscous_n_s_per_m > 0 || texture_stiffness_n_per_m(piece) > 0;
+}
+
+// Along its surface: the spring and the damper of a friction that holds, and the slope of the texture's
+// force.
 Piece friction_of(const Piece& piece) {
   Piece along = piece;
   if (!(piece.static_friction > 0)) along.stiffness_n_per_m = 0;
+  along.stiffness_n_per_m += texture_stiffness_n_per_m(piece);
   along.damping_n_s_per_m = piece.viscous_n_s_per_m;
   along.integral_n_per_m_s = 0;
   return along;

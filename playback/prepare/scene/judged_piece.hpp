@@ -37,11 +37,12 @@ double wall_growth(const schema::Piece& piece, const schema::Device& device, dou
 /// grow the most; with pieces that may overlap in another way a stable sum is not known. `ghost`: stiffnesses
 /// do not add, because each wall holds its part of the way to the ghost; with the dampings of all pieces that
 /// may hold the ghost together, not at a right angle, a wall that would grow is not known.
-/// Friction that holds is a spring of the same stiffness along the surface, with the viscous friction, which
-/// is a damper by itself, too; that of planes which add up adds up, and that of two planes at a right angle
-/// along their edge. Along the normal of the other plane its wall has this friction beside it, for a ghost
-/// the damper only. One that grows is unstable, up to where it slips. With the friction of all pieces that
-/// may hold the ghost together at another angle, one that would grow is not known.
+/// Along the surface a texture is a spring: the largest slope of its recorded force. `scene`: of
+/// read_reliefs(). Friction that holds is a spring of the same stiffness along the surface, with the viscous
+/// friction, which is a damper by itself, too; that of planes which add up adds up, and that of two planes at
+/// a right angle along their edge. Along the normal of the other plane its wall has this friction beside it,
+/// for a ghost the damper only. One that grows is unstable, up to where it slips. With the friction of all
+/// pieces that may hold the ghost together at another angle, one that would grow is not known.
 JudgedPiece judged_piece(const schema::Scene& scene, std::size_t index, const schema::Device& device,
                          double rate_hz, const std::optional<schema::Hand>& hand);
 

@@ -126,6 +126,19 @@ Result<void> read_meshes(PreparedScene& scene, const std::string& where) {
   return {};
 }
 
+// Behind the other words of its piece, which begin with the PieceTable.
+void append_texture(const Piece& piece, const Reliefs& reliefs, std::vector<std::uint32_t>& words) {
+  if (!piece.texture) return;
+  words[offsetof(core::PieceTable, texture) / sizeof(std::uint32_t)] =
+      static_cast<std::uint32_t>(words.size());
+  const Relief& relief = *reliefs.textures.at(piece.texture->file);
+  const double length_m = static_cast<double>(relief.columns) * relief.pitch_m;
+  append_words(words, std::vector{core::PieceTextureTable{
+                          static_cast<std::uint32_t>(core::PieceTextureKind::recording),
+                          static_cast<float>(1 / (2 * length_m))}});
+  append_words(words, relief_table(relief, 0, {}, {0, 0}));
+}
+
 void append_numbers(const Piece& piece, std::vector<float>& numbers) {
   for (const auto& [name, value, changes] : schema::kWallNumbers)
     numbers.push_back(static_cast<float>(piece.*value));
@@ -166,10 +179,13 @@ std::optional<std::string> cut_of_transient(const Piece& piece, const schema::De
 
 }  // namespace
 
-Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::string& where,
+Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& where,
                                      const schema::Device& device, double rate_hz,
                                      const std::optional<schema::Hand>& hand) {
   PreparedScene base;
+  auto reliefs = read_reliefs(scene, where, rate_hz);
+  TACTO_TRY(reliefs);
+  base.reliefs = std::move(*reliefs);
   base.pieces = scene.pieces;
   base.point_radius_m = scene.point_radius_m;
   base.contact = scene.contact;
@@ -192,15 +208,19 @@ Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::stri
                       static_cast<std::uint16_t>(numbers.size()), static_cast<std::uint32_t>(tables.size())});
     append_numbers(piece, numbers);
     if (piece.shape == PieceShape::mesh) {
-      const auto words = words_of_mesh(piece, *base.meshes.at(piece.mesh), base.steps, *transient, at);
+      auto words = words_of_mesh(piece, *base.meshes.at(piece.mesh), base.steps, *transient, at);
       TACTO_TRY(words);
+      append_texture(piece, base.reliefs, *words);
       append_words(tables, *words);
       continue;
     }
     auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
     TACTO_TRY(table);
     table->transient = *transient;
-    append_words(tables, std::vector{*table});
+    std::vector<std::uint32_t> words;
+    append_words(words, std::vector{*table});
+    append_texture(piece, base.reliefs, words);
+    append_words(tables, words);
   }
   core::SceneHeader header;
   header.patches = 1;

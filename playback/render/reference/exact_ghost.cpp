@@ -5,8 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "firmware-host/core/scene/piece.hpp"
+#include "firmware-host/core/scene/piece_texture.hpp"
 #include "playback/prepare/scene/contact_transient.hpp"
+#include "playback/render/reference/exact_relief.hpp"
 
 namespace tacto::playback {
 
@@ -256,7 +257,11 @@ double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, 
                               double speed_mps) const {
   if (wall.touched) ++wall.ticks;
   if (!(held.depth_m > 0)) {
-    if (outside_m > double{core::kLetGo_m}) wall = {};
+    if (outside_m > double{core::kLetGo_m}) {
+      Wall next;
+      next.line = wall.line, next.path_m = wall.path_m;
+      wall = next;
+    }
     return 0;
   }
   if (!wall.touched) wall.contact_mps = std::max(0.0, -speed_mps);
@@ -317,6 +322,28 @@ SpaceMetres ExactGhost::friction_force(const Piece& piece, Wall& wall, double no
   return sum_of(viscous_n, -piece.stiffness_n_per_m, stretch);
 }
 
+SpaceMetres ExactGhost::texture_force(const Piece& piece, Wall& wall, double normal_n,
+                                      const SpaceMetres& normal, const SpaceMetres& place_m,
+                                      const SpaceMetres& speed_mps) const {
+  if (!piece.texture || !(normal_n > 0)) return {};
+  const auto along = [&](const SpaceMetres& v) { return sum_of(v, -inner(v, normal), normal); };
+  const SpaceMetres way = along(sum_of(place_m, -1, wall.last_m)), before = along(wall.line);
+  const double by = (inner(way, before) < 0 ? -1 : 1) / double{core::kPathLine_m};
+  const SpaceMetres turned = sum_of(before, by, way);
+  if (!(size_of(turned) > 0)) return {};
+  wall.line = unit_of(turned);
+  wall.path_m += inner(way, wall.line);
+  const Relief& relief = *scene_.reliefs.textures.at(piece.texture->file);
+  // From the first end of the texture forth to the other one, and back.
+  const double length_m = static_cast<double>(relief.columns) * relief.pitch_m;
+  const double turns = wall.path_m / (2 * length_m), part = turns - std::floor(turns);
+  const double from_first_m = 2 * length_m * std::min(part, 1 - part);
+  const double slope =
+      exact_slope(relief, from_first_m - length_m / 2, 0, std::abs(inner(speed_mps, wall.line)), 1 / tick_s_)
+          .along_columns;
+  return sum_of({}, piece.texture_gain * slope, wall.line);
+}
+
 SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {
   const bool arrives = !placed_;
   if (arrives) ghost_m_ = hand_m;
@@ -334,6 +361,7 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
     const SpaceMetres on = adds ? sum_of(hand_m, held[i].depth_m, held[i].normal) : ghost_m_;
     if (arrives) walls_[i].anchor_m = walls_[i].last_m = on;
     sum = sum_of(sum, force_n, held[i].normal);
+    sum = sum_of(sum, 1, texture_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
     sum = sum_of(sum, 1, friction_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
   }
   return sum;

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Textures on pieces in space: the recorded force along the path, its work, and the reference in double
+// precision.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/texture/texture.hpp"
+#include "firmware-host/core/scene/piece_texture.hpp"
+#include "firmware-host/core/scene/scene_kernel.hpp"
+#include "playback/prepare/scene/piece_block.hpp"
+#include "playback/prepare/scene/scene_device.hpp"
+#include "playback/render/reference/exact_scene.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::Piece;
+using Space = std::array<double, 3>;
+
+constexpr double kCount_m = 1e-6, kSample_m = 1e-5, kTurn = 2 * std::numbers::pi;
+
+// Written to a file; `force_n` by the position.
+schema::PieceTexture recording(const std::string& name, double length_m,
+                               const std::function<double(double)>& force_n) {
+  schema::Texture made;
+  made.signal.pitch_m = kSample_m;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(std::lround(length_m / kSample_m)); ++i)
+    made.signal.values.push_back(force_n(static_cast<double>(i) * kSample_m));
+  const std::string path = testing::TempDir() + name;
+  EXPECT_TRUE(schema::write_texture(path, made));
+  return {schema::PieceTextureType::recording, path};
+}
+
+// Periods of 0.31 to 1.7 mm.
+double noise_n(double x) {
+  double sum = 0;
+  for (int i = 0; i < 8; ++i) sum += 0.05 * std::sin(kTurn * x / (1.7e-3 * std::pow(0.785, i)) + i * i);
+  return sum;
+}
+
+Piece textured_floor(schema::PieceTexture texture) {
+  Piece floor;
+  floor.name = "floor";
+  floor.stiffness_n_per_m = 1000;
+  floor.texture = std::move(texture);
+  return floor;
+}
+
+struct TexturedPieces {
+  schema::Device device = *schema::read_device("arm");
+  core::ForceSetup setup;
+  PreparedScene scene;
+  std::vector<float> live;
+  core::SceneKernel kernel;
+  std::optional<ExactScene> exact;
+  double largest_n = 0, largest_error_n = 0;
+
+  explicit TexturedPieces(const std::vector<Piece>& pieces,
+                          schema::PieceContact contact = schema::PieceContact::ghost) {
+    for (schema::DeviceAxis& axis : device.axes) {
+      axis.encoder_step_m = kCount_m;
+      axis.peak_force_n = axis.continuous_force_n = 1e9;
+    }
+    device.peak_force_n = device.continuous_force_n = 1e9;
+    device.slew_n_per_s = 1e15;
+    schema::Scene of;
+    of.pieces = pieces;
+    of.contact = contact;
+    setup = *force_setup_of(device, 1000);
+    setup.onset_s = 0;
+    auto prepared = prepare_scene(of, "s.scene.json", device, 1000);
+    EXPECT_TRUE(prepared) << schema::message(prepared.error());
+    scene = std::move(*prepared);
+    live.resize(scene.view().live_words());
+    kernel.set(scene.view(), setup, live.data());
+    exact.emplace(scene, device, 1000);
+  }
+  static std::vector<std::int32_t> counts_of(const Space& place_m) {
+    std::vector<std::int32_t> counts;
+    for (const double along_m : place_m)
+      counts.push_back(static_cast<std::int32_t>(std::lround(along_m / kCount_m)));
+    return counts;
+  }
+  Space at(const Space& place_m) {
+    const core::ForceOutput output = kernel.tick(counts_of(place_m).data(), true);
+    return {double{output.unlimited_n[0]}, double{output.unlimited_n[1]}, double{output.unlimited_n[2]}};
+  }
+  // Also in double precision.
+  void compare_at(const Space& place_m) {
+    const Space force_n = at(place_m);
+    const auto reference = exact->tick(counts_of(place_m)).unlimited_n;
+    for (std::size_t i = 0; i < 3; ++i) {
+      largest_n = std::max(largest_n, std::abs(reference[i]));
+      largest_error_n = std::max(largest_error_n, std::abs(force_n[i] - reference[i]));
+    }
+  }
+};
+
+// The slope of a B-spline through 100 samples a period: within 1e-5 of the sine. The path begins half a
+// sample before the first column of the map, and a sample is half a column behind its column.
+TEST(PieceTextureTest, ARecordingIsThatOfItsPlaceOnTheWayForthAndBack) {
+  constexpr double kAmplitude_n = 0.2, kPeriod_m = 1e-3;
+  const auto sine = [&](double x) { return kAmplitude_n * std::sin(kTurn * x / kPeriod_m); };
+  for (const auto& contact : {schema::PieceContact::ghost, schema::PieceContact::add})
+    for (const double gain : {1.0, -2.0}) {
+      Piece floor = textured_floor(recording("sine", 0.02, sine));
+      floor.texture_gain = gain;
+      TexturedPieces on({floor}, contact);
+      on.at({0, 0, 1e-3});
+      EXPECT_EQ(on.at({0, 0, -1e-3})[0], 0) << "before the first way there is no direction";
+      int judged = 0;
+      for (int i = 1; i <= 1400; ++i) {
+        const double x = 20e-6 * (i <= 700 ? i : 1400 - i);
+        const Space force_n = on.at({x, 0, -1e-3});
+        EXPECT_NEAR(force_n[2], 1, 1e-6);
+        EXPECT_EQ(force_n[1], 0);
+        if (x < 1.2e-3) continue;  // the fade at the end of the texture
+        ++judged;
+        EXPECT_NEAR(force_n[0], -gain * sine(x - kSample_m), 1e-4 * kAmplitude_n * std::abs(gain)) << i;
+      }
+      EXPECT_GT(judged, 1200);
+      EXPECT_EQ(on.at({0, 0, 1e-3})[0], 0) << "nothing is touched";
+    }
+}
+
+// Around a corner of 90 degrees the line of the path turns by d(angle) = -sin(angle) ds / kPathLine_m: of its
+// length ln 2 kPathLine_m is lost.
+TEST(PieceTextureTest, ThePathTurnsWithTheWay) {
+  const auto sine = [](double x) { return 0.2 * std::sin(kTurn * x / 1e-3); };
+  TexturedPieces on({textured_floor(recording("corner", 0.02, sine))});
+  on.at({0, 0, 1e-3});
+  for (int i = 0; i <= 2000; ++i) on.at({2e-6 * i, 0, -1e-3});
+  double largest_n = 0;
+  for (int i = 1; i <= 3000; ++i) {
+    const Space force_n = on.at({4e-3, 2e-6 * i, -1e-3});
+    if (i < 1500) continue;  // 10 times kPathLine_m
+    const double s = 4e-3 + 2e-6 * i - std::numbers::ln2 * double{core::kPathLine_m};
+    // Half a tick's way, 1 um, in the place of the turn.
+    EXPECT_NEAR(force_n[1], -sine(s - kSample_m), kTurn * 1e-3 * 0.2) << i;
+    EXPECT_NEAR(force_n[0], 0, 1e-4) << i;
+    largest_n = std::max(largest_n, std::abs(force_n[1]));
+  }
+  EXPECT_GT(largest_n, 0.19);
+}
+
+// A hand on closed curves, with and without contact: what it takes from the texture is at most the range of
+// the integral of its force, however long the way is.
+TEST(PieceTextureTest, ATextureGivesNoMoreThanItsRange) {
+  // The mean is subtracted.
+  TexturedPieces on({textured_floor(recording("noise", 0.02, [](double x) { return 0.3 + noise_n(x); }))});
+  double integral = 0, least = 0, most = 0;
+  for (double x = 0; x < 0.02; x += kSample_m) {
+    integral += noise_n(x) * kSample_m;
+    least = std::min(least, integral), most = std::max(most, integral);
+  }
+  const double range_j = most - least;
+  Space last = {}, last_n = {};
+  double work_j = 0, absolute_j = 0, t = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    // It stands still while it is lifted off and lowered, and goes on above the floor in between.
+    const int of_turn = i % 5000;
+    if (of_turn > 200 || (of_turn > 50 && of_turn < 150)) t += 1e-3;
+    const Space place = {6e-3 * std::cos(2 * t) + 2e-3 * std::sin(5.3 * t), 6e-3 * std::sin(1.7 * t),
+                         of_turn < 200 ? 1e-3 : -1e-3};
+    const Space force_n = on.at(place);
+    const double step_j = 0.5 * ((force_n[0] + last_n[0]) * (place[0] - last[0]) +
+                                 (force_n[1] + last_n[1]) * (place[1] - last[1]));
+    if (i > 0 && place[2] == last[2]) work_j += step_j, absolute_j += std::abs(step_j);
+    last = place, last_n = force_n;
+    // Ticks of up to 20 um: 2 % of a period of 0.31 mm by the trapezoidal rule, in places of both signs.
+    EXPECT_LT(std::abs(work_j), 1.2 * range_j) << i;
+  }
+  EXPECT_GT(absolute_j, 500 * range_j);
+  std::printf("[ measured ] work %.3g of %.3g uJ, range %.3g uJ\n", 1e6 * work_j, 1e6 * absolute_j,
+              1e6 * range_j);
+}
+
+// Places are in single precision from the origin of the piece: the bound says what was measured.
+TEST(PieceTextureTest, TheKernelIsTheReference) {
+  Piece floor = textured_floor(recording("rough", 0.02, noise_n)), ball = floor, pipe = floor, egg = floor;
+  floor.direction = {1, 2, 8};
+  ball.shape = schema::PieceShape::sphere, ball.radius_m = 0.02, ball.z_m = -0.02;
+  pipe.shape = schema::PieceShape::cylinder, pipe.radius_m = 0.02, pipe.z_m = -0.02;
+  pipe.direction = {0, 1, 0};
+  egg.shape = schema::PieceShape::quadric, egg.z_m = -0.02;
+  egg.coefficients = {1e3, 2e3, 2.5e3, 0, 0, 0, 0, 0, 0, -1};
+  for (Piece piece : {floor, ball, pipe, egg})
+    for (const double by : {1.0, 8.0}) {
+      piece.static_friction = piece.kinetic_friction = 0.3;
+      TexturedPieces on({piece});
+      for (int i = 0; i < 4000; ++i) {
+        const double t = 1e-3 * by * i;
+        on.compare_at({4e-3 * std::sin(2 * t), 3e-3 * std::cos(3.1 * t), -1.5e-3 + 2e-3 * std::cos(0.9 * t)});
+      }
+      EXPECT_GT(on.largest_n, 0.5);
+      EXPECT_LT(on.largest_error_n, 1e-4 * on.largest_n) << to_string(piece.shape) << by;
+      std::printf("[ measured ] %s: %.2g of %.2g N\n", std::string(to_string(piece.shape)).c_str(),
+                  on.largest_error_n, on.largest_n);
+    }
+}
+
+}  // namespace
+}  // namespace tacto::playback
