@@ -53,6 +53,27 @@ Result<void> check_quadric(const Piece& piece, const std::string& where) {
       "a solid is where the sum is below 0: the unit sphere is [1, 1, 1, 0, 0, 0, 0, 0, 0, -1], in metres");
 }
 
+Result<void> check_texture_axes(const Piece& piece, const std::string& where) {
+  const auto& [u, v] = piece.texture->axes;
+  if (piece.texture->type == PieceTextureType::recording && piece.texture->axes != PieceTexture().axes)
+    return fail(ErrorKind::unsuitable, "a recording is played along the path, not along axes", where,
+                "leave the axes out");
+  const std::array<double, 3> across = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                                        u[0] * v[1] - u[1] * v[0]};
+  const double area = std::hypot(across[0], across[1], across[2]),
+               sides = std::hypot(u[0], u[1], u[2]) * std::hypot(v[0], v[1], v[2]);
+  if (!(sides > 1e-9) || !(area > 1e-6 * sides))
+    return fail(ErrorKind::unsuitable, "the axes of the texture have the same direction, or no length", where,
+                "give two directions, as in [[1, 0, 0], [0, 1, 0]]");
+  const auto& d = piece.direction;
+  const double along_normal = std::abs(across[0] * d[0] + across[1] * d[1] + across[2] * d[2]);
+  if (piece.texture->type != PieceTextureType::recording && piece.shape == PieceShape::plane &&
+      !(along_normal > 1e-3 * area * std::hypot(d[0], d[1], d[2])))
+    return fail(ErrorKind::unsuitable, "the texture is projected along the plane, and not on it", where,
+                "give two directions in the plane");
+  return {};
+}
+
 Result<void> check_members(const Piece& piece, const std::string& where) {
   const bool round = piece.shape == PieceShape::sphere || piece.shape == PieceShape::cylinder;
   const auto refused = [&](const char* member, const char* shapes) {
@@ -93,6 +114,7 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
   if (!piece.texture && (piece.texture_gain != 1 || piece.sliders.contains("texture_gain")))
     return fail(ErrorKind::unsuitable, "the gain of a texture, but there is none", where + "/texture_gain",
                 "give `texture`, or leave texture_gain out");
+  if (piece.texture) TACTO_TRY(check_texture_axes(piece, where + "/texture/axes"));
   if (piece.transient && piece.hand_surface)
     return fail(ErrorKind::unsuitable, "a piece has one transient", where + "/hand_surface",
                 "leave out `transient` or `hand_surface`");

@@ -50,14 +50,22 @@ inline constexpr HandSurfaceNumber kHandSurfaceNumbers[] = {
     {"surface_stiffness_n_per_m", &HandSurface::surface_stiffness_n_per_m},
     {"amplitude", &HandSurface::amplitude}};
 
-enum class PieceTextureType { recording };
+enum class PieceTextureType { recording, bump };
 
 /// What a surface adds to the force of its wall.
 struct PieceTexture {
   PieceTextureType type = PieceTextureType::recording;
-  std::string file;     ///< recording: stem or file name of a texture, from the scene's folder
-  double steepest = 0;  ///< not in the file, once it was read: of a recording N/m at a gain of 1
+  std::string file;  ///< stem or file name of a texture or height map, from the scene's folder
+  /// Bump: along the columns and rows of the map, whose centre is at the place of the piece. It is projected
+  /// on the surface across both.
+  std::array<std::array<double, 3>, 2> axes = {{{1, 0, 0}, {0, 1, 0}}};
+  /// Not in the file, once it was read: the largest force of a recording, N, and its largest slope, N/m; the
+  /// largest slope of a map and its largest curvature, 1/m. At a gain of 1.
+  double largest = 0, steepest = 0;
 };
+
+/// Unit vectors: the first axis, and the part of the second one across it. Precondition: check_pieces().
+std::array<std::array<double, 3>, 2> map_axes(const PieceTexture& texture);
 
 struct Piece {
   std::string name;  ///< different for each piece of a scene
@@ -117,7 +125,7 @@ std::string_view to_string(PieceShape shape);
 /// "ghost", "add".
 std::string_view to_string(PieceContact contact);
 
-/// "recording".
+/// "recording", "bump".
 std::string_view to_string(PieceTextureType type);
 
 }  // namespace tacto::schema

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "data-schema/json/json_document.hpp"
 
@@ -10,7 +11,7 @@ namespace tacto::schema {
 namespace {
 
 constexpr std::array<std::string_view, 5> kShapeWords = {"plane", "sphere", "cylinder", "quadric", "mesh"};
-constexpr std::array<std::string_view, 1> kTextureWords = {"recording"};
+constexpr std::array<std::string_view, 2> kTextureWords = {"recording", "bump"};
 
 // Before the numbers of the wall; each is written if it is not 0.
 constexpr PieceNumber kShapeNumbers[] = {{"thickness_m", &Piece::thickness_m},
@@ -45,11 +46,16 @@ PieceTexture piece_texture_from(const Json& body) {
   const auto type = std::ranges::find(kTextureWords, text_or(body, "type"));
   texture.type = static_cast<PieceTextureType>(type - kTextureWords.begin());
   texture.file = text_or(body, "file");
+  if (body.contains("axes"))
+    for (std::size_t i = 0; i < texture.axes.size(); ++i)
+      for (std::size_t j = 0; j < 3; ++j) texture.axes[i][j] = body["axes"][i][j];
   return texture;
 }
 
 Json piece_texture_body(const PieceTexture& texture) {
-  return {{"type", to_string(texture.type)}, {"file", texture.file}};
+  Json body = {{"type", to_string(texture.type)}, {"file", texture.file}};
+  if (texture.type != PieceTextureType::recording) body["axes"] = texture.axes;
+  return body;
 }
 
 }  // namespace
@@ -64,6 +70,17 @@ std::string_view to_string(PieceContact contact) {
 
 std::string_view to_string(PieceTextureType type) {
   return kTextureWords[static_cast<std::size_t>(type)];
+}
+
+std::array<std::array<double, 3>, 2> map_axes(const PieceTexture& texture) {
+  auto [u, v] = texture.axes;
+  const double first = std::hypot(u[0], u[1], u[2]);
+  for (double& part : u) part /= first;
+  const double shared = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+  for (std::size_t i = 0; i < 3; ++i) v[i] -= shared * u[i];
+  const double second = std::hypot(v[0], v[1], v[2]);
+  for (double& part : v) part /= second;
+  return {u, v};
 }
 
 NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number) {

@@ -21,6 +21,7 @@
 #include "playback/prepare/scene/acting_load.hpp"
 #include "playback/prepare/scene/body_motion.hpp"
 #include "playback/prepare/scene/contact_transient.hpp"
+#include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/plane_render.hpp"
@@ -291,8 +292,11 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
   }
   if (piece.texture) {
     row.add("texture", to_string(piece.texture->type)).add("texture_gain", piece.texture_gain);
-    row.add("texture_stiffness_n_per_m", std::abs(piece.texture_gain) * piece.texture->steepest);
-    const Relief& relief = *on.scene.reliefs.textures.at(piece.texture->file);
+    const bool bump = piece.texture->type == schema::PieceTextureType::bump;
+    row.add(bump ? "texture_peak_of_normal_force" : "texture_peak_n",
+            std::abs(piece.texture_gain) * piece.texture->largest);
+    row.add("texture_stiffness_n_per_m", texture_stiffness_n_per_m(piece, on.device));
+    const Relief& relief = on.scene.reliefs.of(*piece.texture);
     if (relief.highest_per_m > 0)
       row.add("texture_whole_to_mps", relief.whole_to_mps(double{on.setup.rate_hz}))
           .add("texture_zero_from_mps", relief.zero_from_mps(double{on.setup.rate_hz}));

@@ -64,7 +64,11 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
     if (!piece.mesh.empty() &&
         !is_within(folder, schema::mesh_path(schema::texture_in_scene(path, piece.mesh))))
       return false;
-    if (piece.texture && !serves_texture(folder, schema::texture_in_scene(path, piece.texture->file)))
+    if (!piece.texture) continue;
+    const std::string file = schema::texture_in_scene(path, piece.texture->file);
+    if (piece.texture->type == schema::PieceTextureType::bump
+            ? !is_within(folder, schema::height_map_path(file))
+            : !serves_texture(folder, file))
       return false;
   }
   return std::ranges::all_of(scene->layers, [&](const schema::Layer& layer) {

@@ -240,6 +240,36 @@ def decay_time_s(*wall):
     return -1 / RATE_HZ / np.log(growth_per_tick(*wall))
 
 
+def a_bump_map_pushes_down_its_slope():
+    height_m, per_m = 50e-6, 2 * np.pi / 2e-3
+    x_mm = np.arange(401) * 0.05
+    np.savetxt("profile.csv", np.column_stack([x_mm, 1e6 * height_m * np.sin(per_m * (x_mm - 10) / 1e3)]), delimiter=",", header="x,z", comments="")
+    run("import", "profile.csv", "--channel", "position=x*1mm", "--channel", "height=z*1um", "-o", "ridges.height.nc")
+    # Its columns along y; the hand is 0.5 mm deep, then goes 10 mm along x and along y at 20 mm/s.
+    floor = piece("floor", "plane", (0, 5e-3, 0), texture={"type": "bump", "file": "ridges", "axes": [[0, 1, 0], [1, 0, 0]]}, texture_gain=-1)
+    write_scene("ridged", floor)
+    write_row_a_tick(1.1, lambda t: 0.02 * np.clip(t - 0.05, 0, 0.5), lambda t: 0.02 * np.clip(t - 0.55, 0, 0.5), lambda t: 0.001 - 0.1 * np.minimum(t, 0.015))
+    report, place, force = forces("ridged")
+    expected = height_m * per_m * np.cos(per_m * (place[50:, 1] - 5e-3))
+    error = np.abs(force[50:, 1] - expected).max()
+    # 40 samples a period: the cubic B-spline's slope is within 1e-4.
+    assert error < 2e-4 * expected.max() and expected.max() > 0.15 and np.abs(force[50:, 0]).max() < 1e-6 and np.abs(force[50:, 2] - 1).max() < 1e-5, (error, expected.max())
+    assert report["largest_rounding_n"] < 1e-5, report
+    row = run_json("explain", "ridged.scene.json", "--device", "arm")["pieces"][0]
+    assert abs(row["texture_peak_of_normal_force"] / (height_m * per_m) - 1) < 1e-3, row
+    # At the arm's 10 N along the normal.
+    stiffness = 10 * height_m * per_m**2
+    assert growth_per_tick(stiffness, 0) > 1 > growth_per_tick(0.1 * stiffness, 0)
+    for gain, code in ((-1, UNSTABLE), (0.1, 0)):
+        write_scene("steep", floor | {"damping_n_s_per_m": 4, "texture_gain": gain})
+        row = run_json("design", "steep.scene.json", "--device", "arm", code=code)["pieces"][0]
+        assert row["along_surface"] == ("unstable" if code else "stable") and abs(row["stiffness_along_n_per_m"] / (abs(gain) * stiffness) - 1) < 0.01, (row, stiffness)
+    bumped = floor["texture"]
+    for wrong in (bumped | {"axes": [[0, 1, 0], [0, 2, 0]]}, bumped | {"axes": [[0, 1, 0], [0, 0, 1]]}, {"type": "recording", "file": "ridges", "axes": [[0, 1, 0], [1, 0, 0]]}):
+        write_scene("wrong", floor | {"texture": wrong})
+        assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces/0/texture/axes"), wrong
+
+
 def design_of_a_wall_is_that_of_numpy():
     arm = json.loads((pathlib.Path(__file__).parents[2] / "data-schema/presets/arm.device.json").read_text())
     hands = {"nothing": (0, 0, 0), "soft": (0.05, 1, 100), "stiff": (0.1, 2, 4000)}
@@ -457,7 +487,7 @@ def a_recording_on_a_piece_is_played_along_the_path():
     write_scene("wrong", piece("floor", "plane", texture_gain=2))
     assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces/0/texture_gain")
     write_scene("wrong", floor | {"texture": {"type": "recording", "file": "none"}})
-    assert "#/pieces/0/texture/file" in json.dumps(json.loads(subprocess.run([tacto.COMMAND, "check", "wrong.scene.json", "--json"], capture_output=True, text=True, timeout=600).stdout))
+    assert "#/pieces/0/texture/file" in json.dumps(json.loads(subprocess.run([tacto.COMMAND, "validate", "wrong.scene.json", "--json"], capture_output=True, text=True, timeout=600).stdout))
 
 
 def what_cannot_be_is_refused():
@@ -487,6 +517,6 @@ def what_cannot_be_is_refused():
 
 if __name__ == "__main__":
     for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit, a_dragged_hand_slips_and_sliders_move,
-                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, a_recording_on_a_piece_is_played_along_the_path, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
+                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, a_recording_on_a_piece_is_played_along_the_path, a_bump_map_pushes_down_its_slope, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
                  what_cannot_be_is_refused):
         tacto.in_folder(test)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The texture of a piece in space: a recorded force along the path of the point on its surface.
+// The texture of a piece in space: a recorded force along the path of the point on its surface, or a map that
+// turns the force of its wall.
 #pragma once
 
 #include "firmware-host/core/scene/piece.hpp"
@@ -19,7 +20,11 @@ inline constexpr float kPathLine_m = 3e-4F;
 /// turns to the way of the point (kPathLine_m). On the way back along the same line s falls, so that each
 /// place has its force, as on a tray. The work along any path is gain times the difference of the integral of
 /// f at its two ends: with a mean of 0 (prepare_pieces() subtracts it) a texture gives back what was put in,
-/// and not more. Safe in the tick.
+/// and not more.
+///
+/// Bump: -gain normal_n grad h along the surface, with the height map h(u, v) projected on the surface across
+/// its two axes (Massie 1996). The force along the normal stays. With a constant one the work along any
+/// closed path is 0, on every shape, because h is a function of the place on the surface. Safe in the tick.
 SpaceVector texture_force(const PieceTable& table, const float* number, WallState& state, float normal_n,
                           SpaceVector normal, SpaceVector place_m, SpaceVector speed_mps,
                           float rate_hz) noexcept;

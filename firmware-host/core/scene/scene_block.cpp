@@ -226,8 +226,14 @@ bool sound(const PieceTable& table, SceneLayerKind kind) noexcept {
 }
 
 bool sound(const PieceTextureTable& table) noexcept {
-  return table.kind == static_cast<uint32_t>(PieceTextureKind::recording) &&
-         within(table.passes_per_m, 0, kMostPasses_per_m);
+  for (const float(&axis)[3] : table.axes)
+    if (!within(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2], 1 - kUnitRounding,
+                1 + kUnitRounding))
+      return false;
+  for (const float at_m : table.origin_m)
+    if (!within(at_m, -kLargestPiece_m, kLargestPiece_m)) return false;
+  return table.kind >= 1 && table.kind <= static_cast<uint32_t>(PieceTextureKind::bump) &&
+         within(table.per_m, 0, kMostPasses_per_m);
 }
 
 // Behind the `words` of its piece, which it adds to.

@@ -310,14 +310,16 @@ inline const float* vertices_of(const MeshTable& table) noexcept {
   return reinterpret_cast<const float*>(triangles_of(table) + 3 * static_cast<uint64_t>(table.triangles));
 }
 
-enum class PieceTextureKind : uint32_t { recording = 1 };
+enum class PieceTextureKind : uint32_t { recording = 1, bump = 2 };
 
 /// Behind all other words of a piece, and before the relief of its texture (ReliefTable).
 struct PieceTextureTable {
-  uint32_t kind = 0;       ///< PieceTextureKind
-  float passes_per_m = 0;  ///< of a recording: forth and back, along the path
+  uint32_t kind = 0;                          ///< PieceTextureKind
+  float per_m = 0;                            ///< of a recording: how often a path plays it forth and back
+  float axes[2][3] = {{1, 0, 0}, {0, 1, 0}};  ///< of a map, unit vectors
+  float origin_m[2] = {};                     ///< on the map: the origin of the piece
 };
-static_assert(sizeof(PieceTextureTable) == 8);
+static_assert(sizeof(PieceTextureTable) == 40);
 
 /// Precondition: it has one.
 inline const PieceTextureTable& texture_of(const PieceTable& table) noexcept {

@@ -127,15 +127,33 @@ Result<void> read_meshes(PreparedScene& scene, const std::string& where) {
 }
 
 // Behind the other words of its piece, which begin with the PieceTable.
-void append_texture(const Piece& piece, const Reliefs& reliefs, std::vector<std::uint32_t>& words) {
+void append_texture(const Piece& piece, const Reliefs& reliefs, const PlaneSteps& steps,
+                    std::vector<std::uint32_t>& words) {
   if (!piece.texture) return;
-  words[offsetof(core::PieceTable, texture) / sizeof(std::uint32_t)] =
-      static_cast<std::uint32_t>(words.size());
-  const Relief& relief = *reliefs.textures.at(piece.texture->file);
-  const double length_m = static_cast<double>(relief.columns) * relief.pitch_m;
-  append_words(words, std::vector{core::PieceTextureTable{
-                          static_cast<std::uint32_t>(core::PieceTextureKind::recording),
-                          static_cast<float>(1 / (2 * length_m))}});
+  core::PieceTable table;
+  std::memcpy(static_cast<void*>(&table), words.data(), sizeof table);
+  table.texture = static_cast<std::uint32_t>(words.size());
+  std::memcpy(words.data(), &table, sizeof table);
+  const Relief& relief = reliefs.of(*piece.texture);
+  core::PieceTextureTable texture;
+  if (piece.texture->type == schema::PieceTextureType::bump) {
+    texture.kind = static_cast<std::uint32_t>(core::PieceTextureKind::bump);
+    const double step_m[3] = {steps.x_m, steps.y_m, steps.z_m},
+                 place_m[3] = {piece.x_m, piece.y_m, piece.z_m};
+    const auto axes = map_axes(*piece.texture);
+    for (std::size_t i = 0; i < 2; ++i) {
+      double origin_m = 0;
+      for (std::size_t j = 0; j < 3; ++j) {
+        texture.axes[i][j] = static_cast<float>(axes[i][j]);
+        origin_m += axes[i][j] * (table.origin[j] * step_m[j] + double{table.rest_m[j]} - place_m[j]);
+      }
+      texture.origin_m[i] = static_cast<float>(origin_m);
+    }
+  } else {
+    texture.kind = static_cast<std::uint32_t>(core::PieceTextureKind::recording);
+    texture.per_m = static_cast<float>(1 / (2 * static_cast<double>(relief.columns) * relief.pitch_m));
+  }
+  append_words(words, std::vector{texture});
   append_words(words, relief_table(relief, 0, {}, {0, 0}));
 }
 
@@ -210,7 +228,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
     if (piece.shape == PieceShape::mesh) {
       auto words = words_of_mesh(piece, *base.meshes.at(piece.mesh), base.steps, *transient, at);
       TACTO_TRY(words);
-      append_texture(piece, base.reliefs, *words);
+      append_texture(piece, base.reliefs, base.steps, *words);
       append_words(tables, *words);
       continue;
     }
@@ -219,7 +237,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
     table->transient = *transient;
     std::vector<std::uint32_t> words;
     append_words(words, std::vector{*table});
-    append_texture(piece, base.reliefs, words);
+    append_texture(piece, base.reliefs, base.steps, words);
     append_words(tables, words);
   }
   core::SceneHeader header;

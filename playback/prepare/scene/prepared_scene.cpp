@@ -380,7 +380,8 @@ std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLa
 
 std::string PreparedScene::remedy_for(std::size_t room) const {
   if (!meshes.empty()) return remedy_for_meshes(*this, room);
-  if (!pieces.empty()) return reliefs.textures.empty() ? "" : "make its textures shorter";
+  if (!pieces.empty() && reliefs.textures.empty() && reliefs.height_maps.empty()) return {};
+  if (!pieces.empty()) return "make its textures shorter, or give its height maps a larger pitch";
   std::size_t maps = 0, textures = 0;
   for (const schema::Patch& patch : patches)
     for (const ForceLayer& layer : patch.layers)
@@ -450,13 +451,16 @@ Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, dou
   };
   for (schema::Piece& piece : scene.pieces) {
     if (!piece.texture) continue;
-    auto& relief = reliefs.textures[piece.texture->file];
+    const std::string file = schema::texture_in_scene(where, piece.texture->file);
+    const bool bump = piece.texture->type == schema::PieceTextureType::bump;
+    auto& relief = (bump ? reliefs.height_maps : reliefs.textures)[piece.texture->file];
     if (!relief) {
-      auto levels = levels_of_texture(schema::texture_in_scene(where, piece.texture->file), rate_hz, true);
+      auto levels = bump ? levels_of_map(file, rate_hz) : levels_of_texture(file, rate_hz, true);
       TACTO_TRY(levels);
       relief = std::make_shared<const Relief>(std::move(*levels));
     }
-    piece.texture->steepest = relief->curvature_per_m(INFINITY, 0);
+    piece.texture->largest = relief->largest_slope();
+    piece.texture->steepest = relief->curvature_per_m(INFINITY, INFINITY);
   }
   for (schema::Patch& patch : scene.patches)
     for (ForceLayer& layer : patch.layers)

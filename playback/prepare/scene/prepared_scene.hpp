@@ -40,6 +40,9 @@ struct Reliefs {
   std::map<std::string, std::shared_ptr<const ForceRelief>> force_maps;
   std::map<std::string, std::shared_ptr<const std::vector<schema::Atom>>> atoms;
 
+  const Relief& of(const schema::PieceTexture& texture) const {
+    return *(texture.type == schema::PieceTextureType::bump ? height_maps : textures).at(texture.file);
+  }
   const Relief& of(const schema::HeightMapLayer& layer) const { return *height_maps.at(layer.file); }
   const Relief& of(const schema::TextureForceLayer& layer) const { return *textures.at(layer.file); }
   const ForceRelief& of(const schema::ForceMapLayer& layer) const { return *force_maps.at(layer.file); }

@@ -327,13 +327,22 @@ SpaceMetres ExactGhost::texture_force(const Piece& piece, Wall& wall, double nor
                                       const SpaceMetres& speed_mps) const {
   if (!piece.texture || !(normal_n > 0)) return {};
   const auto along = [&](const SpaceMetres& v) { return sum_of(v, -inner(v, normal), normal); };
+  if (piece.texture->type == schema::PieceTextureType::bump) {
+    const auto [u, v] = map_axes(*piece.texture);
+    const SpaceMetres at_m = sum_of(place_m, -1, {piece.x_m, piece.y_m, piece.z_m}),
+                      passed_mps = along(speed_mps);
+    const auto slope = exact_slope(scene_.reliefs.of(*piece.texture), inner(u, at_m), inner(v, at_m),
+                                   std::hypot(inner(u, passed_mps), inner(v, passed_mps)), 1 / tick_s_);
+    return sum_of({}, -piece.texture_gain * normal_n,
+                  along(sum_of(sum_of({}, slope.along_columns, u), slope.along_rows, v)));
+  }
   const SpaceMetres way = along(sum_of(place_m, -1, wall.last_m)), before = along(wall.line);
   const double by = (inner(way, before) < 0 ? -1 : 1) / double{core::kPathLine_m};
   const SpaceMetres turned = sum_of(before, by, way);
   if (!(size_of(turned) > 0)) return {};
   wall.line = unit_of(turned);
   wall.path_m += inner(way, wall.line);
-  const Relief& relief = *scene_.reliefs.textures.at(piece.texture->file);
+  const Relief& relief = scene_.reliefs.of(*piece.texture);
   // From the first end of the texture forth to the other one, and back.
   const double length_m = static_cast<double>(relief.columns) * relief.pitch_m;
   const double turns = wall.path_m / (2 * length_m), part = turns - std::floor(turns);
