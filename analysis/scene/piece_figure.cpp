@@ -196,7 +196,8 @@ std::string words_of(const Piece& piece) {
   }
   if (piece.transient || piece.hand_surface) words += ", contact transient";
   if (piece.texture)
-    words += fmt::format(", texture {} {}", to_string(piece.texture->type), piece.texture->file);
+    words += fmt::format(", texture {}{}{}", to_string(piece.texture->type),
+                         piece.texture->file.empty() ? "" : " ", piece.texture->file);
   return words;
 }
 

@@ -81,7 +81,7 @@ std::vector<Finding> check_scene(const std::string& path, const Document& docume
       const auto map = read_height_map(texture_in_scene(path, texture->file));
       if (!map)
         findings.push_back({fmt::format("{}#/pieces/{}/texture/file", path, i), message(map.error())});
-    } else if (texture)
+    } else if (texture && texture->type == PieceTextureType::recording)
       check_played_texture(path, texture->file, fmt::format("{}#/pieces/{}/texture/file", path, i), findings);
     if (scene->pieces[i].shape != PieceShape::mesh) continue;
     const auto mesh = read_mesh(texture_in_scene(path, scene->pieces[i].mesh));

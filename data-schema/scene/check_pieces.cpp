@@ -53,7 +53,17 @@ Result<void> check_quadric(const Piece& piece, const std::string& where) {
       "a solid is where the sum is below 0: the unit sphere is [1, 1, 1, 0, 0, 0, 0, 0, 0, -1], in metres");
 }
 
-Result<void> check_texture_axes(const Piece& piece, const std::string& where) {
+Result<void> check_piece_texture(const Piece& piece, const std::string& texture_where) {
+  const bool sine = piece.texture->type == PieceTextureType::sine;
+  const auto needless = [&](const char* member, const char* types) {
+    return fail(ErrorKind::unsuitable,
+                fmt::format("{} of a texture of the type {}", member, to_string(piece.texture->type)),
+                fmt::format("{}/{}", texture_where, member), fmt::format("it belongs to: {}", types));
+  };
+  if (sine && !piece.texture->file.empty()) return needless("file", "recording, bump");
+  if (!sine && piece.texture->amplitude_n > 0) return needless("amplitude_n", "sine");
+  if (!sine && piece.texture->periods_m[0] > 0) return needless("periods_m", "sine");
+  const std::string where = texture_where + "/axes";
   const auto& [u, v] = piece.texture->axes;
   if (piece.texture->type == PieceTextureType::recording && piece.texture->axes != PieceTexture().axes)
     return fail(ErrorKind::unsuitable, "a recording is played along the path, not along axes", where,
@@ -114,7 +124,7 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
   if (!piece.texture && (piece.texture_gain != 1 || piece.sliders.contains("texture_gain")))
     return fail(ErrorKind::unsuitable, "the gain of a texture, but there is none", where + "/texture_gain",
                 "give `texture`, or leave texture_gain out");
-  if (piece.texture) TACTO_TRY(check_texture_axes(piece, where + "/texture/axes"));
+  if (piece.texture) TACTO_TRY(check_piece_texture(piece, where + "/texture"));
   if (piece.transient && piece.hand_surface)
     return fail(ErrorKind::unsuitable, "a piece has one transient", where + "/hand_surface",
                 "leave out `transient` or `hand_surface`");

@@ -50,15 +50,17 @@ inline constexpr HandSurfaceNumber kHandSurfaceNumbers[] = {
     {"surface_stiffness_n_per_m", &HandSurface::surface_stiffness_n_per_m},
     {"amplitude", &HandSurface::amplitude}};
 
-enum class PieceTextureType { recording, bump };
+enum class PieceTextureType { recording, bump, sine };
 
 /// What a surface adds to the force of its wall.
 struct PieceTexture {
   PieceTextureType type = PieceTextureType::recording;
   std::string file;  ///< stem or file name of a texture or height map, from the scene's folder
   /// Bump: along the columns and rows of the map, whose centre is at the place of the piece. It is projected
-  /// on the surface across both.
+  /// on the surface across both. Sine: amplitude x sin x sin of the places along both.
   std::array<std::array<double, 3>, 2> axes = {{{1, 0, 0}, {0, 1, 0}}};
+  std::array<double, 2> periods_m = {};  ///< of a sine
+  double amplitude_n = 0;
   /// Not in the file, once it was read: the largest force of a recording, N, and its largest slope, N/m; the
   /// largest slope of a map and its largest curvature, 1/m. At a gain of 1.
   double largest = 0, steepest = 0;
@@ -125,7 +127,7 @@ std::string_view to_string(PieceShape shape);
 /// "ghost", "add".
 std::string_view to_string(PieceContact contact);
 
-/// "recording", "bump".
+/// "recording", "bump", "sine".
 std::string_view to_string(PieceTextureType type);
 
 }  // namespace tacto::schema

@@ -11,7 +11,7 @@ namespace tacto::schema {
 namespace {
 
 constexpr std::array<std::string_view, 5> kShapeWords = {"plane", "sphere", "cylinder", "quadric", "mesh"};
-constexpr std::array<std::string_view, 2> kTextureWords = {"recording", "bump"};
+constexpr std::array<std::string_view, 3> kTextureWords = {"recording", "bump", "sine"};
 
 // Before the numbers of the wall; each is written if it is not 0.
 constexpr PieceNumber kShapeNumbers[] = {{"thickness_m", &Piece::thickness_m},
@@ -49,11 +49,17 @@ PieceTexture piece_texture_from(const Json& body) {
   if (body.contains("axes"))
     for (std::size_t i = 0; i < texture.axes.size(); ++i)
       for (std::size_t j = 0; j < 3; ++j) texture.axes[i][j] = body["axes"][i][j];
+  if (body.contains("periods_m")) texture.periods_m = {body["periods_m"][0], body["periods_m"][1]};
+  texture.amplitude_n = number_or(body, "amplitude_n", 0);
   return texture;
 }
 
 Json piece_texture_body(const PieceTexture& texture) {
-  Json body = {{"type", to_string(texture.type)}, {"file", texture.file}};
+  Json body = {{"type", to_string(texture.type)}};
+  if (texture.type == PieceTextureType::sine)
+    body["periods_m"] = texture.periods_m, body["amplitude_n"] = texture.amplitude_n;
+  else
+    body["file"] = texture.file;
   if (texture.type != PieceTextureType::recording) body["axes"] = texture.axes;
   return body;
 }

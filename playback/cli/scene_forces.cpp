@@ -269,6 +269,26 @@ std::vector<Report> rows_of_layers(const SceneOnDevice& on) {
   return rows;
 }
 
+void add_texture(Report& row, const schema::Piece& piece, const SceneOnDevice& on) {
+  const schema::PieceTexture& texture = *piece.texture;
+  const double gain = std::abs(piece.texture_gain), rate_hz = double{on.setup.rate_hz};
+  row.add("texture", to_string(texture.type)).add("texture_gain", piece.texture_gain);
+  if (texture.type == schema::PieceTextureType::sine) {
+    const double u_per_m = 1 / texture.periods_m[0], v_per_m = 1 / texture.periods_m[1];
+    row.add("texture_peak_n", gain * texture.amplitude_n)
+        .add("texture_whole_to_mps", core::kWholePerTick * rate_hz / std::hypot(u_per_m, v_per_m))
+        .add("texture_zero_from_mps", core::kZeroPerTick * rate_hz / std::min(u_per_m, v_per_m));
+    return;
+  }
+  const bool bump = texture.type == schema::PieceTextureType::bump;
+  row.add(bump ? "texture_peak_of_normal_force" : "texture_peak_n", gain * texture.largest);
+  row.add("texture_stiffness_n_per_m", texture_stiffness_n_per_m(piece, on.device));
+  const Relief& relief = on.scene.reliefs.of(texture);
+  if (!(relief.highest_per_m > 0)) return;
+  row.add("texture_whole_to_mps", relief.whole_to_mps(rate_hz));
+  row.add("texture_zero_from_mps", relief.zero_from_mps(rate_hz));
+}
+
 Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece) {
   schema::Scene one;
   one.pieces = {piece};
@@ -290,17 +310,7 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
                       number.value == &schema::Piece::viscous_n_s_per_m;
     if (rubs && piece.*number.value > 0) row.add(number.name, piece.*number.value);
   }
-  if (piece.texture) {
-    row.add("texture", to_string(piece.texture->type)).add("texture_gain", piece.texture_gain);
-    const bool bump = piece.texture->type == schema::PieceTextureType::bump;
-    row.add(bump ? "texture_peak_of_normal_force" : "texture_peak_n",
-            std::abs(piece.texture_gain) * piece.texture->largest);
-    row.add("texture_stiffness_n_per_m", texture_stiffness_n_per_m(piece, on.device));
-    const Relief& relief = on.scene.reliefs.of(*piece.texture);
-    if (relief.highest_per_m > 0)
-      row.add("texture_whole_to_mps", relief.whole_to_mps(double{on.setup.rate_hz}))
-          .add("texture_zero_from_mps", relief.zero_from_mps(double{on.setup.rate_hz}));
-  }
+  if (piece.texture) add_texture(row, piece, on);
   if (piece.arrest_mass_kg > 0)
     row.add("arrest_in_one_tick_to_mps",
             on.device.peak_force_n / (piece.arrest_mass_kg * double{on.setup.rate_hz}));

@@ -64,7 +64,7 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
     if (!piece.mesh.empty() &&
         !is_within(folder, schema::mesh_path(schema::texture_in_scene(path, piece.mesh))))
       return false;
-    if (!piece.texture) continue;
+    if (!piece.texture || piece.texture->file.empty()) continue;
     const std::string file = schema::texture_in_scene(path, piece.texture->file);
     if (piece.texture->type == schema::PieceTextureType::bump
             ? !is_within(folder, schema::height_map_path(file))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Textures on pieces in space: the recorded force along the path, a bump map, their work, and the reference
-// in double precision.
+// Textures on pieces in space: the recorded force along the path, a bump map and a sine, their work, and the
+// reference in double precision.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -276,6 +276,39 @@ TEST(PieceTextureTest, ABumpDoesNoWorkOnAClosedPath) {
   }
 }
 
+schema::PieceTexture sine(double amplitude_n, double p_m, double q_m) {
+  schema::PieceTexture made;
+  made.type = schema::PieceTextureType::sine;
+  made.periods_m = {p_m, q_m}, made.amplitude_n = amplitude_n;
+  return made;
+}
+
+TEST(PieceTextureTest, ASineIsAddedToTheForceAlongTheNormalAndNeverPulls) {
+  constexpr double kAmplitude_n = 0.5, kP_m = 2e-3, kQ_m = 3e-3;
+  for (const auto& contact : {schema::PieceContact::ghost, schema::PieceContact::add})
+    for (const double gain : {1.0, -1.0}) {
+      Piece floor = textured_floor(sine(kAmplitude_n, kP_m, kQ_m));
+      floor.x_m = 4e-4, floor.texture_gain = gain;
+      TexturedPieces on({floor}, contact);
+      on.at({0, 0, 1e-3});
+      for (int i = 0; i < 3000; ++i) {
+        const double t = 1e-3 * i;
+        const Space hand = {2e-3 * std::sin(5 * t), 3e-3 * std::cos(4 * t),
+                            -0.5e-3 + 0.7e-3 * std::cos(3 * t)};
+        const Space force_n = on.at(hand);
+        // The kernel knows the hand at whole counts.
+        const double x = kCount_m * std::round(hand[0] / kCount_m) - floor.x_m,
+                     y = kCount_m * std::round(hand[1] / kCount_m),
+                     wall_n = std::max(0.0, -1000 * kCount_m * std::round(hand[2] / kCount_m));
+        const double share = std::sin(kTurn * x / kP_m) * std::sin(kTurn * y / kQ_m);
+        const double expected_n = wall_n + gain * std::min(kAmplitude_n, wall_n) * share;
+        EXPECT_NEAR(force_n[2], expected_n, 1e-5) << i;
+        EXPECT_GE(force_n[2], 0);
+        EXPECT_LE(std::hypot(force_n[0], force_n[1]), 0) << "along the normal only";
+      }
+    }
+}
+
 // Places are in single precision from the origin of the piece: the bound says what was measured.
 TEST(PieceTextureTest, TheKernelIsTheReference) {
   const auto hills = [](double u, double v) {
@@ -292,6 +325,8 @@ TEST(PieceTextureTest, TheKernelIsTheReference) {
   for (std::size_t i = 0; i < 4; ++i) {
     pieces.push_back(pieces[i]);
     pieces.back().texture = bump("hilly", hills);
+    pieces.push_back(pieces[i]);
+    pieces.back().texture = sine(0.4, 1.7e-3, 2.3e-3);
   }
   for (Piece piece : pieces)
     for (const double by : {1.0, 8.0}) {

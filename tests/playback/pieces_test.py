@@ -270,6 +270,33 @@ def a_bump_map_pushes_down_its_slope():
         assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces/0/texture/axes"), wrong
 
 
+def a_sine_in_a_wall_is_judged_at_twice_its_stiffness():
+    floor = piece("floor", "plane", damping_n_s_per_m=4, texture={"type": "sine", "periods_m": [2e-3, 3e-3], "amplitude_n": 0.4})
+    write_scene("waves", floor)
+    # 0.5 mm deep at 20 mm/s on a diagonal, 2 counts a tick along each axis.
+    write_row_a_tick(0.6, lambda t: 0.02 * np.maximum(t - 0.05, 0), lambda t: 0.02 * np.maximum(t - 0.05, 0), lambda t: 0.001 - 0.1 * np.minimum(t, 0.015))
+    report, place, force = forces("waves")
+    expected = 1 + 0.4 * np.sin(2 * np.pi * place[50:, 0] / 2e-3) * np.sin(2 * np.pi * place[50:, 1] / 3e-3)
+    assert np.abs(force[50:, 2] - expected).max() < 1e-5 and np.abs(force[50:, :2]).max() == 0 and np.ptp(expected) > 0.6, np.abs(force[50:, 2] - expected).max()
+    assert report["largest_rounding_n"] < 1e-5, report
+    row = run_json("explain", "waves.scene.json", "--device", "arm")["pieces"][0]
+    assert row["texture_peak_n"] == 0.4 and abs(row["texture_whole_to_mps"] * np.hypot(500, 1000 / 3) / 375 - 1) < 1e-6, row
+    info = run_json("info", "waves.scene.json")["pieces"][0]
+    assert info["texture"] == "sine" and info["texture_period_v_m"] == 3e-3, info
+    # At forces below the amplitude a depth changes both the wall's force and the sine's.
+    assert growth_per_tick(2 * STIFFNESS, 8) < 1 and growth_per_tick(1800, 0) > 1 > growth_per_tick(900, 0)
+    row = run_json("design", "waves.scene.json", "--device", "arm")["pieces"][0]
+    assert row["total_stiffness_n_per_m"] == 2 * STIFFNESS and abs(row["decay_time_s"] / decay_time_s(2 * STIFFNESS, 8) - 1) < 1e-6, row
+    for gain, code in ((0.1, UNSTABLE), (0, 0)):
+        write_scene("soft", floor | {"damping_n_s_per_m": 0, "stiffness_n_per_m": 900, "texture_gain": gain})
+        assert run_json("design", "soft.scene.json", "--device", "arm", code=code)["pieces"][0]["verdict"] == ("unstable" if code else "stable"), gain
+    waves = floor["texture"]
+    for wrong, code, where in ((waves | {"file": "oak"}, UNSUITABLE, "file"), ({"type": "sine", "periods_m": [1e-3, 1e-3]}, MALFORMED, ""), (waves | {"periods_m": [0, 1]}, MALFORMED, "periods_m"), ({"type": "bump", "file": "x", "amplitude_n": 1}, UNSUITABLE, "amplitude_n")):
+        write_scene("wrong", floor | {"texture": wrong})
+        error = error_of("explain", "wrong.scene.json", "--device", "arm", code=code)
+        assert "#/pieces/0/texture" in error["where"] and where in error["where"], (wrong, error)
+
+
 def design_of_a_wall_is_that_of_numpy():
     arm = json.loads((pathlib.Path(__file__).parents[2] / "data-schema/presets/arm.device.json").read_text())
     hands = {"nothing": (0, 0, 0), "soft": (0.05, 1, 100), "stiff": (0.1, 2, 4000)}
@@ -517,6 +544,6 @@ def what_cannot_be_is_refused():
 
 if __name__ == "__main__":
     for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit, a_dragged_hand_slips_and_sliders_move,
-                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, a_recording_on_a_piece_is_played_along_the_path, a_bump_map_pushes_down_its_slope, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
+                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, a_recording_on_a_piece_is_played_along_the_path, a_bump_map_pushes_down_its_slope, a_sine_in_a_wall_is_judged_at_twice_its_stiffness, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
                  what_cannot_be_is_refused):
         tacto.in_folder(test)

@@ -2,7 +2,9 @@
 #include "firmware-host/core/scene/piece_texture.hpp"
 
 #include "firmware-host/core/kernel/finite.hpp"
+#include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/relief.hpp"
+#include "firmware-host/core/scene/turn.hpp"
 
 namespace tacto::core {
 namespace {
@@ -18,7 +20,7 @@ namespace {
   if (!(size > 0)) return {};
   const SpaceVector line = state.line = (1 / size) * turned;
   constexpr float kMostPart = 0x1.fffffep30F;
-  const float part = dot(way, line) * texture.per_m * 0x1p32F;
+  const float part = dot(way, line) * texture.per_m[0] * 0x1p32F;
   if (within(part, -kMostPart, kMostPart)) state.path += static_cast<uint32_t>(static_cast<int32_t>(part));
   constexpr uint32_t kTurn = UINT32_C(1) << 31;
   const uint32_t from_first = state.path < kTurn ? state.path : ~state.path;
@@ -60,9 +62,26 @@ Q32 fixed_point(float value) noexcept {
   return -kappa_n * along(slope.x * axes[0] + slope.y * axes[1]);
 }
 
+[[gnu::noinline]] float with_sine(const PieceTextureTable& texture, float gain, float normal_n,
+                                  SpaceVector normal, SpaceVector place_m, SpaceVector speed_mps,
+                                  float rate_hz) noexcept {
+  const SpaceVector passed_mps = speed_mps - dot(normal, speed_mps) * normal;
+  const float most_n = (gain < 0 ? -gain : gain) * texture.amplitude_n;
+  float added_n = gain * texture.amplitude_n, periods_per_s = 0;
+  for (int i = 0; i < 2; ++i) {
+    const SpaceVector axis = axis_of(texture, i);
+    const float at_m = dot(axis, place_m) + texture.origin_m[i], along_mps = dot(axis, passed_mps);
+    added_n *= sine_cosine(static_cast<uint32_t>(fixed_point(at_m * texture.per_m[i]))).sine;
+    periods_per_s += (along_mps < 0 ? -along_mps : along_mps) * texture.per_m[i];
+  }
+  added_n *= held_by_rate(periods_per_s / rate_hz);
+  const float sum_n = normal_n + (normal_n < most_n ? normal_n / most_n : 1) * added_n;
+  return sum_n > 0 ? sum_n : 0;
+}
+
 }  // namespace
 
-SpaceVector texture_force(const PieceTable& table, const float* number, WallState& state, float normal_n,
+SpaceVector texture_force(const PieceTable& table, const float* number, WallState& state, float& normal_n,
                           SpaceVector normal, SpaceVector place_m, SpaceVector speed_mps,
                           float rate_hz) noexcept {
   if (table.texture == 0 || !(normal_n > 0)) return {};
@@ -70,6 +89,10 @@ SpaceVector texture_force(const PieceTable& table, const float* number, WallStat
   const float gain = number[kPieceTextureGain];
   if (texture.kind == static_cast<uint32_t>(PieceTextureKind::bump))
     return bump_force(texture, gain * normal_n, normal, place_m, speed_mps, rate_hz);
+  if (texture.kind == static_cast<uint32_t>(PieceTextureKind::sine)) {
+    normal_n = with_sine(texture, gain, normal_n, normal, place_m, speed_mps, rate_hz);
+    return {};
+  }
   return recording_force(texture, gain, state, normal, place_m, speed_mps, rate_hz);
 }
 

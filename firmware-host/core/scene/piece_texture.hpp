@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The texture of a piece in space: a recorded force along the path of the point on its surface, or a map that
-// turns the force of its wall.
+// turns the force of its wall, or a sine in it.
 #pragma once
 
 #include "firmware-host/core/scene/piece.hpp"
@@ -24,8 +24,13 @@ inline constexpr float kPathLine_m = 3e-4F;
 ///
 /// Bump: -gain normal_n grad h along the surface, with the height map h(u, v) projected on the surface across
 /// its two axes (Massie 1996). The force along the normal stays. With a constant one the work along any
-/// closed path is 0, on every shape, because h is a function of the place on the surface. Safe in the tick.
-SpaceVector texture_force(const PieceTable& table, const float* number, WallState& state, float normal_n,
+/// closed path is 0, on every shape, because h is a function of the place on the surface.
+///
+/// Sine: a sin(2 pi u / p) sin(2 pi v / q) is added to `normal_n`, along the same axes (Massie 1996), with
+/// the gain x amplitude a; where the force of the wall is below |a| it takes the place of |a|, so that the
+/// sum is not below 0 and begins with 0 at a contact. Frequencies above half the rate are not played
+/// (held_by_rate()). Safe in the tick.
+SpaceVector texture_force(const PieceTable& table, const float* number, WallState& state, float& normal_n,
                           SpaceVector normal, SpaceVector place_m, SpaceVector speed_mps,
                           float rate_hz) noexcept;
 

@@ -232,8 +232,9 @@ bool sound(const PieceTextureTable& table) noexcept {
       return false;
   for (const float at_m : table.origin_m)
     if (!within(at_m, -kLargestPiece_m, kLargestPiece_m)) return false;
-  return table.kind >= 1 && table.kind <= static_cast<uint32_t>(PieceTextureKind::bump) &&
-         within(table.per_m, 0, kMostPasses_per_m);
+  return table.kind >= 1 && table.kind <= static_cast<uint32_t>(PieceTextureKind::sine) &&
+         within(table.per_m[0], 0, kMostPasses_per_m) && within(table.per_m[1], 0, kMostPasses_per_m) &&
+         within(table.amplitude_n, 0, kMostKappa_n);
 }
 
 // Behind the `words` of its piece, which it adds to.
@@ -245,6 +246,7 @@ SceneFault check_texture(const SceneView& view, const SceneLayer& layer, uint32_
   if (piece.texture != words || room - words < kHead) return SceneFault::structure;
   if (!sound(texture_of(piece))) return SceneFault::value;
   words += kHead;
+  if (texture_of(piece).kind == static_cast<uint32_t>(PieceTextureKind::sine)) return SceneFault::none;
   uint32_t of_relief = 0;
   const SceneLayer behind{layer.kind, layer.first_number, layer.table + words};
   const SceneFault fault = check_relief(view, behind, 1, kLargestCoefficient_m, room - words, of_relief);

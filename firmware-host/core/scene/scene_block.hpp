@@ -310,16 +310,17 @@ inline const float* vertices_of(const MeshTable& table) noexcept {
   return reinterpret_cast<const float*>(triangles_of(table) + 3 * static_cast<uint64_t>(table.triangles));
 }
 
-enum class PieceTextureKind : uint32_t { recording = 1, bump = 2 };
+enum class PieceTextureKind : uint32_t { recording = 1, bump = 2, sine = 3 };
 
-/// Behind all other words of a piece, and before the relief of its texture (ReliefTable).
+/// Behind all other words of a piece, and before the relief of a recording or bump (ReliefTable).
 struct PieceTextureTable {
-  uint32_t kind = 0;                          ///< PieceTextureKind
-  float per_m = 0;                            ///< of a recording: how often a path plays it forth and back
+  uint32_t kind = 0;      ///< PieceTextureKind
+  float per_m[2] = {};    ///< of a recording: how often a path plays it forth and back; of a sine: periods
+  float amplitude_n = 0;  ///< of a sine
   float axes[2][3] = {{1, 0, 0}, {0, 1, 0}};  ///< of a map, unit vectors
   float origin_m[2] = {};                     ///< on the map: the origin of the piece
 };
-static_assert(sizeof(PieceTextureTable) == 40);
+static_assert(sizeof(PieceTextureTable) == 48);
 
 /// Precondition: it has one.
 inline const PieceTextureTable& texture_of(const PieceTable& table) noexcept {

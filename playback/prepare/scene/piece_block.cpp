@@ -126,6 +126,18 @@ Result<void> read_meshes(PreparedScene& scene, const std::string& where) {
   return {};
 }
 
+core::PieceTextureKind kind_of_texture(schema::PieceTextureType type) {
+  switch (type) {
+    case schema::PieceTextureType::recording:
+      return core::PieceTextureKind::recording;
+    case schema::PieceTextureType::bump:
+      return core::PieceTextureKind::bump;
+    case schema::PieceTextureType::sine:
+      break;
+  }
+  return core::PieceTextureKind::sine;
+}
+
 // Behind the other words of its piece, which begin with the PieceTable.
 void append_texture(const Piece& piece, const Reliefs& reliefs, const PlaneSteps& steps,
                     std::vector<std::uint32_t>& words) {
@@ -134,25 +146,29 @@ void append_texture(const Piece& piece, const Reliefs& reliefs, const PlaneSteps
   std::memcpy(static_cast<void*>(&table), words.data(), sizeof table);
   table.texture = static_cast<std::uint32_t>(words.size());
   std::memcpy(words.data(), &table, sizeof table);
-  const Relief& relief = reliefs.of(*piece.texture);
+  const schema::PieceTextureType type = piece.texture->type;
   core::PieceTextureTable texture;
-  if (piece.texture->type == schema::PieceTextureType::bump) {
-    texture.kind = static_cast<std::uint32_t>(core::PieceTextureKind::bump);
-    const double step_m[3] = {steps.x_m, steps.y_m, steps.z_m},
-                 place_m[3] = {piece.x_m, piece.y_m, piece.z_m};
-    const auto axes = map_axes(*piece.texture);
-    for (std::size_t i = 0; i < 2; ++i) {
-      double origin_m = 0;
-      for (std::size_t j = 0; j < 3; ++j) {
-        texture.axes[i][j] = static_cast<float>(axes[i][j]);
-        origin_m += axes[i][j] * (table.origin[j] * step_m[j] + double{table.rest_m[j]} - place_m[j]);
-      }
-      texture.origin_m[i] = static_cast<float>(origin_m);
+  const double step_m[3] = {steps.x_m, steps.y_m, steps.z_m}, place_m[3] = {piece.x_m, piece.y_m, piece.z_m};
+  const auto axes = map_axes(*piece.texture);
+  for (std::size_t i = 0; i < 2; ++i) {
+    double origin_m = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      texture.axes[i][j] = static_cast<float>(axes[i][j]);
+      origin_m += axes[i][j] * (table.origin[j] * step_m[j] + double{table.rest_m[j]} - place_m[j]);
     }
-  } else {
-    texture.kind = static_cast<std::uint32_t>(core::PieceTextureKind::recording);
-    texture.per_m = static_cast<float>(1 / (2 * static_cast<double>(relief.columns) * relief.pitch_m));
+    texture.origin_m[i] = static_cast<float>(origin_m);
+    if (type == schema::PieceTextureType::sine)
+      texture.per_m[i] = static_cast<float>(1 / piece.texture->periods_m[i]);
   }
+  texture.amplitude_n = static_cast<float>(piece.texture->amplitude_n);
+  texture.kind = static_cast<std::uint32_t>(kind_of_texture(type));
+  if (type == schema::PieceTextureType::sine) {
+    append_words(words, std::vector{texture});
+    return;
+  }
+  const Relief& relief = reliefs.of(*piece.texture);
+  if (type == schema::PieceTextureType::recording)
+    texture.per_m[0] = static_cast<float>(1 / (2 * static_cast<double>(relief.columns) * relief.pitch_m));
   append_words(words, std::vector{texture});
   append_words(words, relief_table(relief, 0, {}, {0, 0}));
 }
@@ -166,10 +182,11 @@ void append_numbers(const Piece& piece, std::vector<float>& numbers) {
 Result<void> check_wall(const Piece& piece, const schema::Device& device, double rate_hz,
                         const std::optional<schema::Hand>& hand, const std::string& where) {
   if (!(piece.integral_n_per_m_s > 0)) return {};
-  const double growth = wall_growth(piece, device, rate_hz, hand);
+  const Piece felt = felt_wall(piece);
+  const double growth = wall_growth(felt, device, rate_hz, hand);
   if (growth <= 1) return {};
-  Piece stiffer = piece;
-  stiffer.stiffness_n_per_m = 1 + 1.01 * piece.stiffness_n_per_m;
+  Piece stiffer = felt;
+  stiffer.stiffness_n_per_m = 1 + 1.01 * felt.stiffness_n_per_m;
   const bool stiffens = wall_growth(stiffer, device, rate_hz, hand) < growth;
   return fail(
       ErrorKind::unsuitable,

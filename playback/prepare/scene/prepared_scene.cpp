@@ -450,7 +450,7 @@ Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, dou
     return {};
   };
   for (schema::Piece& piece : scene.pieces) {
-    if (!piece.texture) continue;
+    if (!piece.texture || piece.texture->type == schema::PieceTextureType::sine) continue;
     const std::string file = schema::texture_in_scene(where, piece.texture->file);
     const bool bump = piece.texture->type == schema::PieceTextureType::bump;
     auto& relief = (bump ? reliefs.height_maps : reliefs.textures)[piece.texture->file];

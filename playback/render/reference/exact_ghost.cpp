@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "firmware-host/core/scene/piece_texture.hpp"
@@ -322,15 +323,25 @@ SpaceMetres ExactGhost::friction_force(const Piece& piece, Wall& wall, double no
   return sum_of(viscous_n, -piece.stiffness_n_per_m, stretch);
 }
 
-SpaceMetres ExactGhost::texture_force(const Piece& piece, Wall& wall, double normal_n,
+SpaceMetres ExactGhost::texture_force(const Piece& piece, Wall& wall, double& normal_n,
                                       const SpaceMetres& normal, const SpaceMetres& place_m,
                                       const SpaceMetres& speed_mps) const {
   if (!piece.texture || !(normal_n > 0)) return {};
   const auto along = [&](const SpaceMetres& v) { return sum_of(v, -inner(v, normal), normal); };
-  if (piece.texture->type == schema::PieceTextureType::bump) {
+  if (piece.texture->type != schema::PieceTextureType::recording) {
     const auto [u, v] = map_axes(*piece.texture);
     const SpaceMetres at_m = sum_of(place_m, -1, {piece.x_m, piece.y_m, piece.z_m}),
                       passed_mps = along(speed_mps);
+    if (piece.texture->type == schema::PieceTextureType::sine) {
+      const auto [p, q] = piece.texture->periods_m;
+      const double a_n = piece.texture_gain * piece.texture->amplitude_n, turn = 2 * std::numbers::pi;
+      const double cycles =
+          (std::abs(inner(u, passed_mps)) / p + std::abs(inner(v, passed_mps)) / q) * tick_s_;
+      const double share =
+          std::sin(turn * inner(u, at_m) / p) * std::sin(turn * inner(v, at_m) / q) * played_share(cycles);
+      normal_n += share * std::copysign(std::min(std::abs(a_n), normal_n), a_n);
+      return {};
+    }
     const auto slope = exact_slope(scene_.reliefs.of(*piece.texture), inner(u, at_m), inner(v, at_m),
                                    std::hypot(inner(u, passed_mps), inner(v, passed_mps)), 1 / tick_s_);
     return sum_of({}, -piece.texture_gain * normal_n,
@@ -366,11 +377,11 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
     if (adds) held[i] = nearest_face(piece, hand_m);
     double outside_m = surface_at(piece, hand_m).distance_m;
     if (meshes_[i] && walls_[i].touched) outside_m = meshes_[i]->distance_m(hand_m);
-    const double force_n = wall_force(piece, walls_[i], held[i], outside_m, inner(held[i].normal, speed_mps));
+    double force_n = wall_force(piece, walls_[i], held[i], outside_m, inner(held[i].normal, speed_mps));
     const SpaceMetres on = adds ? sum_of(hand_m, held[i].depth_m, held[i].normal) : ghost_m_;
     if (arrives) walls_[i].anchor_m = walls_[i].last_m = on;
-    sum = sum_of(sum, force_n, held[i].normal);
     sum = sum_of(sum, 1, texture_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
+    sum = sum_of(sum, force_n, held[i].normal);
     sum = sum_of(sum, 1, friction_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
   }
   return sum;

@@ -69,7 +69,7 @@ class ExactGhost {
                              const SpaceMetres& normal, const SpaceMetres& place_m,
                              const SpaceMetres& speed_mps) const;
 
-  SpaceMetres texture_force(const schema::Piece& piece, Wall& wall, double normal_n,
+  SpaceMetres texture_force(const schema::Piece& piece, Wall& wall, double& normal_n,
                             const SpaceMetres& normal, const SpaceMetres& place_m,
                             const SpaceMetres& speed_mps) const;
 

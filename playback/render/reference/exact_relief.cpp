@@ -50,6 +50,11 @@ double level_at(const Relief& relief, double passed_mps, double rate_hz) {
   return detail.coarser + double{detail.fade};
 }
 
+double played_share(double cycles_per_tick) {
+  const double s = std::clamp(8 * (cycles_per_tick - 0.375), 0.0, 1.0);
+  return 1 - s * s * (3 - 2 * s);
+}
+
 SlopeOfMap exact_slope(const Relief& relief, double along_m, double across_m, double passed_mps,
                        double rate_hz) {
   const double played = level_at(relief, passed_mps, rate_hz);

@@ -20,6 +20,9 @@ double place_on_level(const Relief& relief, const ReliefLevel& level, int axis, 
 /// when it is left.
 double level_at(const Relief& relief, double passed_mps, double rate_hz);
 
+/// Of a frequency: 1 up to 3/8 of the rate, 0 from half of it on.
+double played_share(double cycles_per_tick);
+
 struct SlopeOfMap {
   double along_columns = 0, along_rows = 0;
 };

@@ -24,12 +24,6 @@ double norm(const std::vector<double>& values) {
   return std::sqrt(sum);
 }
 
-// 1 up to 3/8 of the rate, 0 from half of it on.
-double held_by_rate(double cycles_per_tick) {
-  const double s = std::clamp(8 * (cycles_per_tick - 0.375), 0.0, 1.0);
-  return 1 - s * s * (3 - 2 * s);
-}
-
 // A place and a speed after a tick of `tick_s` under a held force: m v' = force - b v by the method of Runge
 // and Kutta, in steps of at most 1/16 of the tick and of m / b: an error below 1e-8 of the change.
 std::pair<double, double> moved(double x, double v, double force_n, double mass_kg, double damping,
@@ -126,7 +120,7 @@ ExactScene::Vector ExactScene::groove_force(const schema::GroovesLayer& grooves,
   for (std::size_t n = 1; n <= amplitudes.size(); ++n) {
     const auto order = static_cast<double>(n);
     const double angle = turn * order * (x * from_centre.x + y * from_centre.y);
-    slope -= held_by_rate(order * per_tick) * amplitudes[n - 1] * turn * order * std::sin(angle);
+    slope -= played_share(order * per_tick) * amplitudes[n - 1] * turn * order * std::sin(angle);
   }
   const double force_n = -grooves.kappa_n.value * grooves.depth_m.value * slope;
   return {force_n * x, force_n * y};
@@ -142,7 +136,7 @@ ExactScene::Vector ExactScene::noise_force(const schema::NoiseLayer& noise, doub
     const double x = (c * from_centre.x + s * from_centre.y) * cells_per_m,
                  y = (c * from_centre.y - s * from_centre.x) * cells_per_m;
     const double per_tick = core::kNoiseCycles * std::hypot(speed.x, speed.y) * cells_per_m / rate_hz_;
-    const double per_cell = amplitude * held_by_rate(per_tick) * cells_per_m / (2 * half);
+    const double per_cell = amplitude * played_share(per_tick) * cells_per_m / (2 * half);
     u += per_cell * (exact_noise(table, x + half, y, 0) - exact_noise(table, x - half, y, 0));
     v += per_cell * (exact_noise(table, x, y + half, 0) - exact_noise(table, x, y - half, 0));
     cells_per_m *= 2;
