@@ -195,6 +195,7 @@ std::string words_of(const Piece& piece) {
     if (number.slider) words += fmt::format(" (slider {:g} to {:g})", number.slider->from, number.slider->to);
   }
   if (piece.transient || piece.hand_surface) words += ", contact transient";
+  if (!piece.travel.empty()) words += fmt::format(", travel of {} points", piece.travel.size());
   if (piece.texture)
     words += fmt::format(", texture {}{}{}", to_string(piece.texture->type),
                          piece.texture->file.empty() ? "" : " ", piece.texture->file);

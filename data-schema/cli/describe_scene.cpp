@@ -112,6 +112,10 @@ cli::Report row_of(const Piece& piece) {
     for (const auto& [name, value] : kHandSurfaceNumbers)
       row.add(value == &HandSurface::amplitude ? "hand_surface_amplitude" : name,
               (*piece.hand_surface).*value);
+  std::vector<cli::Report> travel;
+  for (const TravelPoint& point : piece.travel)
+    travel.push_back(cli::Report().add("depth_m", point.depth_m).add("force_n", point.force_n));
+  if (!travel.empty()) row.add("travel", std::move(travel));
   if (const auto& texture = piece.texture) {
     row.add("texture", to_string(texture->type));
     add_text(row, "texture_file", texture->file);

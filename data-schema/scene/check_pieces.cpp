@@ -84,6 +84,28 @@ Result<void> check_piece_texture(const Piece& piece, const std::string& texture_
   return {};
 }
 
+// An integral would press itself through a click, and a force that jumps up with the depth holds nothing.
+Result<void> check_travel(const Piece& piece, const std::string& where) {
+  if (!piece.travel.empty() && piece.integral_n_per_m_s > 0)
+    return fail(ErrorKind::unsuitable, "a piece with a travel has no integral", where,
+                "leave out `travel` or integral_n_per_m_s");
+  TravelPoint last;
+  for (std::size_t i = 0; i < piece.travel.size(); ++i) {
+    const TravelPoint& point = piece.travel[i];
+    if (point.depth_m < last.depth_m)
+      return fail(ErrorKind::unsuitable,
+                  fmt::format("the depth {:g} m is behind {:g} m", point.depth_m, last.depth_m),
+                  fmt::format("{}/{}/depth_m", where, i), "give the points in the order of their depths");
+    if (point.depth_m == last.depth_m && point.force_n > last.force_n)
+      return fail(ErrorKind::unsuitable,
+                  fmt::format("the force jumps up from {:g} to {:g} N at {:g} m: a hand finds no rest there",
+                              last.force_n, point.force_n, point.depth_m),
+                  fmt::format("{}/{}/force_n", where, i), "let the force rise over a depth, or jump down");
+    last = point;
+  }
+  return {};
+}
+
 Result<void> check_members(const Piece& piece, const std::string& where) {
   const bool round = piece.shape == PieceShape::sphere || piece.shape == PieceShape::cylinder;
   const auto refused = [&](const char* member, const char* shapes) {
@@ -124,6 +146,7 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
   if (!piece.texture && (piece.texture_gain != 1 || piece.sliders.contains("texture_gain")))
     return fail(ErrorKind::unsuitable, "the gain of a texture, but there is none", where + "/texture_gain",
                 "give `texture`, or leave texture_gain out");
+  TACTO_TRY(check_travel(piece, where + "/travel"));
   if (piece.texture) TACTO_TRY(check_piece_texture(piece, where + "/texture"));
   if (piece.transient && piece.hand_surface)
     return fail(ErrorKind::unsuitable, "a piece has one transient", where + "/hand_surface",

@@ -50,6 +50,11 @@ inline constexpr HandSurfaceNumber kHandSurfaceNumbers[] = {
     {"surface_stiffness_n_per_m", &HandSurface::surface_stiffness_n_per_m},
     {"amplitude", &HandSurface::amplitude}};
 
+/// A breakpoint of the force of a wall's spring.
+struct TravelPoint {
+  double depth_m = 0, force_n = 0;
+};
+
 enum class PieceTextureType { recording, bump, sine };
 
 /// What a surface adds to the force of its wall.
@@ -92,6 +97,9 @@ struct Piece {
   std::optional<ContactTransient> transient = std::nullopt;  ///< or hand_surface, or none
   std::optional<HandSurface> hand_surface = std::nullopt;
   std::optional<PieceTexture> texture = std::nullopt;
+  /// The force of the spring from 0 N at 0 m on, straight from point to point; two points of one depth are a
+  /// click. Beyond the last one it grows with the stiffness. Empty: stiffness x depth.
+  std::vector<TravelPoint> travel = {};
   double texture_gain = 1;
   std::map<std::string, SliderRange> sliders = {};  ///< of kWallNumbers that change, by their names
 };
@@ -120,6 +128,10 @@ NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number);
 /// lower ones; the last two of four the same with the least stiffness, which is the worse end of a wall with
 /// an integral.
 std::vector<Piece> slider_ends(const Piece& piece);
+
+/// The steepest part of its spring: the stiffness, or of a travel the largest slope, at its end the
+/// stiffness.
+double steepest_spring_n_per_m(const Piece& piece);
 
 /// "plane", "sphere", "cylinder", "quadric", "mesh".
 std::string_view to_string(PieceShape shape);

@@ -89,6 +89,17 @@ std::array<std::array<double, 3>, 2> map_axes(const PieceTexture& texture) {
   return {u, v};
 }
 
+double steepest_spring_n_per_m(const Piece& piece) {
+  double steepest = piece.stiffness_n_per_m;
+  TravelPoint last;
+  for (const TravelPoint& point : piece.travel) {
+    if (point.depth_m > last.depth_m)
+      steepest = std::max(steepest, (point.force_n - last.force_n) / (point.depth_m - last.depth_m));
+    last = point;
+  }
+  return steepest;
+}
+
 NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number) {
   NamedLayerNumber named{number.name, {piece.*number.value}, number.changes};
   if (const auto at = piece.sliders.find(number.name); at != piece.sliders.end())
@@ -135,6 +146,8 @@ Piece piece_from(const Json& body) {
     for (const auto& [name, value] : kHandSurfaceNumbers)
       (*piece.hand_surface).*value = number_or(body["hand_surface"], name, HandSurface().*value);
   }
+  if (body.contains("travel"))
+    for (const Json& point : body["travel"]) piece.travel.push_back({point["depth_m"], point["force_n"]});
   if (body.contains("texture")) piece.texture = piece_texture_from(body["texture"]);
   return piece;
 }
@@ -156,6 +169,8 @@ Json piece_body(const Piece& piece) {
   if (piece.hand_surface)
     for (const auto& [name, value] : kHandSurfaceNumbers)
       body["hand_surface"][name] = (*piece.hand_surface).*value;
+  for (const TravelPoint& point : piece.travel)
+    body["travel"].push_back({{"depth_m", point.depth_m}, {"force_n", point.force_n}});
   if (piece.texture) body["texture"] = piece_texture_body(*piece.texture);
   return body;
 }

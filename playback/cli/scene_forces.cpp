@@ -302,8 +302,18 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
   row.add("alone_tick_s", tick_cost_s(alone->view(), on.setup, piece));
   row.add("stiffness_n_per_m", piece.stiffness_n_per_m);
   if (piece.damping_n_s_per_m > 0) row.add("damping_n_s_per_m", piece.damping_n_s_per_m);
-  if (piece.stiffness_n_per_m > 0)
+  if (piece.stiffness_n_per_m > 0 && piece.travel.empty())
     row.add("force_limit_at_displacement_m", on.device.peak_force_n / piece.stiffness_n_per_m);
+  if (!piece.travel.empty()) {
+    double click_n = 0;
+    for (std::size_t i = 1; i < piece.travel.size(); ++i)
+      if (piece.travel[i].depth_m == piece.travel[i - 1].depth_m)
+        click_n = std::max(click_n, piece.travel[i - 1].force_n - piece.travel[i].force_n);
+    row.add("travel_m", piece.travel.back().depth_m)
+        .add("travel_end_n", piece.travel.back().force_n)
+        .add("steepest_n_per_m", steepest_spring_n_per_m(piece));
+    if (click_n > 0) row.add("click_n", click_n);
+  }
   for (const schema::PieceNumber& number : schema::kWallNumbers) {
     const bool rubs = number.value == &schema::Piece::static_friction ||
                       number.value == &schema::Piece::kinetic_friction ||

@@ -9,11 +9,11 @@
 
 namespace tacto::tests {
 
-inline constexpr uint32_t kPiecesFingerprint = 1311616999;
+inline constexpr uint32_t kPiecesFingerprint = 1566845330;
 
 /// A floor, a plate on edge, a ball, a pipe, an ellipsoid and a mesh, and a hand that is pushed through them
 /// at up to 60 counts per tick; walls with dampers, arrest and integral; a recording on the floor, a bump map
-/// on the ball, a sine on the pipe; all limits are reached.
+/// on the ball, a sine on the pipe, which is a button; all limits are reached.
 class PiecesWorkload {
   static constexpr uint32_t kPieces = 6, kWords = core::kPieceNumbers + core::kWallStateWords;
 
@@ -39,8 +39,11 @@ class PiecesWorkload {
     ball.table = {{-1000, 500, 0}, {}, {0, 0, 1, 0.01F}, {}};
     pipe.table = {{0, -2500, 500}, {}, {0.6F, 0, 0.8F, 0.008F}, {}};
     egg = {{300, 2000, 700}, {}, {1e4F, 2e4F, 4e4F, 1e3F, 0, 0, 0, 2, 0, -1}, {}};
-    floor.table.texture = ball.table.texture = pipe.table.texture =
+    floor.table.texture = ball.table.texture = pipe.table.travel =
         sizeof(core::PieceTable) / sizeof(uint32_t);
+    pipe.table.texture = pipe.table.travel + 7;
+    pipe.travel = {3};
+    pipe.points[0] = {1e-3F, 3}, pipe.points[1] = {1e-3F, 1}, pipe.points[2] = {2e-3F, 2};
     floor.texture = {1, {40}, 0};
     floor.relief = {2000, 2};
     floor.levels[0] = {{}, {1e4F, 1e4F}, 60, 1, 0};
@@ -119,6 +122,8 @@ class PiecesWorkload {
       } ball;
       struct {
         core::PieceTable table;
+        core::TravelTable travel;
+        core::TravelPoint points[3];
         core::PieceTextureTable texture;
       } pipe;
       core::PieceTable egg;

@@ -297,6 +297,39 @@ def a_sine_in_a_wall_is_judged_at_twice_its_stiffness():
         assert "#/pieces/0/texture" in error["where"] and where in error["where"], (wrong, error)
 
 
+def a_button_clicks_at_its_breakpoint():
+    points = [(0.6e-3, 0.9), (0.905e-3, 0.8), (0.905e-3, 0.3), (2e-3, 0.5)]  # in the second part the force falls, at the third point it jumps
+    button = piece("key", "sphere", (0, 0, -0.01), radius_m=0.01, travel=[{"depth_m": depth, "force_n": force} for depth, force in points])
+    for contact in ("ghost", "add"):
+        write_scene("button", button, contact=contact)
+        # Pressed by 2.5 mm at 10 mm/s, a count a tick, and let go.
+        write_row_a_tick(0.6, lambda t: 0 * t, lambda t: 0 * t, lambda t: 0.0005 - 0.01 * (t - 2 * np.maximum(t - 0.3, 0)))
+        report, place, force = forces("button")
+        depth = -np.rint(place[:, 2] / STEP_M) * STEP_M
+        knots = np.array([(0, 0), *points, (1, 0.5 + STIFFNESS * (1 - 2e-3))])
+        expected = np.where(depth > 0, np.interp(np.maximum(depth, 0), knots[:, 0] + 1e-12 * np.array([0, 0, 0, 1, 0, 0]), knots[:, 1]), 0)
+        assert np.abs(force[:, 2] - expected).max() < 1e-5 and depth.max() > 2.4e-3, (np.abs(force[:, 2] - expected).max(), depth.max())
+        jumps = np.flatnonzero(np.abs(np.diff(force[:, 2])) > 0.4)
+        assert len(jumps) == 2 and np.all(np.abs(depth[jumps] - 0.905e-3) < STEP_M), (jumps, depth[jumps])
+        assert report["largest_rounding_n"] < 1e-5, report
+    row = run_json("explain", "button.scene.json", "--device", "arm")["pieces"][0]
+    assert abs(row["click_n"] - 0.5) < 1e-12 and row["travel_m"] == 2e-3 and row["steepest_n_per_m"] == STIFFNESS, row
+    assert [point["force_n"] for point in run_json("info", "button.scene.json")["pieces"][0]["travel"]] == [force for _, force in points]
+    session = run_json("play", "button.scene.json", "-d", "sim:arm", "--finger-path", "path.csv", "--onset", "0s", "-o", "pressed")
+    again = run_json("replay", "pressed")
+    assert session["lost_ticks"] == 0 and again["same_to_the_bit"] is True, again
+    assert growth_per_tick(1500, 0) > 1 > growth_per_tick(900, 0)
+    for stiffness, code in ((500, UNSTABLE), (100, 0)):
+        write_scene("key", button | {"stiffness_n_per_m": stiffness, "travel": [{"depth_m": 1e-3, "force_n": 1.5 if code else 0.9}]})
+        row = run_json("design", "key.scene.json", "--device", "arm", code=code)["pieces"][0]
+        assert row["verdict"] == ("unstable" if code else "stable") and abs(row["total_stiffness_n_per_m"] - (1500 if code else 900)) < 1e-9, row
+    for wrong, where in (([(1e-3, 1), (0.5e-3, 1)], "travel/1/depth_m"), ([(1e-3, 1), (1e-3, 2)], "travel/1/force_n"), ([(0, 1)], "travel/0/force_n")):
+        write_scene("wrong", button | {"travel": [{"depth_m": depth, "force_n": force} for depth, force in wrong]})
+        assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith(where), wrong
+    write_scene("wrong", button | {"integral_n_per_m_s": 100, "integral_bound_n": 1})
+    assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("travel")
+
+
 def design_of_a_wall_is_that_of_numpy():
     arm = json.loads((pathlib.Path(__file__).parents[2] / "data-schema/presets/arm.device.json").read_text())
     hands = {"nothing": (0, 0, 0), "soft": (0.05, 1, 100), "stiff": (0.1, 2, 4000)}
@@ -438,7 +471,7 @@ def friction_of_several_pieces_adds_up():
 def explain_and_design_judge_walls():
     write_scene("walls", piece("soft", "plane", damping_n_s_per_m=4))
     said = run_json("explain", "walls.scene.json", "--device", "arm")
-    assert said["fits"] is True and said["pieces"][0]["piece"] == "soft" and said["block_bytes"] == 20 + 32 + 8 + 25 * 4 + 92, said
+    assert said["fits"] is True and said["pieces"][0]["piece"] == "soft" and said["block_bytes"] == 20 + 32 + 8 + 25 * 4 + 96, said
     soft = run_json("design", "walls.scene.json", "--device", "arm")["pieces"][0]
     assert soft["verdict"] == "stable" and abs(soft["decay_time_s"] / decay_time_s(STIFFNESS, 4) - 1) < 1e-6, soft
     write_scene("walls", piece("steady", "plane", damping_n_s_per_m=4, integral_n_per_m_s=5000, integral_bound_n=5))
@@ -544,6 +577,6 @@ def what_cannot_be_is_refused():
 
 if __name__ == "__main__":
     for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit, a_dragged_hand_slips_and_sliders_move,
-                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, a_recording_on_a_piece_is_played_along_the_path, a_bump_map_pushes_down_its_slope, a_sine_in_a_wall_is_judged_at_twice_its_stiffness, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
+                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, a_recording_on_a_piece_is_played_along_the_path, a_bump_map_pushes_down_its_slope, a_sine_in_a_wall_is_judged_at_twice_its_stiffness, a_button_clicks_at_its_breakpoint, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
                  what_cannot_be_is_refused):
         tacto.in_folder(test)

@@ -483,7 +483,7 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
     touch.most_force_n = most_force_n(setup, normal);
     touch.grain_m =
         size_of(normal.x) * step_m[0] + size_of(normal.y) * step_m[1] + size_of(normal.z) * step_m[2];
-    float normal_n = wall_force(number, table.transient, state, touch);
+    float normal_n = wall_force(number, table, state, touch);
     const SpaceVector on =
         adds ? from + touch.depth_m * normal : difference(ghost_, origin_of(table), step_m);
     if (arrives)

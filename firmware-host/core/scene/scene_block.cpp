@@ -238,6 +238,26 @@ bool sound(const PieceTextureTable& table) noexcept {
 }
 
 // Behind the `words` of its piece, which it adds to.
+SceneFault check_travel(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                        uint32_t& words) noexcept {
+  const auto& piece = table_of<PieceTable>(view, layer);
+  if (piece.travel == 0) return SceneFault::none;
+  if (piece.travel != words || room - words < 1) return SceneFault::structure;
+  const TravelTable& table = travel_of(piece);
+  if (table.points == 0 || table.points > kMostTravelPoints || 2 * table.points > room - words - 1)
+    return SceneFault::structure;
+  words += 1 + 2 * table.points;
+  float last_m = 0;
+  for (uint32_t i = 0; i < table.points; ++i) {
+    const TravelPoint& point = points_of(table)[i];
+    if (!within(point.depth_m, last_m, kLargestPiece_m) || !within(point.force_n, 0, kMostKappa_n))
+      return SceneFault::value;
+    last_m = point.depth_m;
+  }
+  return SceneFault::none;
+}
+
+// The same.
 SceneFault check_texture(const SceneView& view, const SceneLayer& layer, uint32_t room,
                          uint32_t& words) noexcept {
   constexpr uint32_t kHead = sizeof(PieceTextureTable) / sizeof(uint32_t);
@@ -260,7 +280,8 @@ SceneFault check_piece(const SceneView& view, const SceneLayer& layer, uint32_t 
   if (words > room) return SceneFault::structure;
   if (!sound(table_of<PieceTable>(view, layer), static_cast<SceneLayerKind>(layer.kind)))
     return SceneFault::value;
-  return check_texture(view, layer, room, words);
+  const SceneFault fault = check_travel(view, layer, room, words);
+  return fault == SceneFault::none ? check_texture(view, layer, room, words) : fault;
 }
 
 bool sound(const MeshNode& node, uint32_t place, const MeshTable& table) noexcept {
@@ -291,7 +312,8 @@ SceneFault check_mesh(const SceneView& view, const SceneLayer& layer, uint32_t r
     if (triangles_of(table)[i] >= table.vertices) return SceneFault::structure;
   for (uint64_t i = 0; i < uint64_t{3} * table.vertices; ++i)
     if (!within(vertices_of(table)[i], -kLargestPiece_m, kLargestPiece_m)) return SceneFault::value;
-  return check_texture(view, layer, room, words);
+  const SceneFault fault = check_travel(view, layer, room, words);
+  return fault == SceneFault::none ? check_texture(view, layer, room, words) : fault;
 }
 
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,

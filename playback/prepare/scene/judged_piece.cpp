@@ -178,6 +178,7 @@ JudgedPiece judged_at(const Scene& scene, std::size_t index, const OnDevice& on)
 
 Piece felt_wall(const Piece& piece) {
   Piece felt = piece;
+  felt.stiffness_n_per_m = steepest_spring_n_per_m(piece);
   if (!piece.texture || piece.texture->type != schema::PieceTextureType::sine || piece.texture_gain == 0)
     return felt;
   felt.stiffness_n_per_m *= 2, felt.damping_n_s_per_m *= 2, felt.integral_n_per_m_s *= 2;

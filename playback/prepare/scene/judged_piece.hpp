@@ -32,8 +32,8 @@ struct JudgedPiece {
 double wall_growth(const schema::Piece& piece, const schema::Device& device, double rate_hz,
                    const std::optional<schema::Hand>& hand);
 
-/// Its wall with a sine as texture: of twice the stiffness, damping and integral where the force along the
-/// normal is below the amplitude.
+/// Its wall at its steepest: with a travel of the largest slope, and with a sine as texture of twice the
+/// stiffness, damping and integral where the force along the normal is below the amplitude.
 schema::Piece felt_wall(const schema::Piece& piece);
 
 /// Along the surface: the largest slope of a recorded force; of a bump at the peak force of the device along

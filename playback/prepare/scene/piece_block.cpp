@@ -126,6 +126,17 @@ Result<void> read_meshes(PreparedScene& scene, const std::string& where) {
   return {};
 }
 
+// Behind the other words of its piece, which begin with the PieceTable.
+void append_travel(const Piece& piece, std::vector<std::uint32_t>& words) {
+  if (piece.travel.empty()) return;
+  words[offsetof(core::PieceTable, travel) / sizeof(std::uint32_t)] =
+      static_cast<std::uint32_t>(words.size());
+  append_words(words, std::vector{core::TravelTable{static_cast<std::uint32_t>(piece.travel.size())}});
+  for (const schema::TravelPoint& point : piece.travel)
+    append_words(words, std::vector{core::TravelPoint{static_cast<float>(point.depth_m),
+                                                      static_cast<float>(point.force_n)}});
+}
+
 core::PieceTextureKind kind_of_texture(schema::PieceTextureType type) {
   switch (type) {
     case schema::PieceTextureType::recording:
@@ -138,7 +149,7 @@ core::PieceTextureKind kind_of_texture(schema::PieceTextureType type) {
   return core::PieceTextureKind::sine;
 }
 
-// Behind the other words of its piece, which begin with the PieceTable.
+// The same.
 void append_texture(const Piece& piece, const Reliefs& reliefs, const PlaneSteps& steps,
                     std::vector<std::uint32_t>& words) {
   if (!piece.texture) return;
@@ -245,6 +256,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
     if (piece.shape == PieceShape::mesh) {
       auto words = words_of_mesh(piece, *base.meshes.at(piece.mesh), base.steps, *transient, at);
       TACTO_TRY(words);
+      append_travel(piece, *words);
       append_texture(piece, base.reliefs, base.steps, *words);
       append_words(tables, *words);
       continue;
@@ -254,6 +266,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
     table->transient = *transient;
     std::vector<std::uint32_t> words;
     append_words(words, std::vector{*table});
+    append_travel(piece, words);
     append_texture(piece, base.reliefs, base.steps, words);
     append_words(tables, words);
   }

@@ -40,6 +40,20 @@ SpaceMetres unit_of(const std::array<double, 3>& a) {
   return sum_of({}, 1 / size_of(a), a);
 }
 
+// As the sum of its straight parts and jumps up to this depth.
+double spring_n(const Piece& piece, double depth_m) {
+  double force_n = 0;
+  schema::TravelPoint last;
+  for (const schema::TravelPoint& next : piece.travel) {
+    const double part_m = next.depth_m - last.depth_m, rise_n = next.force_n - last.force_n;
+    if (depth_m >= last.depth_m || part_m == 0)
+      force_n += part_m > 0 ? rise_n * std::clamp((depth_m - last.depth_m) / part_m, 0.0, 1.0)
+                            : (depth_m >= next.depth_m ? rise_n : 0);
+    last = next;
+  }
+  return force_n + piece.stiffness_n_per_m * std::max(0.0, depth_m - last.depth_m);
+}
+
 }  // namespace
 
 ExactGhost::ExactGhost(const PreparedScene& scene, const schema::Device& device, double rate_hz)
@@ -279,9 +293,8 @@ double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, 
   wall.integral_n +=
       tick_s_ * (piece.integral_n_per_m_s * deep_m - piece.integral_leak_per_s * wall.integral_n);
   wall.integral_n = std::clamp(wall.integral_n, 0.0, piece.integral_bound_n);
-  const double own_n =
-      std::max(0.0, piece.stiffness_n_per_m * held.depth_m - piece.damping_n_s_per_m * speed_mps +
-                        wall.integral_n + transient_n(piece, wall));
+  const double own_n = std::max(0.0, spring_n(piece, held.depth_m) - piece.damping_n_s_per_m * speed_mps +
+                                         wall.integral_n + transient_n(piece, wall));
   const double given_n = std::clamp(most_n - own_n, 0.0, wall.impulse_ns / tick_s_);
   wall.impulse_ns -= given_n * tick_s_;
   return own_n + given_n;
