@@ -164,9 +164,10 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
     row.add("piece", piece.name).add("verdict", to_string(verdict));
     row.add("stiffness_n_per_m", judged.alone.stiffness_n_per_m)
         .add("damping_n_s_per_m", judged.alone.damping_n_s_per_m);
-    if (!judged.with.empty())
-      row.add("adds_to", judged.with)
-          .add("total_stiffness_n_per_m", judged.total.stiffness_n_per_m)
+    if (!judged.with.empty()) row.add("adds_to", judged.with);
+    if (judged.total.stiffness_n_per_m != judged.alone.stiffness_n_per_m ||
+        judged.total.damping_n_s_per_m != judged.alone.damping_n_s_per_m)
+      row.add("total_stiffness_n_per_m", judged.total.stiffness_n_per_m)
           .add("total_damping_n_s_per_m", judged.total.damping_n_s_per_m);
     if (!judged.unjudged.empty()) row.add("not_computed_with", judged.unjudged);
     row.add("limit_n_per_m", playback::stiffness_limit_of(request.device, request.rate_hz, request.hand,
@@ -214,7 +215,10 @@ Result<Report> run_design(const DesignVerbOptions& o) {
   auto scene = schema::read_scene(file);
   TACTO_TRY(scene);
   warn_of_newer(file, *scene);
-  if (!scene->pieces.empty()) return design_pieces(o, *scene, file, *request);
+  if (!scene->pieces.empty()) {
+    TACTO_TRY(playback::read_reliefs(*scene, file, request->rate_hz));
+    return design_pieces(o, *scene, file, *request);
+  }
   const double limit = playback::stiffness_limit_of(request->device, request->rate_hz, request->hand);
   TACTO_TRY(playback::set_filters(*scene, limit, file));
   TACTO_TRY(playback::read_reliefs(*scene, file, request->rate_hz));

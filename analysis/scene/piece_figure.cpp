@@ -190,11 +190,15 @@ std::string words_of(const Piece& piece) {
   if (piece.thickness_m > 0) add("thickness_m", piece.thickness_m);
   for (const schema::PieceNumber& each : schema::kWallNumbers) {
     const auto [name, number, changes, whole] = named_number(piece, each);
-    if (number.value == 0 && !number.slider) continue;
+    if (number.value == Piece().*each.value && !number.slider) continue;
     add(each.name, number.value);
     if (number.slider) words += fmt::format(" (slider {:g} to {:g})", number.slider->from, number.slider->to);
   }
   if (piece.transient || piece.hand_surface) words += ", contact transient";
+  if (!piece.travel.empty()) words += fmt::format(", travel of {} points", piece.travel.size());
+  if (piece.texture)
+    words += fmt::format(", texture {}{}{}", to_string(piece.texture->type),
+                         piece.texture->file.empty() ? "" : " ", piece.texture->file);
   return words;
 }
 

@@ -76,6 +76,13 @@ std::vector<Finding> check_scene(const std::string& path, const Document& docume
     scene->layers[i].visit([&](const TextureLayer& layer) { check_layer(path, i, layer, findings); });
   for (std::size_t i = 0; i < scene->patches.size(); ++i) check_patch(path, i, scene->patches[i], findings);
   for (std::size_t i = 0; i < scene->pieces.size(); ++i) {
+    const auto& texture = scene->pieces[i].texture;
+    if (texture && texture->type == PieceTextureType::bump) {
+      const auto map = read_height_map(texture_in_scene(path, texture->file));
+      if (!map)
+        findings.push_back({fmt::format("{}#/pieces/{}/texture/file", path, i), message(map.error())});
+    } else if (texture && texture->type == PieceTextureType::recording)
+      check_played_texture(path, texture->file, fmt::format("{}#/pieces/{}/texture/file", path, i), findings);
     if (scene->pieces[i].shape != PieceShape::mesh) continue;
     const auto mesh = read_mesh(texture_in_scene(path, scene->pieces[i].mesh));
     if (!mesh) findings.push_back({fmt::format("{}#/pieces/{}/mesh", path, i), message(mesh.error())});

@@ -112,6 +112,19 @@ cli::Report row_of(const Piece& piece) {
     for (const auto& [name, value] : kHandSurfaceNumbers)
       row.add(value == &HandSurface::amplitude ? "hand_surface_amplitude" : name,
               (*piece.hand_surface).*value);
+  std::vector<cli::Report> travel;
+  for (const TravelPoint& point : piece.travel)
+    travel.push_back(cli::Report().add("depth_m", point.depth_m).add("force_n", point.force_n));
+  if (!travel.empty()) row.add("travel", std::move(travel));
+  if (const auto& texture = piece.texture) {
+    row.add("texture", to_string(texture->type));
+    add_text(row, "texture_file", texture->file);
+    if (texture->type == PieceTextureType::sine)
+      row.add("texture_amplitude_n", texture->amplitude_n)
+          .add("texture_period_u_m", texture->periods_m[0])
+          .add("texture_period_v_m", texture->periods_m[1]);
+    row.add("texture_gain", piece.texture_gain);
+  }
   return row;
 }
 

@@ -53,6 +53,59 @@ Result<void> check_quadric(const Piece& piece, const std::string& where) {
       "a solid is where the sum is below 0: the unit sphere is [1, 1, 1, 0, 0, 0, 0, 0, 0, -1], in metres");
 }
 
+Result<void> check_piece_texture(const Piece& piece, const std::string& texture_where) {
+  const bool sine = piece.texture->type == PieceTextureType::sine;
+  const auto needless = [&](const char* member, const char* types) {
+    return fail(ErrorKind::unsuitable,
+                fmt::format("{} of a texture of the type {}", member, to_string(piece.texture->type)),
+                fmt::format("{}/{}", texture_where, member), fmt::format("it belongs to: {}", types));
+  };
+  if (sine && !piece.texture->file.empty()) return needless("file", "recording, bump");
+  if (!sine && piece.texture->amplitude_n > 0) return needless("amplitude_n", "sine");
+  if (!sine && piece.texture->periods_m[0] > 0) return needless("periods_m", "sine");
+  const std::string where = texture_where + "/axes";
+  const auto& [u, v] = piece.texture->axes;
+  if (piece.texture->type == PieceTextureType::recording && piece.texture->axes != PieceTexture().axes)
+    return fail(ErrorKind::unsuitable, "a recording is played along the path, not along axes", where,
+                "leave the axes out");
+  const std::array<double, 3> across = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                                        u[0] * v[1] - u[1] * v[0]};
+  const double area = std::hypot(across[0], across[1], across[2]),
+               sides = std::hypot(u[0], u[1], u[2]) * std::hypot(v[0], v[1], v[2]);
+  if (!(sides > 1e-9) || !(area > 1e-6 * sides))
+    return fail(ErrorKind::unsuitable, "the axes of the texture have the same direction, or no length", where,
+                "give two directions, as in [[1, 0, 0], [0, 1, 0]]");
+  const auto& d = piece.direction;
+  const double along_normal = std::abs(across[0] * d[0] + across[1] * d[1] + across[2] * d[2]);
+  if (piece.texture->type != PieceTextureType::recording && piece.shape == PieceShape::plane &&
+      !(along_normal > 1e-3 * area * std::hypot(d[0], d[1], d[2])))
+    return fail(ErrorKind::unsuitable, "the texture is projected along the plane, and not on it", where,
+                "give two directions in the plane");
+  return {};
+}
+
+// An integral would press itself through a click, and a force that jumps up with the depth holds nothing.
+Result<void> check_travel(const Piece& piece, const std::string& where) {
+  if (!piece.travel.empty() && piece.integral_n_per_m_s > 0)
+    return fail(ErrorKind::unsuitable, "a piece with a travel has no integral", where,
+                "leave out `travel` or integral_n_per_m_s");
+  TravelPoint last;
+  for (std::size_t i = 0; i < piece.travel.size(); ++i) {
+    const TravelPoint& point = piece.travel[i];
+    if (point.depth_m < last.depth_m)
+      return fail(ErrorKind::unsuitable,
+                  fmt::format("the depth {:g} m is behind {:g} m", point.depth_m, last.depth_m),
+                  fmt::format("{}/{}/depth_m", where, i), "give the points in the order of their depths");
+    if (point.depth_m == last.depth_m && point.force_n > last.force_n)
+      return fail(ErrorKind::unsuitable,
+                  fmt::format("the force jumps up from {:g} to {:g} N at {:g} m: a hand finds no rest there",
+                              last.force_n, point.force_n, point.depth_m),
+                  fmt::format("{}/{}/force_n", where, i), "let the force rise over a depth, or jump down");
+    last = point;
+  }
+  return {};
+}
+
 Result<void> check_members(const Piece& piece, const std::string& where) {
   const bool round = piece.shape == PieceShape::sphere || piece.shape == PieceShape::cylinder;
   const auto refused = [&](const char* member, const char* shapes) {
@@ -90,6 +143,11 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
                 fmt::format("the kinetic friction {:g} is above the static friction {:g}{}", kinetic, least,
                             piece.sliders.empty() ? "" : ", with each slider at its worse end"),
                 where + "/kinetic_friction", "choose a static friction that is not smaller");
+  if (!piece.texture && (piece.texture_gain != 1 || piece.sliders.contains("texture_gain")))
+    return fail(ErrorKind::unsuitable, "the gain of a texture, but there is none", where + "/texture_gain",
+                "give `texture`, or leave texture_gain out");
+  TACTO_TRY(check_travel(piece, where + "/travel"));
+  if (piece.texture) TACTO_TRY(check_piece_texture(piece, where + "/texture"));
   if (piece.transient && piece.hand_surface)
     return fail(ErrorKind::unsuitable, "a piece has one transient", where + "/hand_surface",
                 "leave out `transient` or `hand_surface`");

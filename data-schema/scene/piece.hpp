@@ -50,6 +50,30 @@ inline constexpr HandSurfaceNumber kHandSurfaceNumbers[] = {
     {"surface_stiffness_n_per_m", &HandSurface::surface_stiffness_n_per_m},
     {"amplitude", &HandSurface::amplitude}};
 
+/// A breakpoint of the force of a wall's spring.
+struct TravelPoint {
+  double depth_m = 0, force_n = 0;
+};
+
+enum class PieceTextureType { recording, bump, sine };
+
+/// What a surface adds to the force of its wall.
+struct PieceTexture {
+  PieceTextureType type = PieceTextureType::recording;
+  std::string file;  ///< stem or file name of a texture or height map, from the scene's folder
+  /// Bump: along the columns and rows of the map, whose centre is at the place of the piece. It is projected
+  /// on the surface across both. Sine: amplitude x sin x sin of the places along both.
+  std::array<std::array<double, 3>, 2> axes = {{{1, 0, 0}, {0, 1, 0}}};
+  std::array<double, 2> periods_m = {};  ///< of a sine
+  double amplitude_n = 0;
+  /// Not in the file, once it was read: the largest force of a recording, N, and its largest slope, N/m; the
+  /// largest slope of a map and its largest curvature, 1/m. At a gain of 1.
+  double largest = 0, steepest = 0;
+};
+
+/// Unit vectors: the first axis, and the part of the second one across it. Precondition: check_pieces().
+std::array<std::array<double, 3>, 2> map_axes(const PieceTexture& texture);
+
 struct Piece {
   std::string name;  ///< different for each piece of a scene
   PieceShape shape = PieceShape::plane;
@@ -72,6 +96,11 @@ struct Piece {
   double integral_leak_per_s = 0;                            ///< share of that force which is lost per second
   std::optional<ContactTransient> transient = std::nullopt;  ///< or hand_surface, or none
   std::optional<HandSurface> hand_surface = std::nullopt;
+  std::optional<PieceTexture> texture = std::nullopt;
+  /// The force of the spring from 0 N at 0 m on, straight from point to point; two points of one depth are a
+  /// click. Beyond the last one it grows with the stiffness. Empty: stiffness x depth.
+  std::vector<TravelPoint> travel = {};
+  double texture_gain = 1;
   std::map<std::string, SliderRange> sliders = {};  ///< of kWallNumbers that change, by their names
 };
 
@@ -89,7 +118,8 @@ inline constexpr PieceNumber kWallNumbers[] = {{"stiffness_n_per_m", &Piece::sti
                                                {"integral_leak_per_s", &Piece::integral_leak_per_s},
                                                {"static_friction", &Piece::static_friction, true},
                                                {"kinetic_friction", &Piece::kinetic_friction, true},
-                                               {"viscous_n_s_per_m", &Piece::viscous_n_s_per_m, true}};
+                                               {"viscous_n_s_per_m", &Piece::viscous_n_s_per_m, true},
+                                               {"texture_gain", &Piece::texture_gain, true}};
 
 /// Under its name in the file, with its slider.
 NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number);
@@ -99,10 +129,17 @@ NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number);
 /// an integral.
 std::vector<Piece> slider_ends(const Piece& piece);
 
+/// The steepest part of its spring: the stiffness, or of a travel the largest slope, at its end the
+/// stiffness.
+double steepest_spring_n_per_m(const Piece& piece);
+
 /// "plane", "sphere", "cylinder", "quadric", "mesh".
 std::string_view to_string(PieceShape shape);
 
 /// "ghost", "add".
 std::string_view to_string(PieceContact contact);
+
+/// "recording", "bump", "sine".
+std::string_view to_string(PieceTextureType type);
 
 }  // namespace tacto::schema

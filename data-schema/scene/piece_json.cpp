@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "data-schema/json/json_document.hpp"
 
@@ -10,6 +11,7 @@ namespace tacto::schema {
 namespace {
 
 constexpr std::array<std::string_view, 5> kShapeWords = {"plane", "sphere", "cylinder", "quadric", "mesh"};
+constexpr std::array<std::string_view, 3> kTextureWords = {"recording", "bump", "sine"};
 
 // Before the numbers of the wall; each is written if it is not 0.
 constexpr PieceNumber kShapeNumbers[] = {{"thickness_m", &Piece::thickness_m},
@@ -33,10 +35,33 @@ void write_wall(const Piece& piece, Json& body) {
     if (number.slider)
       body[each.name] = {{"value", number.value},
                          {"slider", {{"from", number.slider->from}, {"to", number.slider->to}}}};
-    else if (number.value != 0 || each.value == &Piece::stiffness_n_per_m ||
+    else if (number.value != Piece().*each.value || each.value == &Piece::stiffness_n_per_m ||
              (each.value == &Piece::kinetic_friction && piece.static_friction > 0))
       body[each.name] = number.value;
   }
+}
+
+PieceTexture piece_texture_from(const Json& body) {
+  PieceTexture texture;
+  const auto type = std::ranges::find(kTextureWords, text_or(body, "type"));
+  texture.type = static_cast<PieceTextureType>(type - kTextureWords.begin());
+  texture.file = text_or(body, "file");
+  if (body.contains("axes"))
+    for (std::size_t i = 0; i < texture.axes.size(); ++i)
+      for (std::size_t j = 0; j < 3; ++j) texture.axes[i][j] = body["axes"][i][j];
+  if (body.contains("periods_m")) texture.periods_m = {body["periods_m"][0], body["periods_m"][1]};
+  texture.amplitude_n = number_or(body, "amplitude_n", 0);
+  return texture;
+}
+
+Json piece_texture_body(const PieceTexture& texture) {
+  Json body = {{"type", to_string(texture.type)}};
+  if (texture.type == PieceTextureType::sine)
+    body["periods_m"] = texture.periods_m, body["amplitude_n"] = texture.amplitude_n;
+  else
+    body["file"] = texture.file;
+  if (texture.type != PieceTextureType::recording) body["axes"] = texture.axes;
+  return body;
 }
 
 }  // namespace
@@ -47,6 +72,32 @@ std::string_view to_string(PieceShape shape) {
 
 std::string_view to_string(PieceContact contact) {
   return contact == PieceContact::add ? "add" : "ghost";
+}
+
+std::string_view to_string(PieceTextureType type) {
+  return kTextureWords[static_cast<std::size_t>(type)];
+}
+
+std::array<std::array<double, 3>, 2> map_axes(const PieceTexture& texture) {
+  auto [u, v] = texture.axes;
+  const double first = std::hypot(u[0], u[1], u[2]);
+  for (double& part : u) part /= first;
+  const double shared = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+  for (std::size_t i = 0; i < 3; ++i) v[i] -= shared * u[i];
+  const double second = std::hypot(v[0], v[1], v[2]);
+  for (double& part : v) part /= second;
+  return {u, v};
+}
+
+double steepest_spring_n_per_m(const Piece& piece) {
+  double steepest = piece.stiffness_n_per_m;
+  TravelPoint last;
+  for (const TravelPoint& point : piece.travel) {
+    if (point.depth_m > last.depth_m)
+      steepest = std::max(steepest, (point.force_n - last.force_n) / (point.depth_m - last.depth_m));
+    last = point;
+  }
+  return steepest;
 }
 
 NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number) {
@@ -65,7 +116,7 @@ std::vector<Piece> slider_ends(const Piece& piece) {
     const bool stiffens = number.value == &Piece::stiffness_n_per_m;
     for (std::size_t i = 0; i < ends.size(); ++i)
       ends[i].*number.value =
-          (damps && i % 2 == 0) || (stiffens && i >= 2) ? least_value(with) : largest_value(with);
+          (damps && i % 2 == 0) || (stiffens && i >= 2) ? least_value(with) : farthest_value(with);
   }
   for (Piece& end : ends) end.sliders.clear();
   return ends;
@@ -95,6 +146,9 @@ Piece piece_from(const Json& body) {
     for (const auto& [name, value] : kHandSurfaceNumbers)
       (*piece.hand_surface).*value = number_or(body["hand_surface"], name, HandSurface().*value);
   }
+  if (body.contains("travel"))
+    for (const Json& point : body["travel"]) piece.travel.push_back({point["depth_m"], point["force_n"]});
+  if (body.contains("texture")) piece.texture = piece_texture_from(body["texture"]);
   return piece;
 }
 
@@ -115,6 +169,9 @@ Json piece_body(const Piece& piece) {
   if (piece.hand_surface)
     for (const auto& [name, value] : kHandSurfaceNumbers)
       body["hand_surface"][name] = (*piece.hand_surface).*value;
+  for (const TravelPoint& point : piece.travel)
+    body["travel"].push_back({{"depth_m", point.depth_m}, {"force_n", point.force_n}});
+  if (piece.texture) body["texture"] = piece_texture_body(*piece.texture);
   return body;
 }
 

@@ -21,6 +21,7 @@
 #include "playback/prepare/scene/acting_load.hpp"
 #include "playback/prepare/scene/body_motion.hpp"
 #include "playback/prepare/scene/contact_transient.hpp"
+#include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/plane_render.hpp"
@@ -37,6 +38,7 @@ namespace {
 constexpr int kCostTicks = 500, kCostRuns = 5;
 
 struct SceneOnDevice {
+  std::string file;
   schema::Device device;
   PreparedScene scene;
   core::ForceSetup setup;
@@ -73,7 +75,7 @@ Result<SceneOnDevice> scene_on_device(const std::string& scene_name, const std::
   if (!scene->layers.empty())
     cli::warn(fmt::format("{}: its {} layers of a tray are left out", file, scene->layers.size()));
   for (const std::string& note : limits_of_device(*prepared, *device, *setup, hand)) cli::warn(note);
-  return SceneOnDevice{std::move(*device), std::move(*prepared), *setup, std::move(held)};
+  return SceneOnDevice{file, std::move(*device), std::move(*prepared), *setup, std::move(held)};
 }
 
 Result<std::optional<schema::Hand>> hand_of(const std::string& name) {
@@ -267,12 +269,32 @@ std::vector<Report> rows_of_layers(const SceneOnDevice& on) {
   return rows;
 }
 
+void add_texture(Report& row, const schema::Piece& piece, const SceneOnDevice& on) {
+  const schema::PieceTexture& texture = *piece.texture;
+  const double gain = std::abs(piece.texture_gain), rate_hz = double{on.setup.rate_hz};
+  row.add("texture", to_string(texture.type)).add("texture_gain", piece.texture_gain);
+  if (texture.type == schema::PieceTextureType::sine) {
+    const double u_per_m = 1 / texture.periods_m[0], v_per_m = 1 / texture.periods_m[1];
+    row.add("texture_peak_n", gain * texture.amplitude_n)
+        .add("texture_whole_to_mps", core::kWholePerTick * rate_hz / std::hypot(u_per_m, v_per_m))
+        .add("texture_zero_from_mps", core::kZeroPerTick * rate_hz / std::min(u_per_m, v_per_m));
+    return;
+  }
+  const bool bump = texture.type == schema::PieceTextureType::bump;
+  row.add(bump ? "texture_peak_of_normal_force" : "texture_peak_n", gain * texture.largest);
+  row.add("texture_stiffness_n_per_m", texture_stiffness_n_per_m(piece, on.device));
+  const Relief& relief = on.scene.reliefs.of(texture);
+  if (!(relief.highest_per_m > 0)) return;
+  row.add("texture_whole_to_mps", relief.whole_to_mps(rate_hz));
+  row.add("texture_zero_from_mps", relief.zero_from_mps(rate_hz));
+}
+
 Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece) {
   schema::Scene one;
   one.pieces = {piece};
   one.point_radius_m = on.scene.point_radius_m;
   one.contact = on.scene.contact;
-  const auto alone = prepare_pieces(one, {}, on.device, double{on.setup.rate_hz}, std::nullopt);
+  const auto alone = prepare_pieces(one, on.file, on.device, double{on.setup.rate_hz}, std::nullopt);
   TACTO_TRY(alone);
   Report row;
   row.add("piece", piece.name).add("shape", to_string(piece.shape));
@@ -280,8 +302,25 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
   row.add("alone_tick_s", tick_cost_s(alone->view(), on.setup, piece));
   row.add("stiffness_n_per_m", piece.stiffness_n_per_m);
   if (piece.damping_n_s_per_m > 0) row.add("damping_n_s_per_m", piece.damping_n_s_per_m);
-  if (piece.stiffness_n_per_m > 0)
+  if (piece.stiffness_n_per_m > 0 && piece.travel.empty())
     row.add("force_limit_at_displacement_m", on.device.peak_force_n / piece.stiffness_n_per_m);
+  if (!piece.travel.empty()) {
+    double click_n = 0;
+    for (std::size_t i = 1; i < piece.travel.size(); ++i)
+      if (piece.travel[i].depth_m == piece.travel[i - 1].depth_m)
+        click_n = std::max(click_n, piece.travel[i - 1].force_n - piece.travel[i].force_n);
+    row.add("travel_m", piece.travel.back().depth_m)
+        .add("travel_end_n", piece.travel.back().force_n)
+        .add("steepest_n_per_m", steepest_spring_n_per_m(piece));
+    if (click_n > 0) row.add("click_n", click_n);
+  }
+  for (const schema::PieceNumber& number : schema::kWallNumbers) {
+    const bool rubs = number.value == &schema::Piece::static_friction ||
+                      number.value == &schema::Piece::kinetic_friction ||
+                      number.value == &schema::Piece::viscous_n_s_per_m;
+    if (rubs && piece.*number.value > 0) row.add(number.name, piece.*number.value);
+  }
+  if (piece.texture) add_texture(row, piece, on);
   if (piece.arrest_mass_kg > 0)
     row.add("arrest_in_one_tick_to_mps",
             on.device.peak_force_n / (piece.arrest_mass_kg * double{on.setup.rate_hz}));

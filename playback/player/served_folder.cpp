@@ -60,10 +60,17 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
   };
   for (const schema::Patch& patch : scene->patches)
     if (!std::ranges::all_of(patch.layers, in_folder)) return false;
-  for (const schema::Piece& piece : scene->pieces)
+  for (const schema::Piece& piece : scene->pieces) {
     if (!piece.mesh.empty() &&
         !is_within(folder, schema::mesh_path(schema::texture_in_scene(path, piece.mesh))))
       return false;
+    if (!piece.texture || piece.texture->file.empty()) continue;
+    const std::string file = schema::texture_in_scene(path, piece.texture->file);
+    if (piece.texture->type == schema::PieceTextureType::bump
+            ? !is_within(folder, schema::height_map_path(file))
+            : !serves_texture(folder, file))
+      return false;
+  }
   return std::ranges::all_of(scene->layers, [&](const schema::Layer& layer) {
     return layer.visit([&](const schema::TextureLayer& texture) {
       return serves_texture(folder, schema::texture_in_scene(path, texture.texture));

@@ -66,8 +66,8 @@ def main():
     assert (tick - kernel + scene_most) * CYCLES_PER_INSTRUCTION < SCENE_CYCLES
     assert instructions(figures["firmware_tick_most_counts"]) * CYCLES_PER_INSTRUCTION < CYCLES / 2
     assert texture < 1.01 * TEXTURE_BEFORE and tick < 1.03 * TICK_BEFORE
-    # Of the 1 MB of the chip; with meshes and friction of pieces 131 KB.
-    assert flash < 132 * 1024 and figures["firmware_bytes"] < 60 * 1024 and figures["deepest_stack_bytes"] < 2048
+    # Of the 1 MB of the chip; with textures of pieces and their workload 136.1 KB.
+    assert flash < 140 * 1024 and figures["firmware_bytes"] < 60 * 1024 and figures["deepest_stack_bytes"] < 2048
 
 
 if __name__ == "__main__":

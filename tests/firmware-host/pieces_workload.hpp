@@ -9,10 +9,11 @@
 
 namespace tacto::tests {
 
-inline constexpr uint32_t kPiecesFingerprint = 1680518810;
+inline constexpr uint32_t kPiecesFingerprint = 1566845330;
 
 /// A floor, a plate on edge, a ball, a pipe, an ellipsoid and a mesh, and a hand that is pushed through them
-/// at up to 60 counts per tick; walls with dampers, arrest and integral; all limits are reached.
+/// at up to 60 counts per tick; walls with dampers, arrest and integral; a recording on the floor, a bump map
+/// on the ball, a sine on the pipe, which is a button; all limits are reached.
 class PiecesWorkload {
   static constexpr uint32_t kPieces = 6, kWords = core::kPieceNumbers + core::kWallStateWords;
 
@@ -21,31 +22,52 @@ class PiecesWorkload {
   PiecesWorkload() noexcept {
     block_.header.patches = 1, block_.header.layers = kPieces;
     block_.header.numbers = kPieces * kWords;
-    block_.header.table_words = (sizeof block_.tables + sizeof block_.mesh) / sizeof(uint32_t);
+    block_.header.table_words = sizeof block_.tables / sizeof(uint32_t);
     block_.patch = {0, 0, 1, 0, 1000, 1000, 0, kPieces, 0};
     for (uint32_t i = 0; i < kPieces; ++i) {
-      block_.layers[i] = {kKinds[i], static_cast<uint16_t>(i * kWords),
-                          i * static_cast<uint32_t>(sizeof(core::PieceTable) / sizeof(uint32_t))};
-      const float wall[core::kPieceNumbers] = {2000, 4, 0.1F, 3000, 2, 0.5F, 0.6F, 0.4F, 1};
+      block_.layers[i] = {kKinds[i], static_cast<uint16_t>(i * kWords), 0};
+      const float wall[core::kPieceNumbers] = {2000, 4, 0.1F, 3000, 2, 0.5F, 0.6F, 0.4F, 1, 1};
       for (uint32_t j = 0; j < core::kPieceNumbers; ++j) block_.numbers[i * kWords + j] = wall[j];
     }
-    block_.tables[0] = {{0, 0, -2000}, {1e-6F, 0, -3e-6F}, {0.28F, 0, 0.96F}, {}};
-    block_.tables[1] = {{1500, 0, 0}, {}, {1, 0, 0, 0.001F}, {}};
-    block_.tables[2] = {{-1000, 500, 0}, {}, {0, 0, 1, 0.01F}, {}};
-    block_.tables[3] = {{0, -2500, 500}, {}, {0.6F, 0, 0.8F, 0.008F}, {}};
-    block_.tables[4] = {{300, 2000, 700}, {}, {1e4F, 2e4F, 4e4F, 1e3F, 0, 0, 0, 2, 0, -1}, {}};
+    auto& [floor, plate, ball, pipe, egg, mesh] = block_.tables;
+    const void* const tables[kPieces] = {&floor, &plate, &ball, &pipe, &egg, &mesh};
+    for (uint32_t i = 0; i < kPieces; ++i)
+      block_.layers[i].table = static_cast<uint32_t>(static_cast<const uint32_t*>(tables[i]) -
+                                                     reinterpret_cast<const uint32_t*>(&block_.tables));
+    floor.table = {{0, 0, -2000}, {1e-6F, 0, -3e-6F}, {0.28F, 0, 0.96F}, {}};
+    plate = {{1500, 0, 0}, {}, {1, 0, 0, 0.001F}, {}};
+    ball.table = {{-1000, 500, 0}, {}, {0, 0, 1, 0.01F}, {}};
+    pipe.table = {{0, -2500, 500}, {}, {0.6F, 0, 0.8F, 0.008F}, {}};
+    egg = {{300, 2000, 700}, {}, {1e4F, 2e4F, 4e4F, 1e3F, 0, 0, 0, 2, 0, -1}, {}};
+    floor.table.texture = ball.table.texture = pipe.table.travel =
+        sizeof(core::PieceTable) / sizeof(uint32_t);
+    pipe.table.texture = pipe.table.travel + 7;
+    pipe.travel = {3};
+    pipe.points[0] = {1e-3F, 3}, pipe.points[1] = {1e-3F, 1}, pipe.points[2] = {2e-3F, 2};
+    floor.texture = {1, {40}, 0};
+    floor.relief = {2000, 2};
+    floor.levels[0] = {{}, {1e4F, 1e4F}, 60, 1, 0};
+    floor.levels[1] = {{}, {5e3F, 5e3F}, 30, 1, 60};
+    ball.texture = {2, {}, 0, {{0.6F, 0.8F, 0}, {-0.8F, 0.6F, 0}}, {1e-3F, -2e-3F}};
+    ball.relief = {500, 1};
+    ball.levels[0] = {{{4, 0, {}}, {4, 7, {}}}, {1e3F, 1e3F}, 9, 9, 0};
+    pipe.texture = {3, {300, 500}, 1, {{0, 1, 0}, {0.6F, 0, 0.8F}}};
+    WorkloadRandom height{32};
+    for (float& coefficient : floor.coefficients)
+      coefficient = static_cast<float>(height()) * (2e-5F / 32768);
+    for (float& coefficient : ball.coefficients) coefficient = static_cast<float>(height()) * (3e-4F / 32768);
     // A tetrahedron: a root and two leaves.
     constexpr float kSize_m = 0.015F;
-    block_.mesh.table = {{{-1200, -1500, 900}, {}, {0, 0, 1, kSize_m}, {}}, kSize_m * 0x1p-18F, 3, 4, 4};
+    mesh.table = {{{-1200, -1500, 900}, {}, {0, 0, 1, kSize_m}, {}}, kSize_m * 0x1p-18F, 3, 4, 4};
     const uint32_t skips[3] = {3, 2, 3}, leaves[3] = {0, 0 * 8 + 2, 2 * 8 + 2};
     for (int i = 0; i < 3; ++i) {
-      core::MeshNode& node = block_.mesh.nodes[i];
+      core::MeshNode& node = mesh.nodes[i];
       for (int j = 0; j < 3; ++j) node.least_m[j] = -0.01F * kSize_m, node.most_m[j] = 1.01F * kSize_m;
       node.skip = skips[i], node.leaf = leaves[i];
-      block_.mesh.vertices[i + 1][i] = kSize_m;
+      mesh.vertices[i + 1][i] = kSize_m;
     }
     const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
-    for (int i = 0; i < 12; ++i) block_.mesh.triangles[i] = triangles[i];
+    for (int i = 0; i < 12; ++i) mesh.triangles[i] = triangles[i];
     block_.header.check = core::scene_check(&block_, sizeof block_);
     core::SceneView view;
     core::read_scene_block(&block_, sizeof block_, view);
@@ -82,13 +104,36 @@ class PiecesWorkload {
     core::ScenePatch patch;
     core::SceneLayer layers[kPieces];
     float numbers[kPieces * kWords] = {};
-    core::PieceTable tables[kPieces - 1];
     struct {
-      core::MeshTable table;
-      core::MeshNode nodes[3];
-      uint32_t triangles[12] = {};
-      float vertices[4][3] = {};
-    } mesh;
+      struct {
+        core::PieceTable table;
+        core::PieceTextureTable texture;
+        core::ReliefTable relief;
+        core::ReliefLevelTable levels[2];
+        float coefficients[90] = {};
+      } floor;
+      core::PieceTable plate;
+      struct {
+        core::PieceTable table;
+        core::PieceTextureTable texture;
+        core::ReliefTable relief;
+        core::ReliefLevelTable levels[1];
+        float coefficients[81] = {};
+      } ball;
+      struct {
+        core::PieceTable table;
+        core::TravelTable travel;
+        core::TravelPoint points[3];
+        core::PieceTextureTable texture;
+      } pipe;
+      core::PieceTable egg;
+      struct {
+        core::MeshTable table;
+        core::MeshNode nodes[3];
+        uint32_t triangles[12] = {};
+        float vertices[4][3] = {};
+      } mesh;
+    } tables;
   } block_;
   WorkloadRandom next_{1996};
   uint32_t flags_ = 0, ticks_ = 0;

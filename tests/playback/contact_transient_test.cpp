@@ -54,10 +54,11 @@ double peak_of(const ContactTransient& transient) {
 
 struct Tapped {
   float numbers[core::kPieceNumbers] = {};
-  core::TransientTable table;
+  core::PieceTable table;
   core::WallState state;
 
-  explicit Tapped(const schema::Piece& piece) : table(*transient_table(piece, 1 / kTransientTick_s, "s")) {
+  explicit Tapped(const schema::Piece& piece) {
+    table.transient = *transient_table(piece, 1 / kTransientTick_s, "s");
     numbers[core::kPieceStiffness] = static_cast<float>(piece.stiffness_n_per_m);
     numbers[core::kPieceDamping] = static_cast<float>(piece.damping_n_s_per_m);
   }

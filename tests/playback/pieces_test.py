@@ -1,20 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes of pieces in space on the command line: `render` against SciPy's minimised distance, `play` and `replay` to the bit, `explain`, `design`, what is refused."""
+import hashlib
 import json
 import math
 import pathlib
 import subprocess
 
 import numpy as np
+import soundfile
 from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
 from scipy.linalg import expm
 from scipy.optimize import minimize
 
 import tacto
 from tacto import error_of, run, run_json
 
-USAGE, MALFORMED, UNSUITABLE, UNSTABLE = 2, 4, 5, 9
+USAGE, NOT_FOUND, MALFORMED, UNSUITABLE, UNSTABLE = 2, 3, 4, 5, 9
 STEP_M, RATE_HZ, STIFFNESS = 1e-5, 1000, 2000.0  # of the preset arm
 TIME_S = np.linspace(0, 2, 41)
 # 32 N s/m, 50 Hz and 50 ms on 900 N/m of Fiene and Kuchenbecker 2007; the decay is ours: 1 % after the 50 ms.
@@ -237,6 +240,96 @@ def decay_time_s(*wall):
     return -1 / RATE_HZ / np.log(growth_per_tick(*wall))
 
 
+def a_bump_map_pushes_down_its_slope():
+    height_m, per_m = 50e-6, 2 * np.pi / 2e-3
+    x_mm = np.arange(401) * 0.05
+    np.savetxt("profile.csv", np.column_stack([x_mm, 1e6 * height_m * np.sin(per_m * (x_mm - 10) / 1e3)]), delimiter=",", header="x,z", comments="")
+    run("import", "profile.csv", "--channel", "position=x*1mm", "--channel", "height=z*1um", "-o", "ridges.height.nc")
+    # Its columns along y; the hand is 0.5 mm deep, then goes 10 mm along x and along y at 20 mm/s.
+    floor = piece("floor", "plane", (0, 5e-3, 0), texture={"type": "bump", "file": "ridges", "axes": [[0, 1, 0], [1, 0, 0]]}, texture_gain=-1)
+    write_scene("ridged", floor)
+    write_row_a_tick(1.1, lambda t: 0.02 * np.clip(t - 0.05, 0, 0.5), lambda t: 0.02 * np.clip(t - 0.55, 0, 0.5), lambda t: 0.001 - 0.1 * np.minimum(t, 0.015))
+    report, place, force = forces("ridged")
+    expected = height_m * per_m * np.cos(per_m * (place[50:, 1] - 5e-3))
+    error = np.abs(force[50:, 1] - expected).max()
+    # 40 samples a period: the cubic B-spline's slope is within 1e-4.
+    assert error < 2e-4 * expected.max() and expected.max() > 0.15 and np.abs(force[50:, 0]).max() < 1e-6 and np.abs(force[50:, 2] - 1).max() < 1e-5, (error, expected.max())
+    assert report["largest_rounding_n"] < 1e-5, report
+    row = run_json("explain", "ridged.scene.json", "--device", "arm")["pieces"][0]
+    assert abs(row["texture_peak_of_normal_force"] / (height_m * per_m) - 1) < 1e-3, row
+    # At the arm's 10 N along the normal.
+    stiffness = 10 * height_m * per_m**2
+    assert growth_per_tick(stiffness, 0) > 1 > growth_per_tick(0.1 * stiffness, 0)
+    for gain, code in ((-1, UNSTABLE), (0.1, 0)):
+        write_scene("steep", floor | {"damping_n_s_per_m": 4, "texture_gain": gain})
+        row = run_json("design", "steep.scene.json", "--device", "arm", code=code)["pieces"][0]
+        assert row["along_surface"] == ("unstable" if code else "stable") and abs(row["stiffness_along_n_per_m"] / (abs(gain) * stiffness) - 1) < 0.01, (row, stiffness)
+    bumped = floor["texture"]
+    for wrong in (bumped | {"axes": [[0, 1, 0], [0, 2, 0]]}, bumped | {"axes": [[0, 1, 0], [0, 0, 1]]}, {"type": "recording", "file": "ridges", "axes": [[0, 1, 0], [1, 0, 0]]}):
+        write_scene("wrong", floor | {"texture": wrong})
+        assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces/0/texture/axes"), wrong
+
+
+def a_sine_in_a_wall_is_judged_at_twice_its_stiffness():
+    floor = piece("floor", "plane", damping_n_s_per_m=4, texture={"type": "sine", "periods_m": [2e-3, 3e-3], "amplitude_n": 0.4})
+    write_scene("waves", floor)
+    # 0.5 mm deep at 20 mm/s on a diagonal, 2 counts a tick along each axis.
+    write_row_a_tick(0.6, lambda t: 0.02 * np.maximum(t - 0.05, 0), lambda t: 0.02 * np.maximum(t - 0.05, 0), lambda t: 0.001 - 0.1 * np.minimum(t, 0.015))
+    report, place, force = forces("waves")
+    expected = 1 + 0.4 * np.sin(2 * np.pi * place[50:, 0] / 2e-3) * np.sin(2 * np.pi * place[50:, 1] / 3e-3)
+    assert np.abs(force[50:, 2] - expected).max() < 1e-5 and np.abs(force[50:, :2]).max() == 0 and np.ptp(expected) > 0.6, np.abs(force[50:, 2] - expected).max()
+    assert report["largest_rounding_n"] < 1e-5, report
+    row = run_json("explain", "waves.scene.json", "--device", "arm")["pieces"][0]
+    assert row["texture_peak_n"] == 0.4 and abs(row["texture_whole_to_mps"] * np.hypot(500, 1000 / 3) / 375 - 1) < 1e-6, row
+    info = run_json("info", "waves.scene.json")["pieces"][0]
+    assert info["texture"] == "sine" and info["texture_period_v_m"] == 3e-3, info
+    # At forces below the amplitude a depth changes both the wall's force and the sine's.
+    assert growth_per_tick(2 * STIFFNESS, 8) < 1 and growth_per_tick(1800, 0) > 1 > growth_per_tick(900, 0)
+    row = run_json("design", "waves.scene.json", "--device", "arm")["pieces"][0]
+    assert row["total_stiffness_n_per_m"] == 2 * STIFFNESS and abs(row["decay_time_s"] / decay_time_s(2 * STIFFNESS, 8) - 1) < 1e-6, row
+    for gain, code in ((0.1, UNSTABLE), (0, 0)):
+        write_scene("soft", floor | {"damping_n_s_per_m": 0, "stiffness_n_per_m": 900, "texture_gain": gain})
+        assert run_json("design", "soft.scene.json", "--device", "arm", code=code)["pieces"][0]["verdict"] == ("unstable" if code else "stable"), gain
+    waves = floor["texture"]
+    for wrong, code, where in ((waves | {"file": "oak"}, UNSUITABLE, "file"), ({"type": "sine", "periods_m": [1e-3, 1e-3]}, MALFORMED, ""), (waves | {"periods_m": [0, 1]}, MALFORMED, "periods_m"), ({"type": "bump", "file": "x", "amplitude_n": 1}, UNSUITABLE, "amplitude_n")):
+        write_scene("wrong", floor | {"texture": wrong})
+        error = error_of("explain", "wrong.scene.json", "--device", "arm", code=code)
+        assert "#/pieces/0/texture" in error["where"] and where in error["where"], (wrong, error)
+
+
+def a_button_clicks_at_its_breakpoint():
+    points = [(0.6e-3, 0.9), (0.905e-3, 0.8), (0.905e-3, 0.3), (2e-3, 0.5)]  # in the second part the force falls, at the third point it jumps
+    button = piece("key", "sphere", (0, 0, -0.01), radius_m=0.01, travel=[{"depth_m": depth, "force_n": force} for depth, force in points])
+    for contact in ("ghost", "add"):
+        write_scene("button", button, contact=contact)
+        # Pressed by 2.5 mm at 10 mm/s, a count a tick, and let go.
+        write_row_a_tick(0.6, lambda t: 0 * t, lambda t: 0 * t, lambda t: 0.0005 - 0.01 * (t - 2 * np.maximum(t - 0.3, 0)))
+        report, place, force = forces("button")
+        depth = -np.rint(place[:, 2] / STEP_M) * STEP_M
+        knots = np.array([(0, 0), *points, (1, 0.5 + STIFFNESS * (1 - 2e-3))])
+        expected = np.where(depth > 0, np.interp(np.maximum(depth, 0), knots[:, 0] + 1e-12 * np.array([0, 0, 0, 1, 0, 0]), knots[:, 1]), 0)
+        assert np.abs(force[:, 2] - expected).max() < 1e-5 and depth.max() > 2.4e-3, (np.abs(force[:, 2] - expected).max(), depth.max())
+        jumps = np.flatnonzero(np.abs(np.diff(force[:, 2])) > 0.4)
+        assert len(jumps) == 2 and np.all(np.abs(depth[jumps] - 0.905e-3) < STEP_M), (jumps, depth[jumps])
+        assert report["largest_rounding_n"] < 1e-5, report
+    row = run_json("explain", "button.scene.json", "--device", "arm")["pieces"][0]
+    assert abs(row["click_n"] - 0.5) < 1e-12 and row["travel_m"] == 2e-3 and row["steepest_n_per_m"] == STIFFNESS, row
+    assert [point["force_n"] for point in run_json("info", "button.scene.json")["pieces"][0]["travel"]] == [force for _, force in points]
+    session = run_json("play", "button.scene.json", "-d", "sim:arm", "--finger-path", "path.csv", "--onset", "0s", "-o", "pressed")
+    again = run_json("replay", "pressed")
+    assert session["lost_ticks"] == 0 and again["same_to_the_bit"] is True, again
+    assert growth_per_tick(1500, 0) > 1 > growth_per_tick(900, 0)
+    for stiffness, code in ((500, UNSTABLE), (100, 0)):
+        write_scene("key", button | {"stiffness_n_per_m": stiffness, "travel": [{"depth_m": 1e-3, "force_n": 1.5 if code else 0.9}]})
+        row = run_json("design", "key.scene.json", "--device", "arm", code=code)["pieces"][0]
+        assert row["verdict"] == ("unstable" if code else "stable") and abs(row["total_stiffness_n_per_m"] - (1500 if code else 900)) < 1e-9, row
+    for wrong, where in (([(1e-3, 1), (0.5e-3, 1)], "travel/1/depth_m"), ([(1e-3, 1), (1e-3, 2)], "travel/1/force_n"), ([(0, 1)], "travel/0/force_n")):
+        write_scene("wrong", button | {"travel": [{"depth_m": depth, "force_n": force} for depth, force in wrong]})
+        assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith(where), wrong
+    write_scene("wrong", button | {"integral_n_per_m_s": 100, "integral_bound_n": 1})
+    assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("travel")
+
+
 def design_of_a_wall_is_that_of_numpy():
     arm = json.loads((pathlib.Path(__file__).parents[2] / "data-schema/presets/arm.device.json").read_text())
     hands = {"nothing": (0, 0, 0), "soft": (0.05, 1, 100), "stiff": (0.1, 2, 4000)}
@@ -378,7 +471,7 @@ def friction_of_several_pieces_adds_up():
 def explain_and_design_judge_walls():
     write_scene("walls", piece("soft", "plane", damping_n_s_per_m=4))
     said = run_json("explain", "walls.scene.json", "--device", "arm")
-    assert said["fits"] is True and said["pieces"][0]["piece"] == "soft" and said["block_bytes"] == 20 + 32 + 8 + 20 * 4 + 88, said
+    assert said["fits"] is True and said["pieces"][0]["piece"] == "soft" and said["block_bytes"] == 20 + 32 + 8 + 25 * 4 + 96, said
     soft = run_json("design", "walls.scene.json", "--device", "arm")["pieces"][0]
     assert soft["verdict"] == "stable" and abs(soft["decay_time_s"] / decay_time_s(STIFFNESS, 4) - 1) < 1e-6, soft
     write_scene("walls", piece("steady", "plane", damping_n_s_per_m=4, integral_n_per_m_s=5000, integral_bound_n=5))
@@ -387,6 +480,74 @@ def explain_and_design_judge_walls():
     write_scene("walls", piece("hard", "plane", damping_n_s_per_m=4) | {"stiffness_n_per_m": 2e4})
     stiff = run_json("design", "walls.scene.json", "--device", "arm", code=UNSTABLE)["pieces"][0]
     assert stiff["verdict"] == "unstable" and stiff["limit_n_per_m"] < 2e4 and 0 < stiff["growth_time_s"] < 1, stiff
+    write_scene("walls", piece("rough", "plane", static_friction=0.6, kinetic_friction=0.4, viscous_n_s_per_m=3))
+    rough = run_json("explain", "walls.scene.json", "--device", "arm")["pieces"][0]
+    assert [rough[name] for name in ("static_friction", "kinetic_friction", "viscous_n_s_per_m")] == [0.6, 0.4, 3], rough
+
+
+def write_texture(stem, force_n, unit="N"):
+    wav = pathlib.Path(f"{stem}.texture.wav")
+    soundfile.write(wav, force_n.astype(np.float32), round(1 / STEP_M), subtype="FLOAT")
+    pathlib.Path(f"{stem}.texture.json").write_text(json.dumps({
+        "kind": "texture", "version": "1.0", "pitch_m": STEP_M, "quantity": "tangential_force" if unit == "N" else "height", "unit": unit, "direction": 1, "source_origin_m": 0.0,
+        "data": {"file": wav.name, "sha256": hashlib.sha256(wav.read_bytes()).hexdigest(), "samples": len(force_n)}}))
+
+
+def noise(samples, shortest=40, seed=1996):
+    """Band-limited, in newtons: at least `shortest` samples a period."""
+    spectrum = np.fft.rfft(np.random.default_rng(seed).normal(size=samples))
+    spectrum[samples // shortest:] = 0
+    made = np.fft.irfft(spectrum, samples)
+    return 0.2 * made / made.std()
+
+
+def a_recording_on_a_piece_is_played_along_the_path():
+    samples = 2000
+    write_texture("oak", 0.1 + noise(samples))
+    stored = soundfile.read("oak.texture.wav")[0]
+    # 1 mm at each end fades by a raised cosine, as on a tray; the mean is subtracted before.
+    ends = np.minimum(np.arange(samples), np.arange(samples)[::-1]) * STEP_M / 1e-3
+    fade = np.where(ends < 1, 0.5 - 0.5 * np.cos(np.pi * np.minimum(ends, 1)), 1)
+    played = CubicSpline(np.arange(samples) * STEP_M, fade * (stored - (fade * stored).sum() / fade.sum()))
+    floor = piece("floor", "plane", texture={"type": "recording", "file": "oak"}, texture_gain={"value": 0.5, "slider": {"from": 0, "to": 1}})
+    write_scene("wood", floor)
+    # 0.5 mm deep, then 15 mm forth at 20 mm/s: 2 counts a tick, and back.
+    write_row_a_tick(1.6, lambda t: 0.02 * (np.clip(t - 0.05, 0, 0.75) - np.clip(t - 0.8, 0, 0.75)), lambda t: 0 * t, lambda t: 0.001 - 0.1 * np.minimum(t, 0.015))
+    report, place, force = forces("wood")
+    expected = -0.5 * played(place[60:1500, 0] - STEP_M)  # the path begins a sample before the first one
+    error = np.abs(force[60:1500, 0] - expected).max()
+    # 40 samples a period: the quadratic B-spline and the cubic spline differ by less than 1e-3.
+    assert error < 2e-3 * np.abs(expected).max() and np.abs(expected).max() > 0.2 and np.abs(force[60:1500, 1]).max() < 1e-6, (error, np.abs(expected).max())
+    assert report["largest_rounding_n"] < 1e-4 * np.abs(force).max() and np.abs(force[60:1500, 2] - 1).max() < 1e-5, report
+    print(f"recording: {error / np.abs(expected).max():.2g} of {np.abs(expected).max():.3g} N")
+    pathlib.Path("set.csv").write_text("time_s,command\n0.3,set floor.texture_gain 0 over 50ms\n1,set floor.texture_gain 1\n")
+    session = run_json("play", "wood.scene.json", "-d", "sim:arm", "--finger-path", "path.csv", "--onset", "0s", "--script", "set.csv", "-o", "wood")
+    again = run_json("replay", "wood")
+    assert session["lost_ticks"] == 0 and again["same_to_the_bit"] is True and again["ticks_compared"] == session["ticks"], (session, again)
+    run("session", "wood", "-o", "wood.csv")
+    table = np.genfromtxt("wood.csv", delimiter=",", names=True)
+    assert np.abs(table["force_x_n"][400:900]).max() == 0 and np.abs(table["force_x_n"][1100:1400]).max() > 0.2
+    row = run_json("explain", "wood.scene.json", "--device", "arm")["pieces"][0]
+    steepest = np.abs(np.gradient(played(np.arange(samples) * STEP_M), STEP_M)).max()
+    assert row["texture"] == "recording" and abs(row["texture_stiffness_n_per_m"] / (0.5 * steepest) - 1) < 0.02, (row, steepest)
+    info = run_json("info", "wood.scene.json")
+    assert info["pieces"][0]["texture_file"] == "oak" and info["sliders"][0]["member"] == "texture_gain", info
+    run("scene", "wood.scene.json", "-o", "wood.png")
+    # Along the surface it is a spring of its steepest slope, at the larger end of its slider.
+    for most, code in ((1, 0), (1000, UNSTABLE)):
+        write_scene("steep", floor | {"damping_n_s_per_m": 4, "texture_gain": {"value": 0.5, "slider": {"from": 0, "to": most}}})
+        row = run_json("design", "steep.scene.json", "--device", "arm", code=code)["pieces"][0]
+        assert row["verdict"] == row["along_surface"] == ("unstable" if code else "stable") and abs(row["stiffness_along_n_per_m"] / (most * steepest) - 1) < 0.02, (row, steepest)
+    assert growth_per_tick(1000 * steepest, 0) > 1 > growth_per_tick(steepest, 0)
+    write_texture("rise", noise(samples), "m")
+    for wrong, code, where in (({"texture": {"type": "recording", "file": "none"}}, NOT_FOUND, "none"), ({"texture": {"type": "recording", "file": "rise"}}, UNSUITABLE, "rise"),
+                               ({"texture": {"type": "record", "file": "oak"}}, MALFORMED, "#/pieces/0/texture/type"), ({"texture": {"type": "recording"}}, MALFORMED, "#/pieces/0/texture")):
+        write_scene("wrong", floor | wrong)
+        assert where in error_of("explain", "wrong.scene.json", "--device", "arm", code=code)["where"], wrong
+    write_scene("wrong", piece("floor", "plane", texture_gain=2))
+    assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces/0/texture_gain")
+    write_scene("wrong", floor | {"texture": {"type": "recording", "file": "none"}})
+    assert "#/pieces/0/texture/file" in json.dumps(json.loads(subprocess.run([tacto.COMMAND, "validate", "wrong.scene.json", "--json"], capture_output=True, text=True, timeout=600).stdout))
 
 
 def what_cannot_be_is_refused():
@@ -416,6 +577,6 @@ def what_cannot_be_is_refused():
 
 if __name__ == "__main__":
     for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit, a_dragged_hand_slips_and_sliders_move,
-                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
+                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, a_recording_on_a_piece_is_played_along_the_path, a_bump_map_pushes_down_its_slope, a_sine_in_a_wall_is_judged_at_twice_its_stiffness, a_button_clicks_at_its_breakpoint, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
                  what_cannot_be_is_refused):
         tacto.in_folder(test)

@@ -2,6 +2,7 @@
 #include "firmware-host/core/scene/ghost_point.hpp"
 
 #include "firmware-host/core/kernel/finite.hpp"
+#include "firmware-host/core/scene/piece_texture.hpp"
 
 namespace tacto::core {
 namespace {
@@ -482,12 +483,15 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
     touch.most_force_n = most_force_n(setup, normal);
     touch.grain_m =
         size_of(normal.x) * step_m[0] + size_of(normal.y) * step_m[1] + size_of(normal.z) * step_m[2];
-    const float normal_n = wall_force(number, table.transient, state, touch);
+    float normal_n = wall_force(number, table, state, touch);
     const SpaceVector on =
         adds ? from + touch.depth_m * normal : difference(ghost_, origin_of(table), step_m);
     if (arrives)
       state.anchor_m = state.last_m = on;  // a hand that begins in a piece is not held from elsewhere
-    sum = sum + normal_n * normal + friction_force(number, state, normal_n, normal, on, hand.speed_mps);
+    const SpaceVector of_texture =
+        texture_force(table, number, state, normal_n, normal, on, hand.speed_mps, setup.rate_hz);
+    sum = sum + normal_n * normal + of_texture +
+          friction_force(number, state, normal_n, normal, on, hand.speed_mps);
   }
   return sum;
 }

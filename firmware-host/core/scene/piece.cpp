@@ -257,9 +257,25 @@ bool nearest_face(const PieceTable& quadric, SpaceVector hand, SpaceVector& near
   return true;
 }
 
-float wall_force(const float* number, const TransientTable& transient, WallState& state,
+float spring_force(const PieceTable& table, float stiffness, float depth_m) noexcept {
+  if (table.travel == 0) return stiffness * depth_m;
+  const TravelTable& travel = travel_of(table);
+  TravelPoint last;
+  for (uint32_t i = 0; i < travel.points; ++i) {
+    const TravelPoint& next = points_of(travel)[i];
+    if (depth_m < next.depth_m)
+      return last.force_n +
+             (next.force_n - last.force_n) * ((depth_m - last.depth_m) / (next.depth_m - last.depth_m));
+    last = next;
+  }
+  return last.force_n + stiffness * (depth_m - last.depth_m);
+}
+
+float wall_force(const float* number, const PieceTable& table, WallState& state,
                  const WallTouch& touch) noexcept {
-  if (!(touch.depth_m > 0) && touch.outside_m > kLetGo_m) state = {};
+  if (!(touch.depth_m > 0) && touch.outside_m > kLetGo_m)
+    state = {0, 0, 0, 0, 0, {}, {}, state.line, state.path};
+  const TransientTable& transient = table.transient;
   const float s = state.transient_n, c = state.turning_n, *const step = transient.step;
   const bool ended = s * s + c * c < kTransientEnd_n * kTransientEnd_n;
   state.transient_n = ended ? 0 : s + (step[0] * s + step[1] * c);
@@ -278,8 +294,8 @@ float wall_force(const float* number, const TransientTable& transient, WallState
                                                            number[kPieceIntegralLeak] * state.integral_n),
               bound_n = number[kPieceIntegralBound];
   state.integral_n = grown_n < 0 ? 0 : grown_n > bound_n ? bound_n : grown_n;
-  float force_n = number[kPieceStiffness] * touch.depth_m - number[kPieceDamping] * touch.speed_mps +
-                  state.integral_n + state.transient_n;
+  float force_n = spring_force(table, number[kPieceStiffness], touch.depth_m) -
+                  number[kPieceDamping] * touch.speed_mps + state.integral_n + state.transient_n;
   force_n = force_n > 0 ? force_n : 0;
   const float asked_n = state.impulse_ns / touch.tick_s, left_n = touch.most_force_n - force_n;
   const float given_n = asked_n < left_n ? asked_n : left_n;

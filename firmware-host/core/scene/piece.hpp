@@ -87,6 +87,8 @@ struct WallState {
   float touched = 0;                     ///< 1 from the first tick of a contact on
   float transient_n = 0, turning_n = 0;  ///< s and c of the transient (TransientTable)
   SpaceVector anchor_m, last_m;          ///< of the friction, and the place of the last tick
+  SpaceVector line;                      ///< of the path, a unit vector; 0 before the first way
+  uint32_t path = 0;                     ///< along a recorded texture: 2^32 is once forth and back
 };
 static_assert(sizeof(WallState) == kWallStateWords * sizeof(float));
 
@@ -110,14 +112,18 @@ inline constexpr float kIntegralRest = 1.5F;
 /// A transient whose s and c are smaller has ended.
 inline constexpr float kTransientEnd_n = 1e-9F;
 
-/// One tick of a wall, outwards and never below 0: K depth - B speed + integral + transient, and the impulse
-/// m v at the beginning of a contact, of which each tick gives what the device's peak force leaves, until it
-/// is spent or the hand stops. The integral grows by its number x depth x tick beyond kIntegralRest, up to
-/// its bound, and leaks. The transient starts once a contact, scaled by the speed inwards of its first
+/// The force of a wall's spring: stiffness x depth, or that of its TravelTable, with the point behind a jump
+/// from its depth on. Safe in the tick.
+float spring_force(const PieceTable& table, float stiffness, float depth_m) noexcept;
+
+/// One tick of a wall, outwards and never below 0: spring_force() - B speed + integral + transient, and the
+/// impulse m v at the beginning of a contact, of which each tick gives what the device's peak force leaves,
+/// until it is spent or the hand stops. The integral grows by its number x depth x tick beyond kIntegralRest,
+/// up to its bound, and leaks. The transient starts once a contact, scaled by the speed inwards of its first
 /// tick, goes on while the hand is up to kLetGo_m outside, and fades by its own decay, so that its end is no
 /// step. Against the closed form: within 1e-5 of its peak for decays of 20 /s and more at 1 kHz. Safe in the
 /// tick.
-float wall_force(const float* number, const TransientTable& transient, WallState& state,
+float wall_force(const float* number, const PieceTable& table, WallState& state,
                  const WallTouch& touch) noexcept;
 
 /// Slips of one tick that are found one by one; what is left of a longer way is taken along the last line.

@@ -3,6 +3,8 @@
 
 #include <stddef.h>
 
+#include "firmware-host/core/kernel/level_of_detail.hpp"
+
 namespace tacto::core {
 namespace {
 
@@ -81,6 +83,12 @@ ReliefSample relief_at(const ReliefLevel& level, Q32 x_place, Q32 y_place) noexc
     sample.by_y += along_y.slope[j] * value;
   }
   return sample;
+}
+
+PlayedLevels played_levels(const ReliefTable& table, float speed_mps, float rate_hz) noexcept {
+  const float cycles_per_tick = speed_mps * table.highest_per_m / rate_hz;
+  const Detail detail = detail_at(cycles_per_tick * (1 / kWholeReliefPerTick));
+  return {detail.coarser, {1 - detail.fade, detail.fade}};
 }
 
 }  // namespace tacto::core

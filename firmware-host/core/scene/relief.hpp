@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "firmware-host/core/scene/lattice_place.hpp"
+#include "firmware-host/core/scene/scene_block.hpp"
 
 namespace tacto::core {
 
@@ -33,5 +34,30 @@ ReliefSample relief_at(const ReliefLevel& level, Q32 x, Q32 y) noexcept;
 /// The values at a place of two surfaces of one size; the coefficients of the other one are `second` behind
 /// those of the level. Preconditions and tick as above.
 void values_at(const ReliefLevel& level, size_t second, Q32 x, Q32 y, float (&values)[2]) noexcept;
+
+/// The levels that are played at a speed: the first of two, and their weights.
+struct PlayedLevels {
+  uint32_t first = 0;
+  float weights[2] = {1, 0};
+};
+
+/// A level is left when its highest frequency reaches half the rate. Safe in the tick.
+PlayedLevels played_levels(const ReliefTable& table, float speed_mps, float rate_hz) noexcept;
+
+/// The slope of the levels that are played, along the columns and rows of the map; `place_on(level, axis)`:
+/// the place on a level along its columns (0) or rows (1). Safe in the tick.
+template <class PlaceOn>
+PlaneVector slope_of(const ReliefTable& table, const PlayedLevels& played, PlaceOn place_on) noexcept {
+  PlaneVector slope;
+  for (uint32_t i = 0; i < 2; ++i) {
+    if (played.weights[i] == 0 || played.first + i >= table.levels) continue;
+    const ReliefLevelTable& level = levels_of(table)[played.first + i];
+    const ReliefSample at = relief_at({coefficients_of(table, level), level.columns, level.rows},
+                                      place_on(level, 0), place_on(level, 1));
+    slope.x += played.weights[i] * level.samples_per_m[0] * at.by_x;
+    slope.y += played.weights[i] * level.samples_per_m[1] * at.by_y;
+  }
+  return slope;
+}
 
 }  // namespace tacto::core

@@ -29,6 +29,7 @@ constexpr float kMostAtomForce = 1;  // N per unit
 constexpr float kMostPiece_kg = 100, kMostFriction = 10, kMostIntegral = 1e7F, kMostLeak_per_s = 1000;
 constexpr float kMostTransient_n_s_per_m = 1e6F;
 constexpr float kLeastLoss = 1e-6F;  // of a transient from tick to tick
+constexpr float kMostPasses_per_m = 1e6F;
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
 constexpr float kThinnestSkin_m = 1e-12F, kThickestSkin_m = 1e-3F;
 
@@ -83,7 +84,8 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
              within(number[kPieceIntegralLeak], 0, kMostLeak_per_s) &&
              within(number[kPieceStaticFriction], 0, kMostFriction) &&
              within(number[kPieceKineticFriction], 0, kMostFriction) &&
-             within(number[kPieceViscous], 0, kMostDamping_n_s_per_m);
+             within(number[kPieceViscous], 0, kMostDamping_n_s_per_m) &&
+             within(number[kPieceTextureGain], -kMostForceGain, kMostForceGain);
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
       break;
@@ -223,13 +225,63 @@ bool sound(const PieceTable& table, SceneLayerKind kind) noexcept {
          within(table.form[kPieceSize], 0, kLargestPiece_m);
 }
 
+bool sound(const PieceTextureTable& table) noexcept {
+  for (const float(&axis)[3] : table.axes)
+    if (!within(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2], 1 - kUnitRounding,
+                1 + kUnitRounding))
+      return false;
+  for (const float at_m : table.origin_m)
+    if (!within(at_m, -kLargestPiece_m, kLargestPiece_m)) return false;
+  return table.kind >= 1 && table.kind <= static_cast<uint32_t>(PieceTextureKind::sine) &&
+         within(table.per_m[0], 0, kMostPasses_per_m) && within(table.per_m[1], 0, kMostPasses_per_m) &&
+         within(table.amplitude_n, 0, kMostKappa_n);
+}
+
+// Behind the `words` of its piece, which it adds to.
+SceneFault check_travel(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                        uint32_t& words) noexcept {
+  const auto& piece = table_of<PieceTable>(view, layer);
+  if (piece.travel == 0) return SceneFault::none;
+  if (piece.travel != words || room - words < 1) return SceneFault::structure;
+  const TravelTable& table = travel_of(piece);
+  if (table.points == 0 || table.points > kMostTravelPoints || 2 * table.points > room - words - 1)
+    return SceneFault::structure;
+  words += 1 + 2 * table.points;
+  float last_m = 0;
+  for (uint32_t i = 0; i < table.points; ++i) {
+    const TravelPoint& point = points_of(table)[i];
+    if (!within(point.depth_m, last_m, kLargestPiece_m) || !within(point.force_n, 0, kMostKappa_n))
+      return SceneFault::value;
+    last_m = point.depth_m;
+  }
+  return SceneFault::none;
+}
+
+// The same.
+SceneFault check_texture(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                         uint32_t& words) noexcept {
+  constexpr uint32_t kHead = sizeof(PieceTextureTable) / sizeof(uint32_t);
+  const auto& piece = table_of<PieceTable>(view, layer);
+  if (piece.texture == 0) return SceneFault::none;
+  if (piece.texture != words || room - words < kHead) return SceneFault::structure;
+  if (!sound(texture_of(piece))) return SceneFault::value;
+  words += kHead;
+  if (texture_of(piece).kind == static_cast<uint32_t>(PieceTextureKind::sine)) return SceneFault::none;
+  uint32_t of_relief = 0;
+  const SceneLayer behind{layer.kind, layer.first_number, layer.table + words};
+  const SceneFault fault = check_relief(view, behind, 1, kLargestCoefficient_m, room - words, of_relief);
+  words += of_relief;
+  return fault;
+}
+
 SceneFault check_piece(const SceneView& view, const SceneLayer& layer, uint32_t room,
                        uint32_t& words) noexcept {
   words = sizeof(PieceTable) / sizeof(uint32_t);
   if (words > room) return SceneFault::structure;
-  return sound(table_of<PieceTable>(view, layer), static_cast<SceneLayerKind>(layer.kind))
-             ? SceneFault::none
-             : SceneFault::value;
+  if (!sound(table_of<PieceTable>(view, layer), static_cast<SceneLayerKind>(layer.kind)))
+    return SceneFault::value;
+  const SceneFault fault = check_travel(view, layer, room, words);
+  return fault == SceneFault::none ? check_texture(view, layer, room, words) : fault;
 }
 
 bool sound(const MeshNode& node, uint32_t place, const MeshTable& table) noexcept {
@@ -260,7 +312,8 @@ SceneFault check_mesh(const SceneView& view, const SceneLayer& layer, uint32_t r
     if (triangles_of(table)[i] >= table.vertices) return SceneFault::structure;
   for (uint64_t i = 0; i < uint64_t{3} * table.vertices; ++i)
     if (!within(vertices_of(table)[i], -kLargestPiece_m, kLargestPiece_m)) return SceneFault::value;
-  return SceneFault::none;
+  const SceneFault fault = check_travel(view, layer, room, words);
+  return fault == SceneFault::none ? check_texture(view, layer, room, words) : fault;
 }
 
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,

@@ -73,10 +73,11 @@ enum PieceNumber : uint32_t {
   kPieceStaticFriction = 6,
   kPieceKineticFriction = 7,
   kPieceViscous = 8,
-  kPieceNumbers = 9
+  kPieceTextureGain = 9,
+  kPieceNumbers = 10
 };
 /// Behind these numbers of a piece: its state (WallState), 0 in a block.
-inline constexpr uint32_t kWallStateWords = 11;
+inline constexpr uint32_t kWallStateWords = 15;
 enum FieldNumber : uint32_t { kFieldScale = 0, kFieldZ = 1 };
 enum ForceMapNumber : uint32_t { kForceMapGain = 0 };
 
@@ -275,8 +276,10 @@ struct PieceTable {
   float rest_m[3] = {};
   float form[kPieceFormWords] = {};
   TransientTable transient = {};
+  uint32_t travel = 0;   ///< words from its beginning to its TravelTable; 0: none
+  uint32_t texture = 0;  ///< the same of its PieceTextureTable
 };
-static_assert(sizeof(PieceTable) == 88);
+static_assert(sizeof(PieceTable) == 96);
 
 /// A triangle mesh: this, then the nodes, the triangles as three vertices each (u32), counter-clockwise from
 /// outside, and the vertices as three coordinates each (f32, m, from the origin of the piece).
@@ -285,7 +288,7 @@ struct MeshTable {
   float skin_m = 0;  ///< distance that the ghost keeps from the triangles; half of it is never undercut
   uint32_t nodes = 0, triangles = 0, vertices = 0;
 };
-static_assert(sizeof(MeshTable) == 104);
+static_assert(sizeof(MeshTable) == 112);
 
 inline constexpr uint32_t kMostLeafTriangles = 7;
 
@@ -306,6 +309,46 @@ inline const uint32_t* triangles_of(const MeshTable& table) noexcept {
 }
 inline const float* vertices_of(const MeshTable& table) noexcept {
   return reinterpret_cast<const float*>(triangles_of(table) + 3 * static_cast<uint64_t>(table.triangles));
+}
+
+inline constexpr uint32_t kMostTravelPoints = 32;
+
+/// The force of a wall's spring at a depth. From 0 N at a depth of 0 to the first point, and from point to
+/// point, it is straight; two points of the same depth are a jump. Beyond the last one it grows with the
+/// stiffness of the piece.
+struct TravelPoint {
+  float depth_m = 0, force_n = 0;
+};
+struct TravelTable {
+  uint32_t points = 0;  ///< TravelPoint, behind this
+};
+inline const TravelPoint* points_of(const TravelTable& table) noexcept {
+  return reinterpret_cast<const TravelPoint*>(&table + 1);
+}
+/// Precondition: it has one.
+inline const TravelTable& travel_of(const PieceTable& table) noexcept {
+  return *reinterpret_cast<const TravelTable*>(reinterpret_cast<const uint32_t*>(&table) + table.travel);
+}
+
+enum class PieceTextureKind : uint32_t { recording = 1, bump = 2, sine = 3 };
+
+/// Behind all other words of a piece, and before the relief of a recording or bump (ReliefTable).
+struct PieceTextureTable {
+  uint32_t kind = 0;      ///< PieceTextureKind
+  float per_m[2] = {};    ///< of a recording: how often a path plays it forth and back; of a sine: periods
+  float amplitude_n = 0;  ///< of a sine
+  float axes[2][3] = {{1, 0, 0}, {0, 1, 0}};  ///< of a map, unit vectors
+  float origin_m[2] = {};                     ///< on the map: the origin of the piece
+};
+static_assert(sizeof(PieceTextureTable) == 48);
+
+/// Precondition: it has one.
+inline const PieceTextureTable& texture_of(const PieceTable& table) noexcept {
+  return *reinterpret_cast<const PieceTextureTable*>(reinterpret_cast<const uint32_t*>(&table) +
+                                                     table.texture);
+}
+inline const ReliefTable& relief_of(const PieceTextureTable& texture) noexcept {
+  return *reinterpret_cast<const ReliefTable*>(&texture + 1);
 }
 
 /// A block that was read; it points into its memory.

@@ -2,11 +2,9 @@
 #include "firmware-host/core/scene/scene_kernel.hpp"
 
 #include "firmware-host/core/kernel/finite.hpp"
-#include "firmware-host/core/kernel/level_of_detail.hpp"
 #include "firmware-host/core/scene/body.hpp"
 #include "firmware-host/core/scene/field.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
-#include "firmware-host/core/scene/relief.hpp"
 
 namespace tacto::core {
 
@@ -163,39 +161,23 @@ PlaneVector SceneKernel::noise_force(const SceneLayer& layer, const Hand& hand) 
   return {force * at.by_x, force * at.by_y};
 }
 
-// The levels at a speed: the first of two, and their weights.
-struct SceneKernel::Levels {
-  uint32_t first = 0;
-  float weights[2] = {1, 0};
-};
-
-// A level is left when its highest frequency reaches half the rate. A map of one row varies along it only.
-SceneKernel::Levels SceneKernel::levels_at(const ReliefTable& table, const Hand& hand,
-                                           PlaneVector along) const noexcept {
+// A map of one row varies along it only.
+PlayedLevels SceneKernel::levels_at(const ReliefTable& table, const Hand& hand,
+                                    PlaneVector along) const noexcept {
   const PlaneVector v = hand.along_mps;
   const float along_row = along.x * table.cosine + along.y * table.sine;
   const float speed = levels_of(table)->rows > 1 ? __builtin_sqrtf(v.x * v.x + v.y * v.y)
                       : along_row < 0            ? -along_row
                                                  : along_row;
-  const float cycles_per_tick = speed * table.highest_per_m / setup_.rate_hz;
-  const Detail detail = detail_at(cycles_per_tick * (1 / kWholeReliefPerTick));
-  return {detail.coarser, {1 - detail.fade, detail.fade}};
+  return played_levels(table, speed, setup_.rate_hz);
 }
 
 PlaneVector SceneKernel::relief_force(const SceneLayer& layer, const Hand& hand,
                                       PlaneVector along) const noexcept {
   const auto& table = table_of<ReliefTable>(scene_, layer);
-  const auto [first, weights] = levels_at(table, hand, along);
-  PlaneVector slope;
-  for (uint32_t i = 0; i < 2; ++i) {
-    if (weights[i] == 0 || first + i >= table.levels) continue;
-    const ReliefLevelTable& level = levels_of(table)[first + i];
-    const ReliefSample at =
-        relief_at({coefficients_of(table, level), level.columns, level.rows},
-                  place_on(level.along[0], hand.counts), place_on(level.along[1], hand.counts));
-    slope.x += weights[i] * level.samples_per_m[0] * at.by_x;
-    slope.y += weights[i] * level.samples_per_m[1] * at.by_y;
-  }
+  const PlaneVector slope = slope_of(
+      table, levels_at(table, hand, along),
+      [&](const ReliefLevelTable& level, int axis) { return place_on(level.along[axis], hand.counts); });
   const float kappa = live_[layer.first_number + kHeightMapKappa];
   return {-kappa * (table.cosine * slope.x - table.sine * slope.y),
           -kappa * (table.sine * slope.x + table.cosine * slope.y)};

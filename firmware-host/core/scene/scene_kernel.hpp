@@ -6,6 +6,7 @@
 #include "firmware-host/core/scene/edge_speed.hpp"
 #include "firmware-host/core/scene/force_limiter.hpp"
 #include "firmware-host/core/scene/ghost_point.hpp"
+#include "firmware-host/core/scene/relief.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
 
 namespace tacto::core {
@@ -84,8 +85,7 @@ class SceneKernel {
   PlaneVector field_force(const SceneLayer& layer, const Hand& hand) const noexcept;
   PlaneVector relief_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
   PlaneVector map_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) const noexcept;
-  struct Levels;
-  Levels levels_at(const ReliefTable& table, const Hand& hand, PlaneVector along) const noexcept;
+  PlayedLevels levels_at(const ReliefTable& table, const Hand& hand, PlaneVector along) const noexcept;
   PlaneVector body_force(const SceneLayer& layer, const Hand& hand, PlaneVector along) noexcept;
 
   struct Ramp {

@@ -263,6 +263,18 @@ double Relief::curvature_per_m(double width_m, double height_m) const {
   return largest / (pitch_m * pitch_m);
 }
 
+double Relief::largest_slope() const {
+  double largest = 0;
+  each_place(*this, 1, INFINITY, [&](std::size_t j, const Weights& y) {
+    const RowSums row(*this, j, y);
+    each_place(*this, 0, INFINITY, [&](std::size_t i, const Weights& x) {
+      largest =
+          std::max(largest, std::hypot(weighted(x.slope, row.value, i), weighted(x.value, row.slope, i)));
+    });
+  });
+  return largest / pitch_m;
+}
+
 ForceSlopes ForceRelief::slopes(double width_m, double height_m) const {
   double least = 0, most = 0, curl = 0, coefficient = 0;
   each_place(x, 1, height_m, [&](std::size_t j, const Weights& v) {

@@ -42,6 +42,8 @@ struct Relief {
   /// The largest eigenvalue, absolute, of the Hessian of the first level in a patch of this size, at the
   /// centre of the map.
   double curvature_per_m(double width_m, double height_m) const;
+  /// Of the first level, at the samples and halfway between them.
+  double largest_slope() const;
   /// Up to this speed the first level is played, and from this speed on nothing.
   double whole_to_mps(double rate_hz) const;
   double zero_from_mps(double rate_hz) const;

@@ -130,7 +130,9 @@ double transient_whole_to_mps(const schema::Piece& piece, const schema::Device& 
   for (const schema::DeviceAxis& axis : device.axes) most_n = std::min(most_n, axis.peak_force_n);
   const auto [start, rise, decay, square] = *transient;
   const Transient change{rise, -2 * decay * rise - square * start, decay, square};
-  const double stiffness = largest_of(piece, &schema::Piece::stiffness_n_per_m),
+  schema::Piece stiffest = piece;
+  stiffest.stiffness_n_per_m = largest_of(piece, &schema::Piece::stiffness_n_per_m);
+  const double stiffness = steepest_spring_n_per_m(stiffest),
                damping = largest_of(piece, &schema::Piece::damping_n_s_per_m),
                integral = piece.integral_n_per_m_s, tick_s = 1 / rate_hz,
                peak = transient_peak_n_s_per_m(*transient);

@@ -90,13 +90,16 @@ void add_wall(Piece& sum, const Piece& other) {
 }
 
 bool rubs(const Piece& piece) {
-  return piece.static_friction > 0 || piece.viscous_n_s_per_m > 0;
+  return piece.static_friction > 0 || piece.viscous_n_s_per_m > 0 ||
+         (piece.texture && piece.texture->type != schema::PieceTextureType::sine && piece.texture_gain != 0);
 }
 
-// Along its surface, while it holds: a spring and a damper.
-Piece friction_of(const Piece& piece) {
+// Along its surface: the spring and the damper of a friction that holds, and the slope of the texture's
+// force.
+Piece friction_of(const Piece& piece, const OnDevice& on) {
   Piece along = piece;
   if (!(piece.static_friction > 0)) along.stiffness_n_per_m = 0;
+  along.stiffness_n_per_m += texture_stiffness_n_per_m(piece, on.device);
   along.damping_n_s_per_m = piece.viscous_n_s_per_m;
   along.integral_n_per_m_s = 0;
   return along;
@@ -116,12 +119,13 @@ void try_across(JudgedPiece& worst, const Piece& friction, const Piece& other, s
   with.push_back(other.name);
   if (rubs(other)) {
     Piece edge = friction;
-    add_wall(edge, friction_of(other));
+    add_wall(edge, friction_of(other, on));
     try_along(worst, edge, with, on);
   }
-  Piece wall = other;
+  const Piece alone = felt_wall(other);
+  Piece wall = alone;
   add_wall(wall, friction);
-  if (!adds) wall.stiffness_n_per_m = other.stiffness_n_per_m;
+  if (!adds) wall.stiffness_n_per_m = alone.stiffness_n_per_m;
   if (adds || friction.damping_n_s_per_m > 0) try_along(worst, wall, with, on);
 }
 
@@ -130,7 +134,7 @@ JudgedPiece judged_at(const Scene& scene, std::size_t index, const OnDevice& on)
   const bool adds = scene.contact == schema::PieceContact::add;
   std::vector<const Piece*> same, across;
   std::vector<std::string> unjudged;
-  Piece damped = piece, held = friction_of(piece);
+  Piece damped = felt_wall(piece), held = friction_of(piece, on);
   for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
     if (i == index) continue;
     const Piece& other = scene.pieces[i];
@@ -139,8 +143,8 @@ JudgedPiece judged_at(const Scene& scene, std::size_t index, const OnDevice& on)
     if (meeting == Meeting::across) across.push_back(&other);
     if (meeting != Meeting::other) continue;
     unjudged.push_back(other.name);
-    damped.damping_n_s_per_m += other.damping_n_s_per_m + other.viscous_n_s_per_m;
-    add_wall(held, friction_of(other));
+    damped.damping_n_s_per_m += felt_wall(other).damping_n_s_per_m + other.viscous_n_s_per_m;
+    add_wall(held, friction_of(other, on));
   }
   std::vector<const Piece*> depths = same;
   depths.push_back(&piece);
@@ -149,12 +153,12 @@ JudgedPiece judged_at(const Scene& scene, std::size_t index, const OnDevice& on)
   for (const Piece* lowest : depths) {
     if (height_m(*lowest, 0) > height_m(piece, 0)) continue;  // there the hand is above the piece
     // With those of the same direction that touch a hand which is as deep as the surface of `lowest`.
-    Piece total = piece, friction = friction_of(piece);
+    Piece total = felt_wall(piece), friction = friction_of(piece, on);
     std::vector<std::string> with;
     for (const Piece* other : same) {
       if (height_m(*other, 0) < height_m(*lowest, 0)) continue;
-      add_wall(total, *other);
-      add_wall(friction, friction_of(*other));
+      add_wall(total, felt_wall(*other));
+      add_wall(friction, friction_of(*other, on));
       with.push_back(other->name);
     }
     if (rubs(piece)) {
@@ -171,6 +175,24 @@ JudgedPiece judged_at(const Scene& scene, std::size_t index, const OnDevice& on)
 }
 
 }  // namespace
+
+Piece felt_wall(const Piece& piece) {
+  Piece felt = piece;
+  felt.stiffness_n_per_m = steepest_spring_n_per_m(piece);
+  if (!piece.texture || piece.texture->type != schema::PieceTextureType::sine || piece.texture_gain == 0)
+    return felt;
+  felt.stiffness_n_per_m *= 2, felt.damping_n_s_per_m *= 2, felt.integral_n_per_m_s *= 2;
+  return felt;
+}
+
+double texture_stiffness_n_per_m(const Piece& piece, const schema::Device& device) {
+  if (!piece.texture || piece.texture->type == schema::PieceTextureType::sine) return 0;
+  const double gain = std::abs(piece.texture_gain);
+  if (piece.texture->type == schema::PieceTextureType::recording) return gain * piece.texture->steepest;
+  const bool round = piece.shape == PieceShape::sphere || piece.shape == PieceShape::cylinder;
+  return gain * device.peak_force_n *
+         (piece.texture->steepest + (round ? piece.texture->largest / piece.radius_m : 0));
+}
 
 double wall_growth(const Piece& piece, const schema::Device& device, double rate_hz,
                    const std::optional<schema::Hand>& hand) {

@@ -126,6 +126,64 @@ Result<void> read_meshes(PreparedScene& scene, const std::string& where) {
   return {};
 }
 
+// Behind the other words of its piece, which begin with the PieceTable.
+void append_travel(const Piece& piece, std::vector<std::uint32_t>& words) {
+  if (piece.travel.empty()) return;
+  words[offsetof(core::PieceTable, travel) / sizeof(std::uint32_t)] =
+      static_cast<std::uint32_t>(words.size());
+  append_words(words, std::vector{core::TravelTable{static_cast<std::uint32_t>(piece.travel.size())}});
+  for (const schema::TravelPoint& point : piece.travel)
+    append_words(words, std::vector{core::TravelPoint{static_cast<float>(point.depth_m),
+                                                      static_cast<float>(point.force_n)}});
+}
+
+core::PieceTextureKind kind_of_texture(schema::PieceTextureType type) {
+  switch (type) {
+    case schema::PieceTextureType::recording:
+      return core::PieceTextureKind::recording;
+    case schema::PieceTextureType::bump:
+      return core::PieceTextureKind::bump;
+    case schema::PieceTextureType::sine:
+      break;
+  }
+  return core::PieceTextureKind::sine;
+}
+
+// The same.
+void append_texture(const Piece& piece, const Reliefs& reliefs, const PlaneSteps& steps,
+                    std::vector<std::uint32_t>& words) {
+  if (!piece.texture) return;
+  core::PieceTable table;
+  std::memcpy(static_cast<void*>(&table), words.data(), sizeof table);
+  table.texture = static_cast<std::uint32_t>(words.size());
+  std::memcpy(words.data(), &table, sizeof table);
+  const schema::PieceTextureType type = piece.texture->type;
+  core::PieceTextureTable texture;
+  const double step_m[3] = {steps.x_m, steps.y_m, steps.z_m}, place_m[3] = {piece.x_m, piece.y_m, piece.z_m};
+  const auto axes = map_axes(*piece.texture);
+  for (std::size_t i = 0; i < 2; ++i) {
+    double origin_m = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      texture.axes[i][j] = static_cast<float>(axes[i][j]);
+      origin_m += axes[i][j] * (table.origin[j] * step_m[j] + double{table.rest_m[j]} - place_m[j]);
+    }
+    texture.origin_m[i] = static_cast<float>(origin_m);
+    if (type == schema::PieceTextureType::sine)
+      texture.per_m[i] = static_cast<float>(1 / piece.texture->periods_m[i]);
+  }
+  texture.amplitude_n = static_cast<float>(piece.texture->amplitude_n);
+  texture.kind = static_cast<std::uint32_t>(kind_of_texture(type));
+  if (type == schema::PieceTextureType::sine) {
+    append_words(words, std::vector{texture});
+    return;
+  }
+  const Relief& relief = reliefs.of(*piece.texture);
+  if (type == schema::PieceTextureType::recording)
+    texture.per_m[0] = static_cast<float>(1 / (2 * static_cast<double>(relief.columns) * relief.pitch_m));
+  append_words(words, std::vector{texture});
+  append_words(words, relief_table(relief, 0, {}, {0, 0}));
+}
+
 void append_numbers(const Piece& piece, std::vector<float>& numbers) {
   for (const auto& [name, value, changes] : schema::kWallNumbers)
     numbers.push_back(static_cast<float>(piece.*value));
@@ -135,10 +193,11 @@ void append_numbers(const Piece& piece, std::vector<float>& numbers) {
 Result<void> check_wall(const Piece& piece, const schema::Device& device, double rate_hz,
                         const std::optional<schema::Hand>& hand, const std::string& where) {
   if (!(piece.integral_n_per_m_s > 0)) return {};
-  const double growth = wall_growth(piece, device, rate_hz, hand);
+  const Piece felt = felt_wall(piece);
+  const double growth = wall_growth(felt, device, rate_hz, hand);
   if (growth <= 1) return {};
-  Piece stiffer = piece;
-  stiffer.stiffness_n_per_m = 1 + 1.01 * piece.stiffness_n_per_m;
+  Piece stiffer = felt;
+  stiffer.stiffness_n_per_m = 1 + 1.01 * felt.stiffness_n_per_m;
   const bool stiffens = wall_growth(stiffer, device, rate_hz, hand) < growth;
   return fail(
       ErrorKind::unsuitable,
@@ -166,10 +225,13 @@ std::optional<std::string> cut_of_transient(const Piece& piece, const schema::De
 
 }  // namespace
 
-Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::string& where,
+Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& where,
                                      const schema::Device& device, double rate_hz,
                                      const std::optional<schema::Hand>& hand) {
   PreparedScene base;
+  auto reliefs = read_reliefs(scene, where, rate_hz);
+  TACTO_TRY(reliefs);
+  base.reliefs = std::move(*reliefs);
   base.pieces = scene.pieces;
   base.point_radius_m = scene.point_radius_m;
   base.contact = scene.contact;
@@ -192,15 +254,21 @@ Result<PreparedScene> prepare_pieces(const schema::Scene& scene, const std::stri
                       static_cast<std::uint16_t>(numbers.size()), static_cast<std::uint32_t>(tables.size())});
     append_numbers(piece, numbers);
     if (piece.shape == PieceShape::mesh) {
-      const auto words = words_of_mesh(piece, *base.meshes.at(piece.mesh), base.steps, *transient, at);
+      auto words = words_of_mesh(piece, *base.meshes.at(piece.mesh), base.steps, *transient, at);
       TACTO_TRY(words);
+      append_travel(piece, *words);
+      append_texture(piece, base.reliefs, base.steps, *words);
       append_words(tables, *words);
       continue;
     }
     auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
     TACTO_TRY(table);
     table->transient = *transient;
-    append_words(tables, std::vector{*table});
+    std::vector<std::uint32_t> words;
+    append_words(words, std::vector{*table});
+    append_travel(piece, words);
+    append_texture(piece, base.reliefs, base.steps, words);
+    append_words(tables, words);
   }
   core::SceneHeader header;
   header.patches = 1;

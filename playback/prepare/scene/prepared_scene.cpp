@@ -111,8 +111,10 @@ Words table_of(const schema::NoiseLayer& noise, const schema::Patch& patch, cons
   return words;
 }
 
-// The columns of the map grow along `angle_deg` from the patch's axis x.
-Words table_of(const Relief& relief, double angle_deg, const schema::Patch& patch, const PlaneSteps& steps) {
+}  // namespace
+
+Words relief_table(const Relief& relief, double angle_deg, const schema::Patch& patch,
+                   const PlaneSteps& steps) {
   const double angle_rad = angle_deg * std::numbers::pi / 180;
   const core::ReliefTable table{
       static_cast<float>(relief.highest_per_m), static_cast<std::uint32_t>(relief.levels.size()),
@@ -140,8 +142,10 @@ Words table_of(const Relief& relief, double angle_deg, const schema::Patch& patc
   return words;
 }
 
+namespace {
+
 Words table_of(const ForceRelief& forces, const schema::Patch& patch, const PlaneSteps& steps) {
-  Words words = table_of(forces.x, 0, patch, steps);
+  Words words = relief_table(forces.x, 0, patch, steps);
   for (const ReliefLevel& level : forces.y.levels) append(words, level.coefficients);
   return words;
 }
@@ -169,9 +173,9 @@ Words table_of(const FieldSection& section, const schema::Patch& patch, const Pl
 Words table_of(const ForceLayer& layer, const schema::Patch& patch, const PlaneSteps& steps,
                const Reliefs& reliefs) {
   return layer.visit(
-      [&](const schema::HeightMapLayer& map) { return table_of(reliefs.of(map), 0, patch, steps); },
+      [&](const schema::HeightMapLayer& map) { return relief_table(reliefs.of(map), 0, patch, steps); },
       [&](const schema::TextureForceLayer& texture) {
-        return table_of(reliefs.of(texture), texture.direction_deg.value, patch, steps);
+        return relief_table(reliefs.of(texture), texture.direction_deg.value, patch, steps);
       },
       [&](const schema::ForceMapLayer& map) { return table_of(reliefs.of(map), patch, steps); },
       [&](const schema::GroovesLayer& grooves) { return table_of(grooves, patch, steps); },
@@ -273,15 +277,26 @@ Result<Relief> levels_of_map(const std::string& file, double rate_hz) {
   return relief_levels(*map, rate_hz, kFastestHandMps, schema::height_map_path(file));
 }
 
-Result<Relief> levels_of_texture(const std::string& file, double rate_hz) {
+// `path`: along a path, against its direction: less its mean, so that the fades are those of a force without
+// a mean, and of a stroke backwards with the other sign.
+Result<Relief> levels_of_texture(const std::string& file, double rate_hz, bool path) {
   const auto texture = schema::read_texture(file);
   TACTO_TRY(texture);
   if (auto playable = check_playable(*texture); !playable)
     return fail(ErrorKind::unsuitable, playable.error().what, file, playable.error().remedy);
-  const TextureLookup faded(texture->signal, 0);
-  schema::SpaceSignal force_n{texture->signal.pitch_m, 0, {}};
-  for (std::size_t i = 0; i < texture->signal.values.size(); ++i)
+  const schema::SpaceSignal& signal = texture->signal;
+  const schema::SpaceSignal ones{signal.pitch_m, 0, std::vector<double>(signal.values.size(), 1.0)};
+  const TextureLookup faded(signal, 0), fade(ones, 0);
+  schema::SpaceSignal force_n{signal.pitch_m, 0, {}};
+  double sum_n = 0, weights = 0;
+  for (std::size_t i = 0; i < signal.values.size(); ++i) {
     force_n.values.push_back(faded(force_n.position_m(i)));
+    sum_n += force_n.values.back(), weights += fade(force_n.position_m(i));
+  }
+  if (path)
+    for (std::size_t i = 0; i < signal.values.size(); ++i)
+      force_n.values[i] =
+          texture->direction * (force_n.values[i] - sum_n / weights * fade(force_n.position_m(i)));
   auto levels = texture_levels(force_n, rate_hz, kFastestHandMps, file);
   TACTO_TRY(levels);
   for (const ReliefLevel& level : levels->levels)
@@ -365,6 +380,8 @@ std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLa
 
 std::string PreparedScene::remedy_for(std::size_t room) const {
   if (!meshes.empty()) return remedy_for_meshes(*this, room);
+  if (!pieces.empty() && reliefs.textures.empty() && reliefs.height_maps.empty()) return {};
+  if (!pieces.empty()) return "make its textures shorter, or give its height maps a larger pitch";
   std::size_t maps = 0, textures = 0;
   for (const schema::Patch& patch : patches)
     for (const ForceLayer& layer : patch.layers)
@@ -396,7 +413,7 @@ Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, dou
   const auto texture_in = [&](const schema::Patch& patch, schema::TextureForceLayer& layer) -> Result<void> {
     auto& relief = reliefs.textures[layer.file];
     if (!relief) {
-      auto levels = levels_of_texture(schema::texture_in_scene(where, layer.file), rate_hz);
+      auto levels = levels_of_texture(schema::texture_in_scene(where, layer.file), rate_hz, false);
       TACTO_TRY(levels);
       relief = std::make_shared<const Relief>(std::move(*levels));
     }
@@ -432,6 +449,19 @@ Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, dou
     layer.curl_n_per_m = slopes.curl_n_per_m;
     return {};
   };
+  for (schema::Piece& piece : scene.pieces) {
+    if (!piece.texture || piece.texture->type == schema::PieceTextureType::sine) continue;
+    const std::string file = schema::texture_in_scene(where, piece.texture->file);
+    const bool bump = piece.texture->type == schema::PieceTextureType::bump;
+    auto& relief = (bump ? reliefs.height_maps : reliefs.textures)[piece.texture->file];
+    if (!relief) {
+      auto levels = bump ? levels_of_map(file, rate_hz) : levels_of_texture(file, rate_hz, true);
+      TACTO_TRY(levels);
+      relief = std::make_shared<const Relief>(std::move(*levels));
+    }
+    piece.texture->largest = relief->largest_slope();
+    piece.texture->steepest = relief->curvature_per_m(INFINITY, INFINITY);
+  }
   for (schema::Patch& patch : scene.patches)
     for (ForceLayer& layer : patch.layers)
       TACTO_TRY(layer.visit([&](schema::FieldLayer& field) { return atoms_in(patch, field); },
@@ -484,7 +514,7 @@ Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::
 Result<PreparedScene> prepare_scene(schema::Scene scene, const std::string& where,
                                     const schema::Device& device, double rate_hz,
                                     const std::optional<schema::Hand>& hand) {
-  if (!scene.pieces.empty()) return prepare_pieces(scene, where, device, rate_hz, hand);
+  if (!scene.pieces.empty()) return prepare_pieces(std::move(scene), where, device, rate_hz, hand);
   if (scene.patches.empty())
     return fail(ErrorKind::unsuitable, "this scene has no force patches and no pieces", where,
                 "a scene of a tray is played with --transducer");

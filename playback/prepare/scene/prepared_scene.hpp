@@ -40,6 +40,9 @@ struct Reliefs {
   std::map<std::string, std::shared_ptr<const ForceRelief>> force_maps;
   std::map<std::string, std::shared_ptr<const std::vector<schema::Atom>>> atoms;
 
+  const Relief& of(const schema::PieceTexture& texture) const {
+    return *(texture.type == schema::PieceTextureType::bump ? height_maps : textures).at(texture.file);
+  }
   const Relief& of(const schema::HeightMapLayer& layer) const { return *height_maps.at(layer.file); }
   const Relief& of(const schema::TextureForceLayer& layer) const { return *textures.at(layer.file); }
   const ForceRelief& of(const schema::ForceMapLayer& layer) const { return *force_maps.at(layer.file); }
@@ -71,6 +74,10 @@ struct PreparedScene {
   std::size_t layer_bytes(const schema::Patch& patch, const schema::ForceLayer& layer) const;
 };
 
+/// The table of a map (core::ReliefTable); its columns grow along `angle_deg` from the patch's axis x.
+std::vector<std::uint32_t> relief_table(const Relief& relief, double angle_deg, const schema::Patch& patch,
+                                        const PlaneSteps& steps);
+
 /// The members of a layer that are numbers in the block, in its order: they can change while the scene plays
 /// (core::SceneKernel::change).
 std::vector<std::string_view> numbers_in_block(const schema::ForceLayer& layer);
@@ -86,11 +93,12 @@ double stiffness_limit_of(const schema::Device& device, double rate_hz,
 /// scene's file. Errors: unsuitable: the limit is 0, by JSON pointer.
 schema::Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::string& where);
 
-/// Reads the height maps, textures, atoms and force maps of all layers, and sets their curvature,
+/// Reads the height maps, textures, atoms and force maps of all layers and pieces, and sets their curvature,
 /// steepest_n_per_m, stiffest_n_per_m and slopes. Textures fade at their ends as on a tray
-/// (TextureLookup). `where` is the scene's file. Errors: as read_height_map, relief_levels, read_texture,
-/// check_playable, read_atoms, check_section, read_force_grid, force_levels; unsuitable: a texture whose mean
-/// force is too large for its length.
+/// (TextureLookup); those of pieces are less their mean, with the sign of a stroke that goes forth. `where`
+/// is the scene's file. Errors: as read_height_map, relief_levels, read_texture, check_playable, read_atoms,
+/// check_section, read_force_grid, force_levels; unsuitable: a texture whose mean force is too large for its
+/// length.
 schema::Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, double rate_hz);
 
 /// Of a patch along a direction in it: the length of its shadow.

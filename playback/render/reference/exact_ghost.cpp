@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
-#include "firmware-host/core/scene/piece.hpp"
+#include "firmware-host/core/scene/piece_texture.hpp"
 #include "playback/prepare/scene/contact_transient.hpp"
+#include "playback/render/reference/exact_relief.hpp"
 
 namespace tacto::playback {
 
@@ -36,6 +38,20 @@ double size_of(const SpaceMetres& a) {
 
 SpaceMetres unit_of(const std::array<double, 3>& a) {
   return sum_of({}, 1 / size_of(a), a);
+}
+
+// As the sum of its straight parts and jumps up to this depth.
+double spring_n(const Piece& piece, double depth_m) {
+  double force_n = 0;
+  schema::TravelPoint last;
+  for (const schema::TravelPoint& next : piece.travel) {
+    const double part_m = next.depth_m - last.depth_m, rise_n = next.force_n - last.force_n;
+    if (depth_m >= last.depth_m || part_m == 0)
+      force_n += part_m > 0 ? rise_n * std::clamp((depth_m - last.depth_m) / part_m, 0.0, 1.0)
+                            : (depth_m >= next.depth_m ? rise_n : 0);
+    last = next;
+  }
+  return force_n + piece.stiffness_n_per_m * std::max(0.0, depth_m - last.depth_m);
 }
 
 }  // namespace
@@ -256,7 +272,11 @@ double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, 
                               double speed_mps) const {
   if (wall.touched) ++wall.ticks;
   if (!(held.depth_m > 0)) {
-    if (outside_m > double{core::kLetGo_m}) wall = {};
+    if (outside_m > double{core::kLetGo_m}) {
+      Wall next;
+      next.line = wall.line, next.path_m = wall.path_m;
+      wall = next;
+    }
     return 0;
   }
   if (!wall.touched) wall.contact_mps = std::max(0.0, -speed_mps);
@@ -273,9 +293,8 @@ double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, 
   wall.integral_n +=
       tick_s_ * (piece.integral_n_per_m_s * deep_m - piece.integral_leak_per_s * wall.integral_n);
   wall.integral_n = std::clamp(wall.integral_n, 0.0, piece.integral_bound_n);
-  const double own_n =
-      std::max(0.0, piece.stiffness_n_per_m * held.depth_m - piece.damping_n_s_per_m * speed_mps +
-                        wall.integral_n + transient_n(piece, wall));
+  const double own_n = std::max(0.0, spring_n(piece, held.depth_m) - piece.damping_n_s_per_m * speed_mps +
+                                         wall.integral_n + transient_n(piece, wall));
   const double given_n = std::clamp(most_n - own_n, 0.0, wall.impulse_ns / tick_s_);
   wall.impulse_ns -= given_n * tick_s_;
   return own_n + given_n;
@@ -317,6 +336,47 @@ SpaceMetres ExactGhost::friction_force(const Piece& piece, Wall& wall, double no
   return sum_of(viscous_n, -piece.stiffness_n_per_m, stretch);
 }
 
+SpaceMetres ExactGhost::texture_force(const Piece& piece, Wall& wall, double& normal_n,
+                                      const SpaceMetres& normal, const SpaceMetres& place_m,
+                                      const SpaceMetres& speed_mps) const {
+  if (!piece.texture || !(normal_n > 0)) return {};
+  const auto along = [&](const SpaceMetres& v) { return sum_of(v, -inner(v, normal), normal); };
+  if (piece.texture->type != schema::PieceTextureType::recording) {
+    const auto [u, v] = map_axes(*piece.texture);
+    const SpaceMetres at_m = sum_of(place_m, -1, {piece.x_m, piece.y_m, piece.z_m}),
+                      passed_mps = along(speed_mps);
+    if (piece.texture->type == schema::PieceTextureType::sine) {
+      const auto [p, q] = piece.texture->periods_m;
+      const double a_n = piece.texture_gain * piece.texture->amplitude_n, turn = 2 * std::numbers::pi;
+      const double cycles =
+          (std::abs(inner(u, passed_mps)) / p + std::abs(inner(v, passed_mps)) / q) * tick_s_;
+      const double share =
+          std::sin(turn * inner(u, at_m) / p) * std::sin(turn * inner(v, at_m) / q) * played_share(cycles);
+      normal_n += share * std::copysign(std::min(std::abs(a_n), normal_n), a_n);
+      return {};
+    }
+    const auto slope = exact_slope(scene_.reliefs.of(*piece.texture), inner(u, at_m), inner(v, at_m),
+                                   std::hypot(inner(u, passed_mps), inner(v, passed_mps)), 1 / tick_s_);
+    return sum_of({}, -piece.texture_gain * normal_n,
+                  along(sum_of(sum_of({}, slope.along_columns, u), slope.along_rows, v)));
+  }
+  const SpaceMetres way = along(sum_of(place_m, -1, wall.last_m)), before = along(wall.line);
+  const double by = (inner(way, before) < 0 ? -1 : 1) / double{core::kPathLine_m};
+  const SpaceMetres turned = sum_of(before, by, way);
+  if (!(size_of(turned) > 0)) return {};
+  wall.line = unit_of(turned);
+  wall.path_m += inner(way, wall.line);
+  const Relief& relief = scene_.reliefs.of(*piece.texture);
+  // From the first end of the texture forth to the other one, and back.
+  const double length_m = static_cast<double>(relief.columns) * relief.pitch_m;
+  const double turns = wall.path_m / (2 * length_m), part = turns - std::floor(turns);
+  const double from_first_m = 2 * length_m * std::min(part, 1 - part);
+  const double slope =
+      exact_slope(relief, from_first_m - length_m / 2, 0, std::abs(inner(speed_mps, wall.line)), 1 / tick_s_)
+          .along_columns;
+  return sum_of({}, piece.texture_gain * slope, wall.line);
+}
+
 SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {
   const bool arrives = !placed_;
   if (arrives) ghost_m_ = hand_m;
@@ -330,9 +390,10 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
     if (adds) held[i] = nearest_face(piece, hand_m);
     double outside_m = surface_at(piece, hand_m).distance_m;
     if (meshes_[i] && walls_[i].touched) outside_m = meshes_[i]->distance_m(hand_m);
-    const double force_n = wall_force(piece, walls_[i], held[i], outside_m, inner(held[i].normal, speed_mps));
+    double force_n = wall_force(piece, walls_[i], held[i], outside_m, inner(held[i].normal, speed_mps));
     const SpaceMetres on = adds ? sum_of(hand_m, held[i].depth_m, held[i].normal) : ghost_m_;
     if (arrives) walls_[i].anchor_m = walls_[i].last_m = on;
+    sum = sum_of(sum, 1, texture_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
     sum = sum_of(sum, force_n, held[i].normal);
     sum = sum_of(sum, 1, friction_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
   }

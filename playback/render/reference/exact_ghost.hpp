@@ -15,7 +15,8 @@ namespace tacto::playback {
 
 using SpaceMetres = std::array<double, 3>;
 
-/// The contract of core::GhostPoint, core::wall_force and core::friction_force, by other methods: the planes
+/// The contract of core::GhostPoint, core::wall_force, core::texture_force and core::friction_force, by other
+/// methods: the planes
 /// that hold the ghost by Hildreth's iteration over all that it touches, the entry into a piece by samples
 /// and bisection, curved surfaces by many small steps instead of a closed form, meshes by trying all
 /// triangles, each slip of the friction by bisection. Slow; not for the tick.
@@ -35,6 +36,8 @@ class ExactGhost {
     double contact_mps = 0;  // inwards
     int ticks = 0;           // since the first one of the contact
     SpaceMetres anchor_m = {}, last_m = {};
+    SpaceMetres line = {};
+    double path_m = 0;
   };
   struct Surface {
     double distance_m = 0;
@@ -65,6 +68,10 @@ class ExactGhost {
   SpaceMetres friction_force(const schema::Piece& piece, Wall& wall, double normal_n,
                              const SpaceMetres& normal, const SpaceMetres& place_m,
                              const SpaceMetres& speed_mps) const;
+
+  SpaceMetres texture_force(const schema::Piece& piece, Wall& wall, double& normal_n,
+                            const SpaceMetres& normal, const SpaceMetres& place_m,
+                            const SpaceMetres& speed_mps) const;
 
   const PreparedScene& scene_;
   const schema::Device& device_;

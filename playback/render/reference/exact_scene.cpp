@@ -6,12 +6,12 @@
 #include <numbers>
 #include <tuple>
 
-#include "firmware-host/core/kernel/level_of_detail.hpp"
 #include "firmware-host/core/scene/edge_speed.hpp"
 #include "firmware-host/core/scene/force_limiter.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
 #include "playback/render/reference/exact_noise.hpp"
+#include "playback/render/reference/exact_relief.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -22,58 +22,6 @@ double norm(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value * value;
   return std::sqrt(sum);
-}
-
-// 1 up to 3/8 of the rate, 0 from half of it on.
-double held_by_rate(double cycles_per_tick) {
-  const double s = std::clamp(8 * (cycles_per_tick - 0.375), 0.0, 1.0);
-  return 1 - s * s * (3 - 2 * s);
-}
-
-// The cubic B-spline and its derivative, at a distance in samples.
-double spline(double x) {
-  const double a = std::abs(x);
-  return a >= 2 ? 0 : a >= 1 ? std::pow(2 - a, 3) / 6 : 2.0 / 3 - a * a + a * a * a / 2;
-}
-double spline_slope(double x) {
-  const double a = std::abs(x), way = x < 0 ? -1 : 1;
-  return a >= 2 ? 0 : a >= 1 ? -way * (2 - a) * (2 - a) / 2 : way * (1.5 * a * a - 2 * a);
-}
-
-struct SplineValue {
-  double value = 0, by_x = 0, by_y = 0;
-};
-
-// A level's surface and its slope along columns and rows, at a place in samples.
-SplineValue spline_of(const ReliefLevel& level, double x, double y) {
-  const auto held = [](double at, std::size_t count) {
-    return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
-  };
-  SplineValue at;
-  for (double j = std::floor(y) - 1; j <= std::floor(y) + 2; ++j)
-    for (double i = std::floor(x) - 1; i <= std::floor(x) + 2; ++i) {
-      const double c =
-          double{level.coefficients[held(j, level.rows) * level.columns + held(i, level.columns)]};
-      at.value += c * spline(x - i) * spline(y - j);
-      at.by_x += c * spline_slope(x - i) * spline(y - j);
-      at.by_y += c * spline(x - i) * spline_slope(y - j);
-    }
-  return at;
-}
-
-// The place on a level, in samples, at `from_centre_m` from the centre of the patch; axis 0 or 1.
-double place_on(const Relief& relief, const ReliefLevel& level, int axis, double from_centre_m) {
-  const auto all = static_cast<double>(axis == 0 ? relief.columns : relief.rows),
-             count = static_cast<double>(axis == 0 ? level.columns : level.rows);
-  return ((from_centre_m - relief.centre_m[axis]) / relief.pitch_m + all / 2) * count / all - 0.5;
-}
-
-// At which level a map is played, in half octaves. The highest frequency of a level reaches half the rate
-// when it is left.
-double level_at(const Relief& relief, double passed_mps, double rate_hz) {
-  const double per_tick = passed_mps * relief.highest_per_m / rate_hz;
-  const core::Detail detail = core::detail_at(static_cast<float>(per_tick * 2 * std::numbers::sqrt2));
-  return detail.coarser + double{detail.fade};
 }
 
 // A place and a speed after a tick of `tick_s` under a held force: m v' = force - b v by the method of Runge
@@ -135,19 +83,8 @@ ExactScene::Vector ExactScene::relief_force(const Relief& relief, double kappa_n
   const double c = std::cos(angle_rad), s = std::sin(angle_rad);
   const double passed_mps =
       relief.rows > 1 ? std::hypot(speed.x, speed.y) : std::abs(c * speed.x + s * speed.y);
-  const double played = level_at(relief, passed_mps, rate_hz_);
-  double u = 0, v = 0;
-  for (std::size_t n = 0; n < relief.levels.size(); ++n) {
-    const double weight = std::max(0.0, 1 - std::abs(static_cast<double>(n) - played));
-    if (weight == 0) continue;
-    const ReliefLevel& level = relief.levels[n];
-    const SplineValue at = spline_of(level, place_on(relief, level, 0, c * from_centre.x + s * from_centre.y),
-                                     place_on(relief, level, 1, c * from_centre.y - s * from_centre.x));
-    u += weight * at.by_x * static_cast<double>(level.columns) /
-         (static_cast<double>(relief.columns) * relief.pitch_m);
-    v += weight * at.by_y * static_cast<double>(level.rows) /
-         (static_cast<double>(relief.rows) * relief.pitch_m);
-  }
+  const auto [u, v] = exact_slope(relief, c * from_centre.x + s * from_centre.y,
+                                  c * from_centre.y - s * from_centre.x, passed_mps, rate_hz_);
   const double force = -kappa_n;
   return {force * (c * u - s * v), force * (s * u + c * v)};
 }
@@ -163,8 +100,8 @@ ExactScene::Vector ExactScene::map_force(const ForceRelief& forces, double gain,
   for (std::size_t n = 0; n < x.levels.size(); ++n) {
     const double weight = std::max(0.0, 1 - std::abs(static_cast<double>(n) - played));
     if (weight == 0) continue;
-    const double column = place_on(x, x.levels[n], 0, c * from_centre.x + s * from_centre.y),
-                 row = place_on(x, x.levels[n], 1, c * from_centre.y - s * from_centre.x);
+    const double column = place_on_level(x, x.levels[n], 0, c * from_centre.x + s * from_centre.y),
+                 row = place_on_level(x, x.levels[n], 1, c * from_centre.y - s * from_centre.x);
     u += gain * weight * spline_of(forces.x.levels[n], column, row).value;
     v += gain * weight * spline_of(forces.y.levels[n], column, row).value;
   }
@@ -183,7 +120,7 @@ ExactScene::Vector ExactScene::groove_force(const schema::GroovesLayer& grooves,
   for (std::size_t n = 1; n <= amplitudes.size(); ++n) {
     const auto order = static_cast<double>(n);
     const double angle = turn * order * (x * from_centre.x + y * from_centre.y);
-    slope -= held_by_rate(order * per_tick) * amplitudes[n - 1] * turn * order * std::sin(angle);
+    slope -= played_share(order * per_tick) * amplitudes[n - 1] * turn * order * std::sin(angle);
   }
   const double force_n = -grooves.kappa_n.value * grooves.depth_m.value * slope;
   return {force_n * x, force_n * y};
@@ -199,7 +136,7 @@ ExactScene::Vector ExactScene::noise_force(const schema::NoiseLayer& noise, doub
     const double x = (c * from_centre.x + s * from_centre.y) * cells_per_m,
                  y = (c * from_centre.y - s * from_centre.x) * cells_per_m;
     const double per_tick = core::kNoiseCycles * std::hypot(speed.x, speed.y) * cells_per_m / rate_hz_;
-    const double per_cell = amplitude * held_by_rate(per_tick) * cells_per_m / (2 * half);
+    const double per_cell = amplitude * played_share(per_tick) * cells_per_m / (2 * half);
     u += per_cell * (exact_noise(table, x + half, y, 0) - exact_noise(table, x - half, y, 0));
     v += per_cell * (exact_noise(table, x, y + half, 0) - exact_noise(table, x, y - half, 0));
     cells_per_m *= 2;
