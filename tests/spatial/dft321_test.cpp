@@ -21,7 +21,7 @@ Dft321 reduced(const Axes& axes) {
   return dft321(spans);
 }
 
-std::vector<double> white(std::size_t n, unsigned seed) {
+std::vector<double> white_noise_g(std::size_t n, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   std::vector<double> values(n);
@@ -39,7 +39,7 @@ std::vector<std::complex<double>> spectrum_of(const std::vector<double>& values)
 // Rounding of transforms of n values: some eps sqrt(n log n); 1e-12 of the largest bin leaves a factor 100.
 TEST(Dft321, KeepsTheMagnitudeOfEveryBin) {
   for (const std::size_t n : {1U, 2U, 97U, 1000U, 4099U}) {
-    const Axes axes = {white(n, 1), white(n, 2), white(n, 3)};
+    const Axes axes = {white_noise_g(n, 1), white_noise_g(n, 2), white_noise_g(n, 3)};
     const Dft321 one = reduced(axes);
     ASSERT_EQ(one.values.size(), n);
     const auto made = spectrum_of(one.values);
@@ -52,7 +52,7 @@ TEST(Dft321, KeepsTheMagnitudeOfEveryBin) {
 }
 
 TEST(Dft321, AMotionAlongOneDirectionComesBackAsItIs) {
-  const auto motion = white(1001, 4);
+  const auto motion = white_noise_g(1001, 4);
   const std::array direction = {0.48, -0.6, 0.64};  // of length 1
   Axes axes;
   for (std::size_t i = 0; i < 3; ++i)
@@ -81,7 +81,7 @@ TEST(Dft321, ThePhaseIsThatOfTheSum) {
 }
 
 TEST(Dft321, AxesThatCancelAreSeenInTheCorrelation) {
-  Axes axes = {white(1000, 5), {}, white(1000, 6)};
+  Axes axes = {white_noise_g(1000, 5), {}, white_noise_g(1000, 6)};
   for (double& value : axes[2]) value *= 1e-3;
   for (const double value : axes[0]) axes[1].push_back(-value);
   EXPECT_LT(reduced(axes).waveform_correlation, 0.15);  // of 1,000 random values: 3 / sqrt(1000) and more
