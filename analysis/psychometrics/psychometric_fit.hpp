@@ -22,9 +22,9 @@ struct PsychometricOptions {
   Shape shape = Shape::normal;
   std::optional<double> guess = {};  ///< as in PsychometricFunction
   std::optional<double> lapse = {};  ///< fixed; without it fitted, with the prior Beta(1, 19)
+  bool overdispersed = false;        ///< answers at one level scatter more than binomially
   /// Level at which F is 0.5, fixed; without it fitted. Levels on one side of it are enough then.
   std::optional<double> threshold = {};
-  bool overdispersed = false;  ///< answers at one level scatter more than binomially
 };
 
 /// A value with its 95 % interval.

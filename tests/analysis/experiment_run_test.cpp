@@ -127,7 +127,7 @@ class TextRun {
     steps.present = [this](const Attempt& attempt) -> Result<std::optional<schema::JournalEntry>> {
       if (attempt.begun.attempt < first_presented) return std::nullopt;
       if (attempt.trial.real) return schema::SamplePlaced{attempt.begun.attempt, attempt.trial.code};
-      if (const std::string& sample = attempt.trial.sample; sample != queue_.sample()) {
+      if (const std::string& sample = attempt.trial.sample; !sample.empty() && sample != queue_.sample()) {
         const schema::SamplePlaced placed{attempt.begun.attempt, sample};
         if (const auto kept = keep(placed); !kept) return schema::forward_error(kept);
         if (const auto taken = queue_.take(placed); !taken) return schema::forward_error(taken);

@@ -94,7 +94,9 @@ TEST(MeshTest, TrianglesThatAreThereTwice) {
     EXPECT_EQ(faults.open_edges + faults.odd_edges + faults.flipped, 0U);
     EXPECT_FALSE(check_mesh(twice, "m"));
     EXPECT_EQ(repair(twice, 0).dropped, 12U);
-    EXPECT_EQ(twice.triangles, unit_cube().triangles);
+    Mesh once = unit_cube();
+    repair(once, 0);  // its vertices get the same numbers
+    EXPECT_EQ(twice.triangles, once.triangles);
     EXPECT_TRUE(check_mesh(twice, "m"));
   }
 }

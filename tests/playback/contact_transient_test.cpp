@@ -379,7 +379,8 @@ TEST(ContactTransientTest, ABlockThatDoesNotDecayIsRefused) {
     std::vector<std::uint32_t> words = scene.words;
     const auto bytes = static_cast<std::uint32_t>(words.size() * sizeof words[0]);
     auto* const at = reinterpret_cast<std::uint8_t*>(words.data());
-    std::memcpy(at + bytes - sizeof transient, &transient, sizeof transient);
+    std::memcpy(at + bytes - sizeof(core::PieceTable) + offsetof(core::PieceTable, transient), &transient,
+                sizeof transient);
     const std::uint32_t check = core::scene_check(at, bytes);
     std::memcpy(at + offsetof(core::SceneHeader, check), &check, sizeof check);
     core::SceneView view;

@@ -217,7 +217,8 @@ TEST(PieceTextureTest, ABumpIsTheSlopeTimesTheForceAlongTheNormal) {
     for (const double gain : {1.0, -0.5}) {
       piece.texture_gain = gain;
       TexturedPieces on({piece});
-      on.at({0, 0, 2e-3});
+      on.at({0, 4e-3, 2e-3});
+      for (int i = 0; i < 300; ++i) on.at({0, 4e-3, -3e-3});  // until its speed is forgotten
       const bool round = piece.shape == schema::PieceShape::sphere;
       double largest_n = 0;
       for (int i = 0; i < 2000; ++i) {

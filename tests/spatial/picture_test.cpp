@@ -96,6 +96,7 @@ TEST(SpectrogramFigure, DrawsAChangeAtItsPosition) {
 TEST(SpectrogramFigure, IsTheSameEachTime) {
   const Drawn oak = drawn(samples::noise(30000));
   EXPECT_TRUE(*to_png(oak.figure()) == *to_png(oak.figure()));
+  EXPECT_TRUE(*to_svg(oak.figure()) == *to_svg(oak.figure()));
 }
 
 TEST(SpectrogramFigure, SvgHoldsItsWordsAndStaysSmall) {

@@ -22,14 +22,14 @@ namespace {
   constexpr float kMostPart = 0x1.fffffep30F;
   const float part = dot(way, line) * texture.per_m[0] * 0x1p32F;
   if (within(part, -kMostPart, kMostPart)) state.path += static_cast<uint32_t>(static_cast<int32_t>(part));
-  constexpr uint32_t kReturn = UINT32_C(1) << 31;
-  const uint32_t from_first = state.path < kReturn ? state.path : ~state.path;
+  constexpr uint32_t kPass = UINT32_C(1) << 31;
+  const uint32_t from_first = state.path < kPass ? state.path : ~state.path;
   const ReliefTable& relief = relief_of(texture);
   const float passed_mps = dot(speed_mps, line);
   const PlayedLevels played = played_levels(relief, passed_mps < 0 ? -passed_mps : passed_mps, rate_hz);
   // A level covers half a sample before its first one to half a sample behind its last one.
   const PlaneVector slope = slope_of(relief, played, [&](const ReliefLevelTable& level, int axis) -> Q32 {
-    return axis == 0 ? static_cast<Q32>(2 * uint64_t{from_first} * level.columns) - kReturn : 0;
+    return axis == 0 ? static_cast<Q32>(2 * uint64_t{from_first} * level.columns) - kPass : 0;
   });
   return (gain * slope.x) * line;
 }

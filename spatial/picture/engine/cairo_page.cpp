@@ -7,7 +7,10 @@
 
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <numbers>
+#include <string>
+#include <string_view>
 
 namespace tacto::spatial {
 namespace {
@@ -61,6 +64,25 @@ void attach_png(cairo_surface_t* surface, std::string png) {
   const auto attached = cairo_surface_set_mime_data(surface, CAIRO_MIME_TYPE_PNG, data, bytes->size(),
                                                     release_bytes, bytes.get());
   if (attached == CAIRO_STATUS_SUCCESS) static_cast<void>(bytes.release());
+}
+
+// Cairo numbers the surfaces of the whole process ("image6"). Numbered within the picture instead, an SVG
+// does not depend on what was drawn before it.
+std::string numbered_within(const std::string& svg) {
+  std::map<std::string_view, std::size_t> numbers;
+  std::string numbered;
+  std::size_t copied = 0;
+  for (std::size_t quote = svg.find('"'); quote != std::string::npos; quote = svg.find('"', quote + 1)) {
+    const std::size_t begin = quote + 1 + (svg.compare(quote + 1, 1, "#") == 0 ? 1 : 0);
+    const std::string_view name = std::string_view(svg).substr(begin, svg.find('"', begin) - begin);
+    const std::size_t digits = name.starts_with("image") ? 5 : name.starts_with("surface") ? 7 : name.size();
+    if (digits >= name.size() || name.find_first_not_of("0123456789", digits) != std::string_view::npos)
+      continue;
+    const std::size_t number = numbers.try_emplace(name.substr(digits), numbers.size()).first->second;
+    numbered.append(svg, copied, begin + digits - copied).append(std::to_string(number));
+    copied = begin + name.size();
+  }
+  return numbered.append(svg, copied);
 }
 
 class CairoPage : public Page {
@@ -166,7 +188,7 @@ class CairoPage : public Page {
     for (const cairo_status_t status : {cairo_status(cairo_.get()), cairo_surface_status(surface_.get())})
       if (status != CAIRO_STATUS_SUCCESS && status != CAIRO_STATUS_SURFACE_FINISHED)
         return schema::fail(schema::ErrorKind::internal, cairo_status_to_string(status), "picture");
-    return bytes_;
+    return png_ ? bytes_ : numbered_within(bytes_);
   }
 
  private:
