@@ -355,14 +355,24 @@ Result<void> check_pace(const Protocol& protocol, const std::string& path) {
   return {};
 }
 
+// "en", "pt-BR"
+bool is_language(const std::string& code) {
+  const std::size_t letters = std::min(code.find_first_not_of("abcdefghijklmnopqrstuvwxyz"), code.size());
+  return (letters == 2 || letters == 3) && (letters == code.size() || code[letters] == '-');
+}
+
 // Each language has all texts that are shown.
 Result<void> check_texts(const Protocol& protocol, const std::string& path) {
-  for (const auto& [language, texts] : protocol.texts)
+  for (const auto& [language, texts] : protocol.texts) {
+    if (!is_language(language))
+      return malformed_at(path, fmt::format("texts/{}", language).c_str(), "this is no code of a language",
+                          "give a code such as en or pt-BR");
     for (const ShownText& each : kShownTexts)
       if (each.is_shown(protocol) && (texts.*each.member).empty())
         return malformed_at(path, fmt::format("texts/{}/{}", language, each.name).c_str(),
                             "this text is shown in a run, and is missing or empty",
                             fmt::format("add it in the language {}", language));
+  }
   return {};
 }
 

@@ -119,7 +119,7 @@ def a_person_reads_another_language_and_has_a_break():
 
 
 def a_missing_or_unknown_text_is_one_error():
-    for change, place in (({"de": {**GERMAN, "break": ""}}, "/texts/de/break"), ({"de": {**GERMAN, "pause": "P"}}, "/texts/de/pause"), ({"german": GERMAN}, "/texts")):
+    for change, place in (({"de": {**GERMAN, "break": ""}}, "/texts/de/break"), ({"de": {**GERMAN, "pause": "P"}}, "/texts/de/pause"), ({"german": GERMAN}, "/texts/german")):
         new_study("odd", "--force", breaks={"after_s": 60}, texts=change)
         assert tacto.error_of("experiment", "check", "odd", code=4)["where"].endswith("odd.protocol.json#" + place), place
 

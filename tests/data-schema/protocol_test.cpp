@@ -69,7 +69,7 @@ TEST_F(ProtocolFile, TextsAreByLanguageAndEachFaultHasItsPlace) {
   ASSERT_TRUE(one) << message(one.error());
   EXPECT_EQ(question_of(*one), "f");
   expect_fault("/texts", nlohmann::json::object(), "/texts");
-  expect_fault("/texts/English", other, "/texts");
+  expect_fault("/texts/English", other, "/texts/English");
   expect_fault("/texts/en/welcome", "", "/texts/en/welcome");
   expect_fault("/texts/en/welcome", 3, "/texts/en/welcome");
   expect_fault("/texts/en/welcom", "w", "/texts/en/welcom");
