@@ -91,6 +91,7 @@ def playing(name, *arguments, **fake):
 def is_what_the_card_was_told(name):
     """The session's ticks are consecutive ticks of the card: each count read, and each drive written."""
     lines = log()
+    pathlib.Path(f"{name}.csv").unlink(missing_ok=True)
     tacto.run("session", name, "-o", f"{name}.csv")
     table = np.genfromtxt(f"{name}.csv", delimiter=",", names=True)
     told = ticks_of(lines)
