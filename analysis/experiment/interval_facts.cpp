@@ -156,8 +156,8 @@ std::vector<std::string> reasons_against(const IntervalFacts& facts, const schem
 namespace {
 
 // Of an ordering: one interval of a stimulus that was delivered is enough, so the others do not count.
-bool is_felt(const std::string& sha256, const std::vector<std::string>& all,
-             const std::vector<std::vector<std::string>>& why) {
+bool is_delivered(const std::string& sha256, const std::vector<std::string>& all,
+                  const std::vector<std::vector<std::string>>& why) {
   for (std::size_t i = 0; i < why.size(); ++i)
     if (all[i] == sha256 && why[i].empty()) return true;
   return false;
@@ -174,7 +174,7 @@ schema::DeliveryJudged judged_delivery(int attempt, std::vector<IntervalFacts> i
   for (std::size_t i = 0; i < intervals.size(); ++i)
     why.push_back(reasons_against(intervals[i], protocol, sha256[i]));
   for (std::size_t i = 0; i < intervals.size(); ++i) {
-    if (protocol.task == schema::Task::ordering && is_felt(sha256[i], sha256, why)) continue;
+    if (protocol.task == schema::Task::ordering && is_delivered(sha256[i], sha256, why)) continue;
     for (const std::string& reason : why[i])
       judged.why.push_back(fmt::format("interval {}: {}", i + 1, reason));
   }

@@ -66,7 +66,7 @@ Result<void> LiveSetting::mark(playback::Player& player) const {
 
 Result<SettingNow> LiveSetting::now(const playback::Player& player) {
   SettingNow now{ratio_, 0};
-  if (asked_at_ != AskedAt::pass_with_felt) return now;
+  if (asked_at_ != AskedAt::pass_with_ratio) return now;
   TACTO_TRY(wait_for_disk(player));
   if (unit_rms_m_ == 0) {
     const auto report = playback::report_strokes(session_);
@@ -74,7 +74,7 @@ Result<SettingNow> LiveSetting::now(const playback::Player& player) {
     unit_rms_m_ = report->strokes.front().target_rms_m / ratio_;
   }
   const auto rms_m = predicted_rms_m(session_, passes_ * static_cast<std::uint64_t>(protocol_.pace.strokes));
-  if (rms_m) now.felt_ratio = *rms_m / unit_rms_m_;
+  if (rms_m) now.presented_ratio = *rms_m / unit_rms_m_;
   return now;
 }
 

@@ -16,12 +16,12 @@ struct SettingNow {
   double ratio = 0;  ///< of the gain, to that of the protocol
   /// RMS of the predicted displacement of the last stroke over that of the texture at the ratio 1; 0: not
   /// computed, or unknown because ticks are missing.
-  double felt_ratio = 0;
+  double presented_ratio = 0;
 };
 
 /// When it is asked: at any time, by keys; or whenever the finger has moved along the whole pace, a person
-/// then waits in emulated time, and an observer also gets felt_ratio.
-enum class AskedAt { any_time, pass, pass_with_felt };
+/// then waits in emulated time, and an observer also gets presented_ratio.
+enum class AskedAt { any_time, pass, pass_with_ratio };
 
 /// For PlayOptions::steer. Each setting is a gain command and a mark in the session, "setting 0.25"; after
 /// "end" nothing is adjusted. What is accepted is the last gain of the session.

@@ -158,7 +158,7 @@ int rated(const Observer& observer, const std::string& place, double ratio) {
       std::lround(std::clamp<double>(kMost * (ratio - observer.match + noise), -kMost, kMost)));
 }
 
-double felt_level_db(const Observer& observer, const std::string& place, double rms_m) {
+double perceived_level_db(const Observer& observer, const std::string& place, double rms_m) {
   constexpr double kReferenceM = 1e-6;
   return schema::amplitude_db(rms_m / kReferenceM) +
          observer.noise_db.value_or(kUsualOrderNoiseDb) * normal_of(observer, place);

@@ -16,7 +16,7 @@ namespace tacto::analysis {
 /// seed, participant and attempt only, so a resumed run gets the same.
 ///
 /// Of two intervals: compares their periods, see smaller_period(). Of an identification: see
-/// TemplateObserver. Of amplitude: see rated(). Of ordering: the order of felt_level_db(). Of adjustment: see
+/// TemplateObserver. Of amplitude: see rated(). Of ordering: the order of perceived_level_db(). Of adjustment: see
 /// criterion_of().
 struct Observer {
   schema::Task task = schema::Task::two_interval;  ///< in which it can answer
@@ -49,7 +49,7 @@ int smaller_period(const Observer& observer, const std::string& place,
 int rated(const Observer& observer, const std::string& place, double ratio);
 
 /// A level, dB re 1 um RMS, with a normal error of deviation noise_db (default 1 dB).
-double felt_level_db(const Observer& observer, const std::string& place, double rms_m);
+double perceived_level_db(const Observer& observer, const std::string& place, double rms_m);
 
 /// The ratio at which it accepts in this attempt: threshold times exp(sd x a standard normal number), in
 /// descending series times sqrt(1 + hysteresis), in ascending ones divided by it.

@@ -234,7 +234,7 @@ class LiveSteps {
       wanted = request_.participant.wanted(run_.queue.answers());
       if (!wanted) return false;
     }
-    const AskedAt asked_at = request_.observer        ? AskedAt::pass_with_felt
+    const AskedAt asked_at = request_.observer        ? AskedAt::pass_with_ratio
                              : wanted || !keeps_time_ ? AskedAt::pass
                                                       : AskedAt::any_time;
     IntervalPlay interval = interval_of(attempt, i);
@@ -243,7 +243,7 @@ class LiveSteps {
     schema::Turn before = schema::Turn::accept;
     const auto ask = [&](const SettingNow& now) -> Result<std::optional<schema::Turn>> {
       if (!wanted) return request_.participant.turn(asked_at == AskedAt::pass);
-      const double measured = request_.observer ? now.felt_ratio : now.ratio;
+      const double measured = request_.observer ? now.presented_ratio : now.ratio;
       // Where ticks are missing nothing was played, and then the attempt is not delivered.
       const schema::Turn turn =
           measured > 0 ? turn_towards(protocol, now.ratio, measured, *wanted) : schema::Turn::accept;
@@ -298,7 +298,7 @@ class LiveSteps {
         if (attempt.begun.stimuli[i] != code) continue;
         const auto rms_m = predicted_rms_m(full(attempt.begun.sessions[i]));
         if (!rms_m) continue;  // ticks are missing: it is not delivered
-        sum_db += felt_level_db(*request_.observer, fmt::format("{}/{}", place(attempt), i), *rms_m);
+        sum_db += perceived_level_db(*request_.observer, fmt::format("{}/{}", place(attempt), i), *rms_m);
         ++count;
       }
       levels.emplace_back(count > 0 ? sum_db / count : 0, static_cast<int>(levels.size()) + 1);

@@ -102,13 +102,13 @@ int TemplateObserver::answer(const Observer& observer, const std::string& place,
 int TemplateObserver::nearest(const Observer& observer, const std::string& place,
                               const std::vector<double>& levels_db, bool real) const {
   const double noise_db = observer.noise_db.value_or(real ? kRealNoiseDb : kVirtualNoiseDb);
-  std::vector<double> felt_db = levels_db;
-  for (std::size_t band = 0; band < felt_db.size(); ++band)
-    felt_db[band] += noise_db * normal_of(observer, fmt::format("{}/{}", place, band));
+  std::vector<double> noisy_db = levels_db;
+  for (std::size_t band = 0; band < noisy_db.size(); ++band)
+    noisy_db[band] += noise_db * normal_of(observer, fmt::format("{}/{}", place, band));
   const auto distance = [&](const Template& each) {
     double sum = 0;
-    for (std::size_t band = 0; band < felt_db.size(); ++band)
-      sum += std::pow(felt_db[band] - each.levels_db[band], 2);
+    for (std::size_t band = 0; band < noisy_db.size(); ++band)
+      sum += std::pow(noisy_db[band] - each.levels_db[band], 2);
     return sum;
   };
   return static_cast<int>(std::ranges::min_element(standards_, {}, distance) - standards_.begin()) + 1;

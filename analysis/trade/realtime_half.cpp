@@ -235,7 +235,7 @@ class RealtimeTrade {
       : texture_(texture), transducer_(transducer), progress_(progress) {}
 
   Result<std::vector<TradeRow>> rows() {
-    TACTO_TRY(check_felt());
+    TACTO_TRY(check_content());
     constexpr Part kParts[] = {
         &RealtimeTrade::add_readings,      &RealtimeTrade::add_densities,  &RealtimeTrade::add_inverses,
         &RealtimeTrade::add_looking_ahead, &RealtimeTrade::add_counts,     &RealtimeTrade::add_rates,
@@ -442,7 +442,7 @@ class RealtimeTrade {
       if (line.work) line.row.cost_ns = line.times * costs[*line.work] / ticks_[*line.work];
   }
 
-  Result<void> check_felt() const {
+  Result<void> check_content() const {
     const auto played = play(reading_case(usual(), wire::Interpolation::hermite, 16));
     TACTO_TRY(played);
     if (!std::isnan(worst_of(played->errors()))) return {};

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "firmware-host/core/kernel/tick_kernel.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
 #include "playback/choose/choices.hpp"
 #include "playback/model/chain.hpp"
@@ -14,8 +15,6 @@
 
 namespace tacto::playback {
 namespace {
-
-constexpr double kGainS = 0.01;  // core::TickInput::gain
 
 // The replacement of each set: itself, or the last known set before it; none before the first known one.
 std::vector<std::ptrdiff_t> replacements(const std::vector<bool>& known) {
@@ -76,7 +75,8 @@ MixRow MixFollower::next(const SessionRow& row, std::span<const TextureChange> t
   return {playing_, leaving_, fade_ > 0 ? fade_ * fade_ * (3 - 2 * fade_) : 0};
 }
 
-GainFollower::GainFollower(double rate_hz) : ticks_(std::max(1.0, std::floor(kGainS * rate_hz))) {}
+GainFollower::GainFollower(double rate_hz)
+    : ticks_(std::max(1.0, std::floor(double{core::kGainS * static_cast<float>(rate_hz)}))) {}
 
 double GainFollower::next(const SessionRow& row) {
   if (!std::exchange(begun_, true)) gain_ = aim_ = row.gain;

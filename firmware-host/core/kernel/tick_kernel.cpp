@@ -5,7 +5,6 @@
 
 namespace tacto::core {
 namespace {
-constexpr float kGainS = 0.01F;
 constexpr float kGateS = 0.02F;
 }  // namespace
 

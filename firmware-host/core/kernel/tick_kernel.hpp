@@ -32,6 +32,9 @@ inline float rate_of(uint32_t millihertz) noexcept {
   return 1e-3F * static_cast<float>(millihertz);
 }
 
+/// A change of the gain takes this long.
+inline constexpr float kGainS = 0.01F;
+
 /// The input of a tick.
 struct TickInput {
   int32_t count = 0;                ///< of the encoder

@@ -122,7 +122,7 @@ void try_across(JudgedPiece& worst, const Piece& friction, const Piece& other, s
     add_wall(edge, friction_of(other, on));
     try_along(worst, edge, with, on);
   }
-  const Piece alone = felt_wall(other);
+  const Piece alone = steepest_wall(other);
   Piece wall = alone;
   add_wall(wall, friction);
   if (!adds) wall.stiffness_n_per_m = alone.stiffness_n_per_m;
@@ -134,7 +134,7 @@ JudgedPiece judged_at(const Scene& scene, std::size_t index, const OnDevice& on)
   const bool adds = scene.contact == schema::PieceContact::add;
   std::vector<const Piece*> same, across;
   std::vector<std::string> unjudged;
-  Piece damped = felt_wall(piece), held = friction_of(piece, on);
+  Piece damped = steepest_wall(piece), held = friction_of(piece, on);
   for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
     if (i == index) continue;
     const Piece& other = scene.pieces[i];
@@ -143,7 +143,7 @@ JudgedPiece judged_at(const Scene& scene, std::size_t index, const OnDevice& on)
     if (meeting == Meeting::across) across.push_back(&other);
     if (meeting != Meeting::other) continue;
     unjudged.push_back(other.name);
-    damped.damping_n_s_per_m += felt_wall(other).damping_n_s_per_m + other.viscous_n_s_per_m;
+    damped.damping_n_s_per_m += steepest_wall(other).damping_n_s_per_m + other.viscous_n_s_per_m;
     add_wall(held, friction_of(other, on));
   }
   std::vector<const Piece*> depths = same;
@@ -153,11 +153,11 @@ JudgedPiece judged_at(const Scene& scene, std::size_t index, const OnDevice& on)
   for (const Piece* lowest : depths) {
     if (height_m(*lowest, 0) > height_m(piece, 0)) continue;  // there the hand is above the piece
     // With those of the same direction that touch a hand which is as deep as the surface of `lowest`.
-    Piece total = felt_wall(piece), friction = friction_of(piece, on);
+    Piece total = steepest_wall(piece), friction = friction_of(piece, on);
     std::vector<std::string> with;
     for (const Piece* other : same) {
       if (height_m(*other, 0) < height_m(*lowest, 0)) continue;
-      add_wall(total, felt_wall(*other));
+      add_wall(total, steepest_wall(*other));
       add_wall(friction, friction_of(*other, on));
       with.push_back(other->name);
     }
@@ -176,13 +176,13 @@ JudgedPiece judged_at(const Scene& scene, std::size_t index, const OnDevice& on)
 
 }  // namespace
 
-Piece felt_wall(const Piece& piece) {
-  Piece felt = piece;
-  felt.stiffness_n_per_m = steepest_spring_n_per_m(piece);
+Piece steepest_wall(const Piece& piece) {
+  Piece steepest = piece;
+  steepest.stiffness_n_per_m = steepest_spring_n_per_m(piece);
   if (!piece.texture || piece.texture->type != schema::PieceTextureType::sine || piece.texture_gain == 0)
-    return felt;
-  felt.stiffness_n_per_m *= 2, felt.damping_n_s_per_m *= 2, felt.integral_n_per_m_s *= 2;
-  return felt;
+    return steepest;
+  steepest.stiffness_n_per_m *= 2, steepest.damping_n_s_per_m *= 2, steepest.integral_n_per_m_s *= 2;
+  return steepest;
 }
 
 double texture_stiffness_n_per_m(const Piece& piece, const schema::Device& device) {

@@ -14,7 +14,7 @@
 namespace tacto::playback {
 
 struct JudgedPiece {
-  schema::Piece total;                  ///< felt_wall(), or the sum of those that act along its direction
+  schema::Piece total;                  ///< steepest_wall(), or the sum of those that act along its direction
   std::vector<std::string> with;        ///< the other pieces of that sum
   std::vector<std::string> unjudged;    ///< if not empty, a stable sum with these is not known
   double growth = 0;                    ///< wall_growth() of `total`
@@ -34,7 +34,7 @@ double wall_growth(const schema::Piece& piece, const schema::Device& device, dou
 
 /// Its wall at its steepest: with a travel of the largest slope, and with a sine as texture of twice the
 /// stiffness, damping and integral where the force along the normal is below the amplitude.
-schema::Piece felt_wall(const schema::Piece& piece);
+schema::Piece steepest_wall(const schema::Piece& piece);
 
 /// Along the surface: the largest slope of a recorded force; of a bump at the peak force of the device along
 /// the normal, its curvature, and on a sphere and a cylinder also its slope by their radius. The curvature of

@@ -193,11 +193,11 @@ void append_numbers(const Piece& piece, std::vector<float>& numbers) {
 Result<void> check_wall(const Piece& piece, const schema::Device& device, double rate_hz,
                         const std::optional<schema::Hand>& hand, const std::string& where) {
   if (!(piece.integral_n_per_m_s > 0)) return {};
-  const Piece felt = felt_wall(piece);
-  const double growth = wall_growth(felt, device, rate_hz, hand);
+  const Piece steepest = steepest_wall(piece);
+  const double growth = wall_growth(steepest, device, rate_hz, hand);
   if (growth <= 1) return {};
-  Piece stiffer = felt;
-  stiffer.stiffness_n_per_m = 1 + 1.01 * felt.stiffness_n_per_m;
+  Piece stiffer = steepest;
+  stiffer.stiffness_n_per_m = 1 + 1.01 * steepest.stiffness_n_per_m;
   const bool stiffens = wall_growth(stiffer, device, rate_hz, hand) < growth;
   return fail(
       ErrorKind::unsuitable,
