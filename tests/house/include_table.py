@@ -95,10 +95,10 @@ MAY_INCLUDE = {
         "strokes}",
     "spatial/transform":
         "data-schema/{base files texture} spatial/{dsp/filter dsp/resample numbers texture}",
-    "playback/choose": "data-schema/{results scene} playback/{model prepare}",
+    "playback/choose": "data-schema/{results scene} firmware-host/{boards core/scene} playback/{model prepare}",
     "playback/cli":
         "data-schema/{base command control device files recording report scene session texture} "
-        "firmware-host/{core/scene link} playback/{choose control host-loop model player prepare/relief prepare/scene "
+        "firmware-host/{boards core/firmware core/scene link} playback/{choose control host-loop model player prepare/relief prepare/scene "
         "render session strokes}",
     "playback/control": "data-schema/{base control files}",
     "playback/daemon":
