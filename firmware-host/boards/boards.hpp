@@ -22,6 +22,7 @@ struct Board {
 // One row a line: make.sh reads name, core and family. The family is that of microsoft/uf2, uf2families.json.
 inline constexpr Board kBoards[] = {
     {"stm32f405", Core::cortex_m4, 168'000'000, 131'072, 12'000, 500, 2'000, 5'000, 0},
+    {"rp2350", Core::cortex_m33, 150'000'000, 532'480, 70'000, 500, 2'000, 5'000, 0xe48bff59},
 };
 
 constexpr bool same(const char* a, const char* b) {
