@@ -29,7 +29,7 @@ foreach(folder . analysis capture data-schema firmware-host playback spatial tes
     install(FILES ${document} DESTINATION share/doc/tactograph/${place} COMPONENT tactograph)
   endforeach()
 endforeach()
-install(FILES firmware-host/rig.svg DESTINATION share/doc/tactograph/firmware-host COMPONENT tactograph)
+install(FILES firmware-host/rig.svg firmware-host/signals.svg DESTINATION share/doc/tactograph/firmware-host COMPONENT tactograph)
 install(DIRECTORY analysis/pictures DESTINATION share/doc/tactograph/analysis COMPONENT tactograph)
 install(DIRECTORY data-schema/octave DESTINATION share/doc/tactograph/data-schema COMPONENT tactograph)
 

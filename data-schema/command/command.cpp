@@ -365,7 +365,7 @@ const UsualOptions kUsualOptions[] = {
     {"transform", {"output", "stretch", "keep-slope", "period", "gain", "band", "weights", "force"}},
     {"render", {"finger-path", "output", "transducer", "device", "gain", "rate", "at", "ends"}},
     {"explain",
-     {"speed", "transducer", "device", "rate", "ends", "quality", "device-memory", "interpolation"}},
+     {"speed", "transducer", "device", "rate", "ends", "quality", "board", "interpolation"}},
     {"play", {"device", "output", "transducer", "time", "gain", "at", "ends", "finger-path"}},
     {"ctl", {"socket", "at", "gain", "ends", "fade", "save", "time"}},
     {"compare", {"a", "b", "output", "tolerance", "align", "max-shift", "stroke-a", "stroke-b"}},

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""image.py NAME.elf: writes the check of the flash into NAME.elf, writes NAME.bin, and prints the sizes.
+"""image.py NAME.elf FAMILY: writes the check of the flash into NAME.elf, writes NAME.bin, and NAME.uf2 unless FAMILY is 0;
+prints the sizes.
 
-The check is the CRC-32C of all bytes of the flash except the four of the check itself, at the symbol image_check.
+The check is the CRC-32C of all bytes of the flash except the four of the check itself, at the symbol image_check. UF2 is
+microsoft/uf2, README: blocks of 512 bytes, each with 256 bytes of the flash.
 """
 import pathlib
 import struct
@@ -35,7 +37,13 @@ def symbol(elf, sections, wanted):
     raise SystemExit(f"image.py: no symbol {wanted.decode()}")
 
 
-def main(path):
+def uf2(image, address, family):
+    parts = [image[i:i + 256].ljust(256, b"\0") for i in range(0, len(image), 256)]
+    return b"".join(struct.pack("<8I", 0x0A324655, 0x9E5D5157, 0x2000, address + 256 * i, 256, i, len(parts), family)
+                    + part.ljust(476, b"\0") + struct.pack("<I", 0x0AB16F30) for i, part in enumerate(parts))
+
+
+def main(path, family):
     elf = bytearray(path.read_bytes())
     programs_at, sections_at, _, _, program_size, programs, section_size, count = struct.unpack_from("<IIIHHHHH", elf, 28)
     loads = [p for p in records(elf, programs_at, program_size, programs, "<8I") if p[0] == LOAD]
@@ -52,9 +60,12 @@ def main(path):
     in_file = next(at + check_at - address for address, at, size in parts if address <= check_at < address + size)
     elf[in_file:in_file + 4] = patch
     path.write_bytes(elf)
-    path.with_suffix(".bin").write_bytes(image[:place] + patch + image[place + 4:])
+    image = image[:place] + patch + image[place + 4:]
+    path.with_suffix(".bin").write_bytes(image)
+    if family:
+        path.with_suffix(".uf2").write_bytes(uf2(image, begin, family))
     ram = sum(p[5] for p in loads if p[2] != p[3] or p[4] == 0)
     print(f"{path.stem}: build {check:08x}, flash {len(image)} bytes, RAM {ram} bytes without the stack")
 
 
-main(pathlib.Path(sys.argv[1]))
+main(pathlib.Path(sys.argv[1]), int(sys.argv[2], 0))

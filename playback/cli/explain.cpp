@@ -18,6 +18,7 @@
 #include "data-schema/texture/texture.hpp"
 #include "firmware-host/link/hosted_board.hpp"
 #include "playback/choose/budget_words.hpp"
+#include "playback/cli/board_report.hpp"
 #include "playback/cli/play_options.hpp"
 #include "playback/cli/play_reports.hpp"
 #include "playback/cli/scene_forces.hpp"
@@ -168,12 +169,12 @@ std::vector<Report> rows_of(const std::vector<Way>& ways) {
   return rows;
 }
 
-// Adds `device_samples`, `needed_samples`, `fits`, and `memory`: for each item its bytes and the device's
-// memory for it.
-void add_room(Report& report, const Prepared& made, std::size_t device_samples) {
+// Adds `device_samples`, `needed_samples`, `fits` (`in_time`: a tick fits in its period), and `memory`: for
+// each item its bytes and the device's memory for it.
+void add_room(Report& report, const Prepared& made, std::size_t device_samples, bool in_time) {
   const std::size_t needed = made.samples.size();
   report.add("device_samples", device_samples).add("needed_samples", needed);
-  report.add("fits", needed <= device_samples);
+  report.add("fits", needed <= device_samples && in_time);
   std::vector<Report> items;
   for (std::uint8_t level = 0; level < made.scale.levels; ++level)
     items.push_back(item(fmt::format("samples of level {}", level + 1),
@@ -209,8 +210,12 @@ struct ExplainOptions {
   std::string transducer = "wiertlewski2011", device, hand;
   CLI::Option* rate = nullptr;
   std::size_t device_memory = 0;
+  std::string board;
   PrepareOptions prepare;
   AskedBudget budget;
+
+  /// Null without --board.
+  const boards::Board* on() const { return boards::board_named(board.c_str()); }
 };
 
 std::vector<Report> rows_of_textures(const Program& program) {
@@ -290,6 +295,20 @@ Result<Report> explained(const ExplainOptions& o, const Program& program) {
   return report;
 }
 
+// The room of the device, and of a board the cost of a tick. A rate that is too high ends as a texture that
+// is too large.
+void add_device(Report& report, const ExplainOptions& o, std::size_t room, const Prepared& made) {
+  const boards::Board* const board = o.on();
+  if (board == nullptr) return add_room(report, made, room, true);
+  const BoardCost cost = cost_on(*board, made);
+  const auto fault = rate_fault(*board, cost, made.rate_hz);
+  add_room(report, made, room, !fault);
+  add_board_cost(report, *board, cost, made.rate_hz);
+  if (!fault) return;
+  cli::write_message(fmt::format("tactograph: {}\n", cli::on_one_line(schema::message(*fault))));
+  report.ends_with(fault->kind);
+}
+
 // The error is the same as of verbs that stop at it; the table is printed in addition.
 Result<Report> explained_without_room(const ExplainOptions& o, const AskedProgram& asked,
                                       schema::Error refused) {
@@ -297,7 +316,7 @@ Result<Report> explained_without_room(const ExplainOptions& o, const AskedProgra
   if (!program || program->prepared.samples.size() <= asked.room()) return tl::unexpected(refused);
   auto report = explained(o, *program);
   if (!report) return report;
-  add_room(*report, program->prepared, asked.room());
+  add_device(*report, o, asked.room(), program->prepared);
   refused.remedy = add_ways_to_fit(*report, asked, *program);
   cli::write_message(fmt::format("tactograph: {}\n", cli::on_one_line(schema::message(refused))));
   return report->ends_with(refused.kind);
@@ -356,6 +375,7 @@ Result<Report> run_explain(ExplainOptions o) {
   TACTO_TRY(budget);
   o.program.budget = *budget;
   if (o.device_memory > 0) o.prepare.most_samples = o.device_memory;
+  if (o.on() != nullptr) o.prepare.most_samples = o.on()->samples;
   o.program.any_displacement = o.speed_mps.has_value();  // the answer names the limit
   const AskedProgram asked{o.program, o.transducer, o.prepare};
   const auto program = make_program(asked.request, asked.transducer, asked.options);
@@ -363,7 +383,8 @@ Result<Report> run_explain(ExplainOptions o) {
   for (const std::string& note : program->prepared.notes) cli::warn(note);
   if (o.speed_mps) return explained_at_speed(*program, *o.speed_mps);
   auto report = explained(o, *program);
-  if (report && o.device_memory > 0) add_room(*report, program->prepared, asked.room());
+  if (report && (o.device_memory > 0 || o.on() != nullptr))
+    add_device(*report, o, asked.room(), program->prepared);
   return report;
 }
 
@@ -393,9 +414,11 @@ cli::Action declare_explain(CLI::App& app) {
                              "Tick rate; with --device: default its largest");
   cli::add_quantity(app, "--encoder-step", o.prepare.metres_per_count, Dimension::length,
                     "Length of one encoder count");
-  app.add_option("--device-memory", o.device_memory,
-                 "Samples that the device holds; default: 2^24, the largest number that is prepared")
-      ->check(cli::from_one());
+  CLI::Option* const memory =
+      app.add_option("--device-memory", o.device_memory,
+                     "Samples that the device holds; default: 2^24, the largest number that is prepared")
+          ->check(cli::from_one());
+  declare_board(app, o.board)->excludes(memory);
   declare_ends(app, o.program.ends);
   declare_choices(app, o.program.choices);
   app.add_flag_callback(
@@ -407,11 +430,11 @@ cli::Action declare_explain(CLI::App& app) {
     if (asked.device.empty() && !asked.hand.empty())
       return schema::fail(schema::ErrorKind::usage, "--hand requires --device");
     if (asked.device.empty()) return run_explain(asked);
-    TACTO_TRY(check_force_options(app, {"device", "hand", "rate", "device-memory"}));
+    TACTO_TRY(check_force_options(app, {"device", "hand", "rate", "device-memory", "board"}));
     const auto rate_hz = asked.rate->count() > 0 ? std::optional(asked.prepare.rate_hz) : std::nullopt;
     const auto bytes =
         asked.device_memory > 0 ? std::optional(asked.device_memory * sizeof(float)) : std::nullopt;
-    return explain_forces(asked.program.file, asked.device, asked.hand, rate_hz, bytes);
+    return explain_forces(asked.program.file, asked.device, asked.hand, rate_hz, bytes, asked.on());
   };
 }
 
@@ -423,6 +446,7 @@ const cli::Verb kExplainVerb{
     "and what was left out",
     "tactograph explain bench.scene.json\n"
     "  tactograph explain plane.scene.json --device sandpaper-1990\n"
+    "  tactograph explain oak --board stm32f405 --interpolation sinc\n"
     "  tactograph explain oak --speed 150mm/s --transducer mine\n"
     "  tactograph explain oak --transducer mine --rate 10kHz --quality balanced --explain\n"
     "  tactograph explain oak --interpolation sinc --inverse magnitude --reconstruction butterworth3",

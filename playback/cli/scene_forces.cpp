@@ -14,8 +14,10 @@
 #include "data-schema/device/device.hpp"
 #include "data-schema/device/hand.hpp"
 #include "data-schema/files/files.hpp"
+#include "firmware-host/core/firmware/firmware.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
+#include "playback/cli/board_report.hpp"
 #include "playback/player/placed_textures.hpp"
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/scene/acting_load.hpp"
@@ -347,19 +349,36 @@ Result<std::vector<Report>> rows_of_pieces(const SceneOnDevice& on) {
   return rows;
 }
 
-void add_fit(Report& report, const PreparedScene& scene, std::optional<std::size_t> room, double tick_s,
-             double rate_hz) {
+// What keeps the scene from fitting; empty: it fits. `too_slow`: in words, or empty.
+void add_fit(Report& report, const PreparedScene& scene, std::optional<std::size_t> room,
+             const std::string& too_slow) {
   const std::size_t bytes = scene.bytes();
-  const bool small = !room || bytes <= *room, fast = tick_s * rate_hz <= 1;
-  report.add("fits", small && fast);
+  const bool small = !room || bytes <= *room;
+  report.add("fits", small && too_slow.empty());
   if (!room && !scene.meshes.empty())
-    report.add("memory", "not compared: --device-memory gives the room of the device");
+    report.add("memory", "not compared: --device-memory or --board gives the room of the device");
   if (!small) {
     const std::string remedy = scene.remedy_for(*room);
     report.add("because", fmt::format("the scene needs {} bytes, the device has {}{}{}", bytes, *room,
                                       remedy.empty() ? "" : ": ", remedy));
   }
-  if (!fast) report.add("because", "a tick takes longer than the period of the device");
+  if (!too_slow.empty()) report.add("because", too_slow);
+}
+
+// The firmware as it is built has no axes, so what is compared is its core, with a board.cpp that has them.
+void add_fit_on(Report& report, const PreparedScene& scene, const boards::Board& board, double rate_hz) {
+  const std::size_t room = core::SceneUpload(nullptr, board.samples).most_bytes();
+  const auto cost = cost_on(board, scene.view());
+  const auto fault = cost ? rate_fault(board, *cost, rate_hz) : std::nullopt;
+  add_fit(report, scene, room, fault ? fault->what : "");
+  report.add("device_bytes", room);
+  if (cost)
+    add_board_cost(report, board, *cost, rate_hz);
+  else
+    report.add("board", board.name)
+        .add("board_tick_by", "not estimated: the instruction counts do not include pieces in space");
+  report.add("board_firmware",
+             "drives a tray; forces need a board.cpp with axes (firmware-host/boards/README.md)");
 }
 
 }  // namespace
@@ -440,7 +459,7 @@ Result<Report> render_forces(const ForceRendering& asked) {
 
 Result<Report> explain_forces(const std::string& scene, const std::string& device,
                               const std::string& hand_name, std::optional<double> rate_hz,
-                              std::optional<std::size_t> device_bytes) {
+                              std::optional<std::size_t> device_bytes, const boards::Board* board) {
   const auto hand = hand_of(hand_name);
   TACTO_TRY(hand);
   const auto on = scene_on_device(scene, device, rate_hz, *hand);
@@ -457,7 +476,11 @@ Result<Report> explain_forces(const std::string& scene, const std::string& devic
   Report report;
   report.add("scene", schema::scene_path(scene)).add("device", on->device.name);
   report.add("hand", *hand ? (*hand)->name : "nothing holds the device").add("rate_hz", rate);
-  add_fit(report, on->scene, device_bytes, tick_s, rate);
+  if (board != nullptr)
+    add_fit_on(report, on->scene, *board, rate);
+  else
+    add_fit(report, on->scene, device_bytes,
+            tick_s * rate > 1 ? "a tick takes longer than the period of the device" : "");
   if (pieces->empty())
     report.add("layers", rows_of_layers(*on));
   else

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "data-schema/command/output_options.hpp"
+#include "firmware-host/boards/boards.hpp"
 #include "playback/prepare/scene/stable_scene.hpp"
 
 namespace tacto::playback {
@@ -39,9 +40,11 @@ struct ForceRendering {
 /// Writes the forces along the path as a CSV.
 schema::Result<cli::Report> render_forces(const ForceRendering& asked);
 
-/// The layers with their memory and time, and whether they fit the device.
+/// The layers with their memory and time, and whether they fit the device: in `device_bytes`, or on `board`
+/// if it is not null.
 schema::Result<cli::Report> explain_forces(const std::string& scene, const std::string& device,
                                            const std::string& hand, std::optional<double> rate_hz,
-                                           std::optional<std::size_t> device_bytes);
+                                           std::optional<std::size_t> device_bytes,
+                                           const boards::Board* board);
 
 }  // namespace tacto::playback

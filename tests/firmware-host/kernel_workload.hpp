@@ -71,22 +71,34 @@ class KernelWorkload {
 inline constexpr uint32_t kTextureFirst = 1025, kTextureSamples = 2 * (1025 + 513), kTextureTaps = 64;
 inline constexpr uint32_t kTextureFingerprint = 3341721029;
 
+/// What a workload of a texture has; the fingerprint is that of the defaults.
+struct TextureParts {
+  wire::Interpolation interpolation = wire::Interpolation::hermite;
+  uint16_t taps = kTextureTaps;
+  const wire::Section* sections = nullptr;
+  uint8_t section_count = 0;
+  const wire::Hysteresis* hysteresis = nullptr;
+};
+
 /// All features of a texture in a tick: position between counts, prediction, two levels at most speeds, 64
 /// taps, an occasional change of gain, energy, touch, limits.
 class TextureWorkload {
  public:
-  TextureWorkload() noexcept {
+  explicit TextureWorkload(const TextureParts& parts = {}) noexcept {
     float smooth = 0;
     for (float& value : samples_)
       value = smooth = 0.8F * smooth + static_cast<float>(next_()) * (1.0F / 65536);
     for (float& tap : taps_) tap = static_cast<float>(next_()) * (1.0F / 131072);
     core::KernelSetup setup;
-    setup.texture = texture_ = {
-        {samples_, {kTextureFirst, -500, INT64_C(3) << 30, 429496730, wire::ProfileEnds::mirror, 4}},
-        {true, 40, 40},
-        1.25F};
+    setup.texture = texture_ = {{samples_,
+                                 {kTextureFirst, -500, INT64_C(3) << 30, 429496730, wire::ProfileEnds::mirror,
+                                  4, parts.interpolation}},
+                                {true, 40, 40},
+                                1.25F};
     setup.taps = taps_;
-    setup.tap_count = kTextureTaps;
+    setup.tap_count = parts.taps;
+    setup.sections = parts.sections, setup.section_count = parts.section_count;
+    setup.hysteresis = parts.hysteresis;
     setup.limits = {5, 15708, 0.05F, 0.01F, 100, 200};
     setup.rate_hz = 20000;
     setup.energy_rms_v = 1.2F, setup.energy_window_s = 0.05F;

@@ -39,7 +39,9 @@ MAY_INCLUDE = {
     "data-schema/wiring": "data-schema/{base files json recording transducer}",
     "firmware-host": "data-schema/base firmware-host/{comedi link replay sim/device sim/physics sim/planar tty usb}",
     "firmware-host/boards": "",
-    "firmware-host/boards/stm32f405": "firmware-host/core/{firmware wire}",
+    "firmware-host/boards/rp2350": "firmware-host/{boards/shared core/firmware core/kernel}",
+    "firmware-host/boards/shared": "firmware-host/{boards core/firmware core/kernel core/wire}",
+    "firmware-host/boards/stm32f405": "firmware-host/{boards/shared core/firmware}",
     "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
     "firmware-host/comedi": "data-schema/{base recording wiring} firmware-host/{core/firmware link}",
     "firmware-host/core/firmware": "firmware-host/{core/kernel core/scene core/wire}",
@@ -95,10 +97,10 @@ MAY_INCLUDE = {
         "strokes}",
     "spatial/transform":
         "data-schema/{base files texture} spatial/{dsp/filter dsp/resample numbers texture}",
-    "playback/choose": "data-schema/{results scene} playback/{model prepare}",
+    "playback/choose": "data-schema/{results scene} firmware-host/{boards core/scene} playback/{model prepare}",
     "playback/cli":
         "data-schema/{base command control device files recording report scene session texture} "
-        "firmware-host/{core/scene link} playback/{choose control host-loop model player prepare/relief prepare/scene "
+        "firmware-host/{boards core/firmware core/scene link} playback/{choose control host-loop model player prepare/relief prepare/scene "
         "render session strokes}",
     "playback/control": "data-schema/{base control files}",
     "playback/daemon":

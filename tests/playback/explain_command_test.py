@@ -118,6 +118,38 @@ def check_room(folder, needed):
     assert "device_samples" not in report and "ways_to_fit" not in report, report
 
 
+def explained_on_board(what, *arguments, code=0):
+    done = made.run("explain", str(what), "--board", "stm32f405", *arguments, "--json")
+    assert done.returncode == code, (done.returncode, done.stderr)
+    return done.stderr, json.loads(done.stdout)
+
+
+def check_board(folder):
+    """A board gives its room, its clock and its rates; a texture that is too large, and a rate that is too high, end with
+    what fits."""
+    whole = made.samples(folder / "t.texture.wav")
+    made.write_texture(folder / "short", whole[: len(whole) // 4])
+    _, fitting = explained_on_board(folder / "short", "--interpolation", "sinc")
+    assert fitting["fits"] is True and fitting["device_samples"] == 12_000 and fitting["board"] == "stm32f405", fitting
+    assert fitting["board_clock_hz"] == 168e6 and 1000 < fitting["board_tick_cycles"] < 84_000, fitting
+    assert abs(fitting["board_tick_of_period_percent"] - 100 * fitting["board_tick_cycles"] * fitting["rate_hz"] / 168e6) < 1e-9
+    # More taps, more cycles; cubic interpolation costs more than the nearest sample.
+    _, plain = explained_on_board(folder / "short", "--interpolation", "nearest", "--inverse", "gain")
+    assert plain["board_tick_cycles"] < fitting["board_tick_cycles"], (plain, fitting)
+    largest = f"{fitting['largest_rate_hz']:g}Hz"
+    assert explained_on_board(folder / "short", "--interpolation", "sinc", "--rate", largest)[1]["rate_hz"] == fitting["largest_rate_hz"]
+    for rate, named in (("20kHz", largest), ("400Hz", "500Hz")):
+        said, late = explained_on_board(folder / "short", "--interpolation", "sinc", "--rate", rate, code=UNSUITABLE)
+        assert named in said and late["fits"] is False, said
+    # All four times as long: too large, and a beginning is named that fits.
+    made.write_texture(folder / "long", np.tile(whole, 4))
+    _, short = explained_on_board(folder / "long", code=UNSUITABLE)
+    assert short["fits"] is False and short["device_samples"] == 12_000 and short["board_tick_cycles"] > 0, short
+    assert all(way["samples"] <= 12_000 for way in short["ways_to_fit"] if way["fits"] and "--loop host" not in way["way"]), short
+    refused(USAGE, "--board", "explain", folder / "short", "--board", "no-such-board")
+    refused(USAGE, "--board", "explain", folder / "short", "--board", "stm32f405", "--device-memory", "9")
+
+
 
 def check_scene(folder):
     layers = [{"type": "texture", "texture": "t", "at_m": at, "gain_m_per_n": 1e-3} for at in (0.0, 0.06)]
@@ -226,6 +258,7 @@ def main():
         made.write_texture(folder / "t", 0.01 * np.sin(2 * np.pi * 3e3 * np.arange(50_001) * made.PITCH_M))
         made.write_path(folder / "path.csv", [0, 0.1, 1.1, 1.2], [0.002, 0.002, 0.04, 0.04])
         check_explain(folder)
+        check_board(folder)
         check_scene(folder)
         check_ends(folder)
         check_choice(folder)

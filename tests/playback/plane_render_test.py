@@ -277,6 +277,12 @@ def explain_lists_what_is_built():
     assert two["rate_hz"] == 250 and "left_out" not in two and two["layers"][1]["force_limit_at_speed_mps"] == 5, two
     assert two["block_bytes"] == one["block_bytes"] + two["layers"][1]["bytes"], (one, two)
     assert run_json("explain", "two.scene.json", "--device", "sandpaper-1990", "--device-memory", "10")["fits"] is False
+    # A board's room is what its core offers for a scene: 12,000 words, less 1696 for what changes of the largest one.
+    board = run_json("explain", "two.scene.json", "--device", "sandpaper-1990", "--board", "stm32f405")
+    assert board["fits"] is True and board["device_bytes"] == 4 * (12_000 - 1696) and board["board_tick_cycles"] > 3000, board
+    write_scene("dear", patch(layers=100 * [noise(0.002, 1e-4, 1, octaves=8)]))
+    dear = run_json("explain", "dear.scene.json", "--device", "sandpaper-1990", "--board", "stm32f405")
+    assert dear["fits"] is False and dear["board_tick_cycles"] * 4000 > 168e6 and dear["largest_rate_hz"] < 4000, dear
     # With a slider at its upper end.
     twice = lambda value: {"value": value, "slider": {"from": value, "to": 2 * value}}
     body = {"type": "body", "mass_kg": 0.3, "stiffness_n_per_m": twice(10), "damping_n_s_per_m": 4}

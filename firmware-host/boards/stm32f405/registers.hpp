@@ -2,13 +2,11 @@
 // The registers of an STM32F405 that the board uses, by ST's reference manual RM0090 (section in brackets).
 #pragma once
 
-#include <stdint.h>
+#include "firmware-host/boards/shared/cortex_m.hpp"
 
 namespace tacto::stm32f405 {
 
-inline volatile uint32_t& at(uintptr_t address) {
-  return *reinterpret_cast<volatile uint32_t*>(address);
-}
+using boards::at;
 
 // Reset and clock control (7.3).
 inline volatile uint32_t &rcc_cr = at(0x40023800), &rcc_pllcfgr = at(0x40023804), &rcc_cfgr = at(0x40023808),
@@ -62,10 +60,6 @@ inline volatile uint32_t &dac_cr = at(0x40007400), &dac_value = at(0x40007408);
 // Independent watchdog (21.4).
 inline volatile uint32_t &iwdg_kr = at(0x40003000), &iwdg_pr = at(0x40003004), &iwdg_rlr = at(0x40003008);
 
-// The core's own: SysTick, interrupts, FPU (ARMv7-M Architecture Reference Manual, B3).
-inline volatile uint32_t &syst_csr = at(0xE000E010), &syst_rvr = at(0xE000E014), &syst_cvr = at(0xE000E018),
-                         &nvic_iser1 = at(0xE000E104), &scb_aircr = at(0xE000ED0C),
-                         &scb_shpr3 = at(0xE000ED20), &scb_cpacr = at(0xE000ED88);
 inline constexpr unsigned kUsart1Interrupt = 37;
 
 /// 96 bits, unique to the chip (39.1).

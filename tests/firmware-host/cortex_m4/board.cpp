@@ -59,6 +59,14 @@ uint32_t counter() {
   return device_register(0xE000E018);
 }
 
+// A loop of two instructions.
+void calibrate() {
+  uint32_t left = 5000;
+  const uint32_t before = counter();
+  asm volatile("1: subs %0, #1\n bne 1b" : "+l"(left) : : "cc");
+  say("counts_of_10000_instructions", counted(before, counter()));
+}
+
 uint32_t deepest_stack() {
   const uint32_t* word = &bss_end;
   while (word < &stack_top && *word == kPaint) ++word;

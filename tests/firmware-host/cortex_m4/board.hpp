@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The functions of a bare Cortex-M4F in QEMU: text output, a counter, exit.
+// The functions of a bare Cortex-M in QEMU: text output, a counter, exit.
 #pragma once
 
 #include <stdint.h>
@@ -10,8 +10,11 @@ void say(const char* text);
 void say(const char* name, uint32_t value);
 [[noreturn]] void end(bool passed);
 
-/// SysTick counts downwards at the core's 168 MHz. Under -icount an instruction takes one virtual nanosecond.
+/// SysTick counts downwards at the machine's clock. Under -icount each instruction takes the same virtual
+/// time.
 uint32_t counter();
+/// Says how many counts 10,000 instructions take.
+void calibrate();
 /// Counts from \p before to \p after, which are less than a tenth of a second apart.
 inline uint32_t counted(uint32_t before, uint32_t after) {
   return (before - after) & 0xFFFFFFU;

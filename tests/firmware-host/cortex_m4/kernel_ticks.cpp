@@ -178,14 +178,6 @@ bool count_firmware() {
   return firmware.drive_state() == wire::DriveState::playing && link.drive_v != 0;
 }
 
-// A loop of two instructions gives the instructions per count.
-void calibrate() {
-  uint32_t left = 5000;
-  const uint32_t before = counter();
-  asm volatile("1: subs %0, #1\n bne 1b" : "+l"(left) : : "cc");
-  say("counts_of_10000_instructions", counted(before, counter()));
-}
-
 }  // namespace
 
 void run() {
