@@ -223,7 +223,8 @@ TEST(PieceTextureTest, ABumpIsTheSlopeTimesTheForceAlongTheNormal) {
       double largest_n = 0;
       for (int i = 0; i < 2000; ++i) {
         const double t = 2e-3 * i;
-        const Space hand = {3e-3 * std::sin(2 * t), 4e-3 * std::cos(1.3 * t), -3e-3};
+        Space hand = {3e-3 * std::sin(2 * t), 4e-3 * std::cos(1.3 * t), -3e-3};
+        for (double& along_m : hand) along_m = kCount_m * std::round(along_m / kCount_m);
         const Space force_n = on.at(hand);
         const Space arm = {hand[0] - piece.x_m, hand[1], hand[2] - piece.z_m};
         const double size = std::hypot(arm[0], arm[1], arm[2]);
