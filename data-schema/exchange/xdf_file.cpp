@@ -475,11 +475,12 @@ Result<void> read_xdf(const std::string& path, const XdfStream& stream, std::spa
   if (format == nullptr || !stream.refusal.empty())
     return fail(ErrorKind::unsuitable, stream.refusal, fmt::format("{}: stream '{}'", path, stream.name));
   XdfSamples samples(path, stream, *format, channels, take);
-  TACTO_TRY(each_chunk(path, stream, [&](XdfChunks& chunks) -> Result<void> {
+  const auto pass = [&](XdfChunks& chunks) -> Result<void> {
     TACTO_TRY(samples.read(chunks));
     progress(chunks.fraction());
     return {};
-  }));
+  };
+  TACTO_TRY(each_chunk(path, stream, pass));
   return samples.pass_on();
 }
 
@@ -487,13 +488,14 @@ Result<std::vector<XdfMarker>> read_xdf_markers(const std::string& path, const X
   std::vector<XdfMarker> markers;
   XdfTimes times(stream);
   std::size_t bytes = 0, counted = 0;
-  TACTO_TRY(each_chunk(path, stream, [&](XdfChunks& chunks) -> Result<void> {
+  const auto add = [&](XdfChunks& chunks) -> Result<void> {
     TACTO_TRY(read_markers(chunks, stream, times, markers));
     for (; counted < markers.size(); ++counted) bytes += sizeof(XdfMarker) + markers[counted].label.size();
     if (bytes <= kMostXdfMarkerBytes) return {};
     return fail(ErrorKind::unsuitable, fmt::format("has more than {} MiB of text", kMostXdfMarkerBytes >> 20),
                 fmt::format("{}: stream '{}'", path, stream.name));
-  }));
+  };
+  TACTO_TRY(each_chunk(path, stream, add));
   return markers;
 }
 
