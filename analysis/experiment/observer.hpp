@@ -16,8 +16,8 @@ namespace tacto::analysis {
 /// seed, participant and attempt only, so a resumed run gets the same.
 ///
 /// Of two intervals: compares their periods, see smaller_period(). Of an identification: see
-/// TemplateObserver. Of amplitude: see rated(). Of ordering: the order of perceived_level_db(). Of adjustment: see
-/// criterion_of().
+/// TemplateObserver. Of amplitude: see rated(). Of ordering: the order of perceived_level_db(). Of
+/// adjustment: see criterion_of().
 struct Observer {
   schema::Task task = schema::Task::two_interval;  ///< in which it can answer
   double weber = 0;                ///< just noticeable difference re the standard's period, or its amplitude

@@ -38,8 +38,9 @@ std::optional<schema::Error> rate_fault(const Board& board, const BoardCost& cos
     return schema::Error{schema::ErrorKind::unsuitable, std::move(what), board.name, std::move(remedy)};
   };
   if (rate_hz < board.least_rate_hz)
-    return fault(fmt::format("the board ticks at {} Hz or more, not at {:g} Hz", board.least_rate_hz, rate_hz),
-                 fmt::format("choose --rate {}Hz", board.least_rate_hz));
+    return fault(
+        fmt::format("the board ticks at {} Hz or more, not at {:g} Hz", board.least_rate_hz, rate_hz),
+        fmt::format("choose --rate {}Hz", board.least_rate_hz));
   if (rate_hz <= cost.largest_rate_hz) return std::nullopt;
   const double largest_hz = cost.largest_rate_hz;
   if (largest_hz < board.least_rate_hz)
