@@ -91,7 +91,8 @@ Result<LiveSpectrogram> part_of(const LiveSpectrogram& live, const SpectrogramPa
     return fail(ErrorKind::unsuitable, "contains fewer than two windows", "the selection",
                 "select a longer part of the positions");
   const double last_bin = part.high_per_m.value_or(INFINITY) / whole.frequency_step_per_m;
-  LiveSpectrogram made{{}, {whole, {}}, live.formants};
+  const schema::SpectrogramHeader& header = whole;
+  LiveSpectrogram made{{}, {header, {}}, live.formants};
   schema::Spectrogram& spectrogram = made.spectrogram;
   spectrogram.bins =
       static_cast<std::size_t>(std::clamp(last_bin + 1 + 1e-9, 2.0, static_cast<double>(whole.bins)));

@@ -154,7 +154,8 @@ Result<LiveChange> make_change(const LiveTexture& playing, const LiveTexture& ne
     return playback::upload_next(client, to, double{to.gain_m_per_n} / times);
   });
   TACTO_TRY(frames);
-  LiveChange change{std::move(*frames), next.program.session};
+  const schema::SessionProgram& program = next.program.session;
+  LiveChange change{std::move(*frames), program};
   for (schema::SessionTexture& texture : change.program.textures)
     texture.gain_m_per_n = times * double{playing.program.prepared.gain_m_per_n};
   return change;

@@ -22,7 +22,8 @@ BoardCost cost_of(const boards::Board& board, double kernel_instructions) {
 }
 
 double in_groups(std::size_t count, std::size_t size) {
-  return static_cast<double>((count + size - 1) / size);
+  const std::size_t groups = (count + size - 1) / size;
+  return static_cast<double>(groups);
 }
 
 static_assert(boards::kPlaneKinds == static_cast<std::uint32_t>(SceneLayerKind::tick_damper) + 1);
