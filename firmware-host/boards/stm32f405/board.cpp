@@ -163,8 +163,8 @@ Tray tray;
 
 core::Board make_board() {
   core::Board board = describe(kRow, tray, profile_memory, "adc 8", "adc 9", stored_check());
-  const uint32_t id[3] = {at(kUniqueId), at(kUniqueId + 4), at(kUniqueId + 8)};
   if (!emulated) {
+    const uint32_t id[3] = {at(kUniqueId), at(kUniqueId + 4), at(kUniqueId + 8)};  // QEMU has none
     put_hex(board.about.serial, id, 3);
     return board;
   }
