@@ -36,6 +36,7 @@ code=0
 timeout 200 "$TACTOGRAPH" play oak -d comedi:loop --rate 1kHz --at -1.1mm --gain 0.5mm/N --no-watchdog --time 500ms -o looped --json \
   >$results/looped.out 2>$results/looped.err || code=$?
 echo $code >$results/looped.code
+[ $code -eq 0 ] || cat $results/looped.err
 "$TACTOGRAPH" doctor -d comedi:loop --json >$results/loop_doctor.json || true
 say "a card that is not there"
 take none none 100ms
