@@ -196,7 +196,7 @@ Tray tray;
 core::Firmware* firmware = nullptr;
 
 core::Board make_board(uint32_t check) {
-  core::Board board = describe(kRow, tray, profile_memory, "adc 0", "adc 1", check);
+  core::Board board = describe(kRow, tray, profile_memory, "adc 0", "adc 1", check, TACTO_VERSION " build ");
   const uint32_t id[2] = {at(kUniqueId + 4), at(kUniqueId)};
   put_hex(board.about.serial, id, 2);
   return board;

@@ -62,7 +62,7 @@ inline size_t put(Bytes& ring, const uint8_t* bytes, size_t size) {
 }
 
 inline uint32_t stored_check() {
-  return at(reinterpret_cast<uint32_t>(&image_check));
+  return at(static_cast<uint32_t>(reinterpret_cast<uintptr_t>(&image_check)));
 }
 
 /// The check covers all of the image but its own word, which firmware-host/boards/image.py writes.
@@ -111,18 +111,19 @@ inline wire::Note note(uint8_t index, wire::NoteKind kind, const char* text) {
 
 /// A code of 2^31 is 1.65 V at the pin. The normal force is a load cell of 10 N there; `calibrate` measures
 /// its scale. The transducer is that of RIG.md. `check` is that of the flash: image.py prints the same
-/// digits. The caller sets the serial number.
-inline core::Board describe(const Board& row, Tray& tray, float* profile_memory,
-                            const char* tangential_source, const char* normal_source, uint32_t check) {
+/// digits, which follow `version` ("0.1.0 build "). The caller sets the serial number.
+template <size_t kVersionSize>
+core::Board describe(const Board& row, Tray& tray, float* profile_memory, const char* tangential_source,
+                     const char* normal_source, uint32_t check, const char (&version)[kVersionSize]) {
   tray.channels[0] = channel(0, "position", "m", 1e-6, "encoder");
   tray.channels[1] = channel(1, "tangential_force", "V", 1.65 / 2147483648.0, tangential_source);
   tray.channels[2] = channel(2, "normal_force", "N", 10 / 2147483648.0, normal_source);
   tray.notes[0] = note(0, wire::NoteKind::transducer, "wiertlewski2011");
   core::Board board;
   put(board.about.name, row.name);
-  put(board.about.firmware, TACTO_VERSION " build ");
-  static_assert(sizeof TACTO_VERSION " build " + 8 <= sizeof board.about.firmware);
-  put_hex(board.about.firmware + sizeof TACTO_VERSION " build " - 1, &check, 1);
+  put(board.about.firmware, version);
+  static_assert(kVersionSize + 8 <= sizeof board.about.firmware);
+  put_hex(board.about.firmware + kVersionSize - 1, &check, 1);
   board.about.features = wire::kFeatureDrive | wire::kFeatureEnableInput;
   board.about.clock_hz = row.clock_hz;
   board.about.default_rate_millihertz = row.usual_rate_hz * 1000;

@@ -162,7 +162,8 @@ float profile_memory[kRow.samples];
 Tray tray;
 
 core::Board make_board() {
-  core::Board board = describe(kRow, tray, profile_memory, "adc 8", "adc 9", stored_check());
+  core::Board board =
+      describe(kRow, tray, profile_memory, "adc 8", "adc 9", stored_check(), TACTO_VERSION " build ");
   if (!emulated) {
     const uint32_t id[3] = {at(kUniqueId), at(kUniqueId + 4), at(kUniqueId + 8)};  // QEMU has none
     put_hex(board.about.serial, id, 3);
