@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <utility>
 
 #include "data-schema/base/format_version.hpp"
@@ -73,7 +74,7 @@ Result<ControlFields> ControlConnection::ask_at_once(const std::string& socket,
   return greeted ? connection.answer(kAnswerMs) : greeted;
 }
 
-Result<std::optional<std::string>> ControlConnection::line(int timeout_ms) {
+Result<std::optional<std::string>> ControlConnection::line(int timeout_ms, bool signals_end_it) {
   for (;;) {
     if (const auto end = received_.find('\n'); end != std::string::npos) {
       std::string line = received_.substr(0, end);
@@ -81,7 +82,9 @@ Result<std::optional<std::string>> ControlConnection::line(int timeout_ms) {
       return line;
     }
     pollfd waiting{descriptor_, POLLIN, 0};
-    if (poll(&waiting, 1, timeout_ms) <= 0) return std::optional<std::string>();
+    const int ready = poll(&waiting, 1, timeout_ms);
+    if (ready < 0 && errno == EINTR && !signals_end_it) continue;
+    if (ready <= 0) return std::optional<std::string>();
     char bytes[4096];
     const ssize_t got = recv(descriptor_, bytes, sizeof bytes, 0);
     if (got <= 0)
@@ -96,7 +99,8 @@ void ControlConnection::say(const std::string& text) const {
 }
 
 Result<ControlFields> ControlConnection::answer(int timeout_ms) {
-  const auto text = line(timeout_ms);
+  // Ctrl-C does not end it, so that the client of `ctl play --watch` can still ask for the stop.
+  const auto text = line(timeout_ms, false);
   TACTO_TRY(text);
   if (!*text) return fail(ErrorKind::device, "the daemon does not answer", socket_, "see its journal");
   auto reply = schema::parse_control_reply(**text);
@@ -111,7 +115,7 @@ Result<ControlFields> ControlConnection::ask(const ControlRequest& request) {
 }
 
 Result<std::optional<ControlReply>> ControlConnection::next_event(int timeout_ms) {
-  const auto text = line(timeout_ms);
+  const auto text = line(timeout_ms, true);
   TACTO_TRY(text);
   if (!*text) return std::optional<ControlReply>();
   return schema::parse_control_reply(**text);

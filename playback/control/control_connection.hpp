@@ -35,7 +35,7 @@ class ControlConnection {
       : socket_(std::move(socket)), descriptor_(descriptor) {}
   void say(const std::string& text) const;
   schema::Result<schema::ControlFields> answer(int timeout_ms);
-  schema::Result<std::optional<std::string>> line(int timeout_ms);
+  schema::Result<std::optional<std::string>> line(int timeout_ms, bool signals_end_it);
   std::string socket_;
   int descriptor_;
   std::string received_;

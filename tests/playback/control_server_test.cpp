@@ -3,8 +3,14 @@
 #include "playback/control/control_server.hpp"
 
 #include <gtest/gtest.h>
-#include <chrono>
+#include <pthread.h>
 
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "playback/control/control_connection.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 #include "tests/playback/socket_client.hpp"
 
@@ -160,6 +166,33 @@ TEST_F(ControlServing, TicksAreForThoseWhoAskedForThem) {
   serve();
   serve();
   EXPECT_FALSE(server_->ticks_watched());
+}
+
+// Ctrl-C during a request for the status: `ctl play --watch` has to get the answer, and then to ask for the
+// stop.
+TEST_F(ControlServing, ASignalDoesNotEndTheWaitForAnAnswer) {
+  struct sigaction handler = {}, before = {};
+  handler.sa_handler = [](int) {};  // without SA_RESTART: poll() ends with EINTR
+  ASSERT_EQ(sigaction(SIGUSR1, &handler, &before), 0);
+  std::atomic<bool> done = false, answered = false;
+  std::thread client([&] {
+    auto connection = ControlConnection::open(path_);
+    ControlRequest request;
+    request.verb = ControlVerb::status;
+    answered = connection && connection->ask(request);
+    done = true;
+  });
+  while (!done)
+    server_->serve(5, [&](const ControlRequest& request) -> ControlServer::Answer {
+      for (int i = 0; request.verb == ControlVerb::status && i < 5; ++i) {
+        pthread_kill(client.native_handle(), SIGUSR1);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
+      return ControlFields{{"version", std::string(schema::kControlVersion)}};
+    });
+  client.join();
+  sigaction(SIGUSR1, &before, nullptr);
+  EXPECT_TRUE(answered);
 }
 
 }  // namespace
