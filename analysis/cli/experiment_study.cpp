@@ -46,6 +46,8 @@ struct NewStudyOptions {
   schema::Goal goal = schema::Goal::least;
   schema::LevelMethod method = schema::LevelMethod::constant;
   std::optional<double> masking_db;
+  bool pacing_cue = false;
+  std::vector<std::string> normal_force;
   schema::Existing existing = schema::Existing::keep;
 };
 
@@ -65,6 +67,12 @@ constexpr const char* kAnswersHelp =
     "File with an answer on each line, its word or its key, and between them the labels (K3) of the real "
     "samples that the operator places; of ordering the numbers from least to most (2 1 3); of adjustment the "
     "ratio that is set (0.25; the nearest step is used, and printed); default: the keys of this terminal";
+
+std::string force_in_words(const std::optional<schema::ForceRange>& range) {
+  if (!range) return "none";
+  const auto words = [](double force_n) { return schema::for_people(force_n, schema::Dimension::force); };
+  return fmt::format("{} to {}", words(range->low_n), words(range->high_n));
+}
 
 Report study_report(const Study& study) {
   const schema::Protocol& protocol = study.protocol;
@@ -88,6 +96,7 @@ Report study_report(const Study& study) {
   report.add("repetitions", protocol.repetitions)
       .add("trials", ordered_trials(protocol, study.key, "P1", 1).size());
   report.add("masking_noise", noise_in_words(protocol.masking_noise));
+  report.add("pacing_cue", protocol.pace.cue).add("normal_force", force_in_words(protocol.normal_force));
   return report.add("interval_s", paced_path(protocol.pace).duration_s());
 }
 
@@ -182,11 +191,31 @@ Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& t
   return identification_protocol(o.seed, textures, comparisons);
 }
 
+Result<schema::ForceRange> parse_force_range(const std::vector<std::string>& ends) {
+  std::vector<double> forces_n;
+  for (const std::string& end : ends) {
+    const auto force_n = schema::parse_quantity(end, schema::Dimension::force);
+    if (!force_n)
+      return schema::fail(ErrorKind::usage, force_n.error().what, "--normal-force", force_n.error().remedy);
+    forces_n.push_back(*force_n);
+  }
+  if (forces_n.size() == 2 && 0 <= forces_n[0] && forces_n[0] < forces_n[1])
+    return schema::ForceRange{forces_n[0], forces_n[1]};
+  return schema::fail(ErrorKind::usage, "needs the lowest and the highest force", "--normal-force",
+                      "give for example 0.3N,0.8N");
+}
+
 Result<Report> run_new_study(const NewStudyOptions& o) {
   NamedTextures textures;
   auto protocol = new_protocol(o, textures);
   TACTO_TRY(protocol);
   if (o.masking_db) protocol->masking_noise = usual_masking_noise(*o.masking_db);
+  if (o.pacing_cue) add_pacing_cue(*protocol);
+  if (!o.normal_force.empty()) {
+    const auto range = parse_force_range(o.normal_force);
+    TACTO_TRY(range);
+    add_normal_force(*protocol, *range);
+  }
   const auto study = write_study(o.stem.empty() ? o.what : o.stem, *protocol, textures, o.existing);
   TACTO_TRY(study);
   auto report = warn_and_report(*study);
@@ -209,6 +238,16 @@ Result<Report> run_check_study(const CheckStudyOptions& o) {
   }
   auto report = warn_and_report(*study);
   TACTO_TRY(report);
+  if (study->protocol.normal_force) {
+    const auto reported = o.device.empty() ? Result<bool>(false) : reports_normal_force(o.device);
+    TACTO_TRY(reported);
+    report->add("normal_force_reported", o.device.empty() ? "not checked: no device is named"
+                                         : *reported      ? "yes"
+                                                          : "no");
+    if (!o.device.empty() && !*reported)
+      cli::warn(
+          "this device reports no normal force: the screen says nothing of it, and the trials 'unknown'");
+  }
   report->add("lead_s", study->protocol.lead_s);
   if (!slowest)
     report->add("slowest_load", "not measured: no device is named");
@@ -440,6 +479,9 @@ Result<Report> run_prove_run(const ProveOptions& o) {
   report.add("recorded", "ticks and drive").add("predicted", "displacement, by the transducer's model");
   if (!proof.simulated.empty()) report.add("simulated", proof.simulated);
   if (run->study.protocol.masking_noise) report.add("masking_noise", noise_of_run(*run));
+  if (run->study.protocol.normal_force)
+    report.add("normal_force",
+               force_in_words(run->study.protocol.normal_force) + "; not proven: no session records it");
   if (!run->journal.plan.observer.empty()) report.add("observer", observer_in_words(*run));
   if (!proof.faults.empty()) report.add("faults", proof.faults);
   return proof.holds() ? report : report.ends_with(ErrorKind::unsuitable);
@@ -667,6 +709,13 @@ cli::Action declare_new_study(CLI::App& app) {
   cli::add_quantity(app, "--masking-noise", options->masking_db, schema::Dimension::level,
                     "Level of masking noise at the ear, 65dB (re 20 uPa): 15-1500 Hz, within 3 dB; default: "
                     "the protocol has none");
+  app.add_flag("--pacing-cue", options->pacing_cue,
+               "The participant's screen shows a mark that moves as the finger is to move");
+  app.add_option(
+         "--normal-force", options->normal_force,
+         "The participant's screen says whether the normal force, as the device reports it, is below, "
+         "within or above this range: 0.3N,0.8N")
+      ->delimiter(',');
   app.footer(
       "stretch: which of two sinusoids has the smaller period. identification: which of the standards is a "
       "comparison, a real sample in one block and played in the other one, each of 100 trials or 15 "

@@ -26,6 +26,7 @@ struct IntervalPlay {
   /// Of an interval in which the gain is changed, from `ratio` on: PlayOptions::steer. The interval then
   /// lasts until this ends it, or kLongestSettingS; an emulated finger repeats the pace.
   std::function<schema::Result<bool>(playback::Player&, double)> steer = {};
+  std::function<void(playback::Player&, double)> watch = {};  ///< PlayOptions::watch
 };
 
 inline constexpr double kLongestSettingS = 600;
@@ -49,6 +50,9 @@ struct SlowestLoad {
 
   bool keeps_time() const { return !code.empty(); }  ///< of the device
 };
+
+/// Errors: of opening the device.
+schema::Result<bool> reports_normal_force(const std::string& device_uri);
 
 /// Whether the device can play every stimulus, at the largest gain, each of them loaded once, as an interval
 /// loads it. Errors: those of opening the device, of make_program, of the upload; unsuitable: a stimulus

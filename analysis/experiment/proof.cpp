@@ -29,7 +29,7 @@ constexpr const char *kStretchColumns = "standard_interval\tnominal_stretch\tpre
                      *kOrderingColumns = "explorations", *kFidelityColumns = "block\tsample\tpresented",
                      *kAdjustmentColumns = "series\tstart_ratio\tpredicted_ratio\tbound";
 constexpr const char* kTrialColumns =
-    "attempt\ttrial\t{}\tpredicted_error_db\tmeasured_error_db\t{}\tanswer\tanswer_s\tdelivered\twhy\t"
+    "attempt\ttrial\t{}\tpredicted_error_db\tmeasured_error_db\t{}{}\tanswer\tanswer_s\tdelivered\twhy\t"
     "simulated\n";
 constexpr const char* kPlacedReason = "real sample, placed by the operator: no session records it";
 
@@ -187,12 +187,24 @@ std::string answer_cell(const Run& run, const Attempt& attempt) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
+// The smallest share of the intervals.
+std::string force_cell(const Attempt& attempt) {
+  if (!attempt.judged) return "";
+  double least = 1;
+  for (const std::optional<double>& share : attempt.judged->force_within) {
+    if (!share) return "unknown";
+    least = std::min(least, *share);
+  }
+  return fmt::format("{:.3f}", least);
+}
+
 std::string trial_row(const Run& run, const Attempt& attempt) {
   std::string row =
       fmt::format("{}\t{}\t{}", attempt.begun.attempt, attempt.trial.name(), cells_of_task(run, attempt));
   for (const auto member :
        {&schema::IntervalFacts::predicted_error_db, &schema::IntervalFacts::measured_error_db})
     row += "\t" + (attempt.judged ? level_cell(attempt, member) : "");
+  if (run.study.protocol.normal_force) row += "\t" + force_cell(attempt);
   if (const auto& answered = attempt.answered)
     row += fmt::format("\t{}\t{}\t{:.3f}", answer_cell(run, attempt), answered->word, answered->answer_s);
   else
@@ -280,7 +292,8 @@ std::string trials_table(const Run& run) {
       {kAmplitudeColumns, "rating"},          {kOrderingColumns, "order"},
       {kAdjustmentColumns, "accepted_ratio"}, {kFidelityColumns, "answer_choice"}};
   const auto& [columns, answer] = kColumnsOfTask[static_cast<int>(task_of(run))];
-  std::string table = fmt::format(kTrialColumns, columns, answer);
+  const char* const force = run.study.protocol.normal_force ? "force_within\t" : "";
+  std::string table = fmt::format(kTrialColumns, columns, force, answer);
   for (const Attempt& attempt : run.queue.attempts()) table += trial_row(run, attempt) + "\n";
   return table;
 }

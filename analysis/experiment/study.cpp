@@ -349,6 +349,22 @@ Result<schema::Protocol> fidelity_protocol(const std::string& seed, const NamedT
   return protocol;
 }
 
+void add_pacing_cue(schema::Protocol& protocol) {
+  constexpr const char* kFollowMark = " Move as the mark O moves.";
+  schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
+  protocol.pace.cue = true;
+  texts.interval += kFollowMark;
+  if (protocol.task == schema::Task::adjustment) texts.question += kFollowMark;
+}
+
+void add_normal_force(schema::Protocol& protocol, const schema::ForceRange& range) {
+  schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
+  protocol.normal_force = range;
+  texts.force_below = "Press harder.";
+  texts.force_within = "The force is right.";
+  texts.force_above = "Press less hard.";
+}
+
 Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,
                           const NamedTextures& textures, schema::Existing existing) {
   TACTO_TRY(check_plain(protocol.seed, "--seed"));

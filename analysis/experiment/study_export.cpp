@@ -47,6 +47,10 @@ constexpr Column kColumns[] = {
     {"predicted_stretch", "the same of the displacement that the transducer's model predicts", "1"},
     {"predicted_error_db", "RMS of predicted displacement - target of the worst stroke, re the target", "dB"},
     {"measured_error_db", "the same of the displacement that the tray's sensor measured", "dB"},
+    {"force_within",
+     "share of the time with a normal force within the protocol's range, of the interval with the smallest "
+     "share; unknown: the device does not report it. No session records it",
+     "1"},
     {"answer_interval", "interval whose stimulus seemed to have the smaller period, 1 or 2", ""},
     {"answer", "the answer in the protocol's word; of an order the codes", ""},
     {"answer_s", "time from the question to the answer; 0 of an observer or a file", "s"},

@@ -179,15 +179,22 @@ class LiveSteps {
     if (request_.participant.too_early && task() == schema::Task::adjustment && accepted &&
         played.facts.back().strokes < strokes)
       request_.participant.too_early();
-    return judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums, run_.study.protocol,
-                           played.late);
+    return judgement(attempt, std::move(played));
   }
 
   // The intervals of an attempt, in order, and reasons that are in no session.
   struct IntervalsPlayed {
     std::vector<schema::IntervalFacts> facts;
     std::vector<std::string> sums, late;
+    std::vector<std::optional<double>> force_within;  // if the protocol has a range
   };
+
+  schema::DeliveryJudged judgement(const Attempt& attempt, IntervalsPlayed played) const {
+    auto judged = judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums,
+                                  run_.study.protocol, played.late);
+    judged.force_within = std::move(played.force_within);
+    return judged;
+  }
 
   IntervalPlay interval_of(const Attempt& attempt, std::size_t i) const {
     IntervalPlay interval{request_.device_uri,
@@ -209,11 +216,14 @@ class LiveSteps {
     return play_interval_of(interval_of(attempt, i), played);
   }
 
-  Result<bool> play_interval_of(const IntervalPlay& interval, IntervalsPlayed& played) const {
+  Result<bool> play_interval_of(IntervalPlay interval, IntervalsPlayed& played) const {
+    IntervalGuide guide(run_.study.protocol, request_.participant.guide);
+    interval.watch = std::ref(guide);
     const auto late = play_interval(run_.study.protocol, interval);
     TACTO_TRY(late);
     if (request_.stop_asked()) return false;
     if (!late->empty()) played.late.push_back(*late);
+    if (run_.study.protocol.normal_force) played.force_within.push_back(guide.force_within());
     return true;
   }
 
@@ -254,7 +264,7 @@ class LiveSteps {
     };
     LiveSetting setting(protocol, interval.session, pass_s, attempt.trial.ratio, asked_at, ask);
     interval.steer = std::ref(setting);
-    const auto goes_on = play_interval_of(interval, played);
+    const auto goes_on = play_interval_of(std::move(interval), played);
     if (goes_on && !setting.accepted()) played.late.emplace_back(kNotAccepted);
     return goes_on;
   }
@@ -285,8 +295,7 @@ class LiveSteps {
           reasons_against(played.facts.back(), run_.study.protocol, played.sums.back()).empty();
       tries[chosen] = delivered ? 0 : std::max(tries[chosen] - 1, 0);
     }
-    return judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums, run_.study.protocol,
-                           played.late);
+    return judgement(attempt, std::move(played));
   }
 
   // By the displacement that the sessions predict; the mean level of a texture's intervals.

@@ -76,6 +76,9 @@ struct DeliveryJudged {
   bool delivered = false;
   std::vector<std::string> why;          ///< not delivered: each reason
   std::vector<IntervalFacts> intervals;  ///< those that were played
+  /// If the protocol has a range of normal force: the share of each interval's time in which the device
+  /// reported one within it. None: unknown. No session has it.
+  std::vector<std::optional<double>> force_within = {};
 };
 
 struct AttemptAnswered {

@@ -107,6 +107,8 @@ struct EntryWriter {
     body["event"] = "delivered", body["attempt"] = judged.attempt, body["delivered"] = judged.delivered;
     body["why"] = judged.why, body["intervals"] = Json::array();
     for (const IntervalFacts& facts : judged.intervals) body["intervals"].push_back(facts_body(facts));
+    for (const std::optional<double>& share : judged.force_within)
+      body["force_within"].push_back(share ? Json(*share) : Json());
   }
   void operator()(const SamplePlaced& placed) const {
     body["event"] = "placed", body["attempt"] = placed.attempt, body["label"] = placed.label;
@@ -144,6 +146,9 @@ JournalEntry journal_entry_from(const Json& body) {
     DeliveryJudged judged{
         body.at("attempt"), body.at("delivered"), body.at("why").get<std::vector<std::string>>(), {}};
     for (const Json& facts : body.at("intervals")) judged.intervals.push_back(facts_from(facts));
+    if (body.contains("force_within"))
+      for (const Json& share : body.at("force_within"))
+        judged.force_within.push_back(share.is_null() ? std::nullopt : std::optional(share.get<double>()));
     return judged;
   }
   if (event == "answered")
