@@ -223,8 +223,10 @@ Result<Report> run_new_study(const NewStudyOptions& o) {
   std::vector<std::string> keys;
   for (const auto& [key, word] : protocol->choices) keys.push_back(fmt::format("{}: {}", key, word));
   report->add("answer_keys", keys);
-  return report->add("written", std::vector<std::string>{schema::protocol_path(study->stem),
-                                                         schema::key_path(study->stem), study->stem + "/"});
+  report->add("written", std::vector<std::string>{schema::protocol_path(study->stem),
+                                                  schema::key_path(study->stem), study->stem + "/"});
+  return report->add("next",
+                     fmt::format("tactograph experiment check {} -d DEVICE", cli::shell_word(study->stem)));
 }
 
 Result<Report> run_check_study(const CheckStudyOptions& o) {
@@ -261,7 +263,10 @@ Result<Report> run_check_study(const CheckStudyOptions& o) {
                     "stimulus was loaded only once: "
                     "an interval may begin late",
                     study->protocol.lead_s, kUsualLeadOverLoad, slowest->time_s));
-  return report->add("valid", true);
+  report->add("valid", true);
+  return report->add("next", fmt::format("tactograph experiment run {} -d {} --participant P01",
+                                         cli::shell_word(study->stem),
+                                         o.device.empty() ? "DEVICE" : cli::shell_word(o.device)));
 }
 
 // Trials that have no answer, and will get none.
@@ -287,8 +292,9 @@ Report report_of_run(const Run& run) {
   std::vector<std::string> written = {schema::journal_path(run.stem), run.stem + "/"};
   if (run.queue.has_ended()) written.push_back(run.stem + ".trials.tsv");
   report.add("written", written);
-  if (!run.queue.has_ended()) return report.add("next", "tactograph experiment resume " + run.stem);
-  return report.add("next", "tactograph experiment prove " + run.stem);
+  if (!run.queue.has_ended())
+    return report.add("next", "tactograph experiment resume " + cli::shell_word(run.stem));
+  return report.add("next", "tactograph experiment prove " + cli::shell_word(run.stem));
 }
 
 // What a file of answers asked for, and the nearest setting, which was accepted.
@@ -387,8 +393,10 @@ std::string proof_in_words(const Proof& proof, const TrialQueue& queue, schema::
   if (proof.ratio_error)
     words += fmt::format("; predicted ratio within {:.2g} of the {} one", *proof.ratio_error,
                          task == schema::Task::adjustment ? "accepted" : "asked");
-  return words +
-         fmt::format("; {} of {} sessions the same to the bit", proof.same_to_the_bit, proof.sessions);
+  words += fmt::format("; {} of {} sessions the same to the bit", proof.same_to_the_bit, proof.sessions);
+  if (proof.same_until_lost > 0)
+    words += fmt::format(", {} not delivered ones up to the first lost tick", proof.same_until_lost);
+  return words;
 }
 
 struct ProveOptions {
@@ -476,6 +484,8 @@ Result<Report> run_prove_run(const ProveOptions& o) {
     report.add("real_samples", proof.placed);
   if (proof.stretch_error) report.add("stretch_error", *proof.stretch_error);
   if (proof.ratio_error) report.add("ratio_error", *proof.ratio_error);
+  if (proof.measured_stretch_error) report.add("measured_stretch_error", *proof.measured_stretch_error);
+  if (proof.measured_ratio_error) report.add("measured_ratio_error", *proof.measured_ratio_error);
   report.add("recorded", "ticks and drive").add("predicted", "displacement, by the transducer's model");
   if (!proof.simulated.empty()) report.add("simulated", proof.simulated);
   if (run->study.protocol.masking_noise) report.add("masking_noise", noise_of_run(*run));
@@ -484,6 +494,8 @@ Result<Report> run_prove_run(const ProveOptions& o) {
                force_in_words(run->study.protocol.normal_force) + "; not proven: no session records it");
   if (!run->journal.plan.observer.empty()) report.add("observer", observer_in_words(*run));
   if (!proof.faults.empty()) report.add("faults", proof.faults);
+  if (proof.holds() && run->queue.has_ended())
+    report.add("next", "tactograph experiment analyse " + cli::shell_word(run->study.stem));
   return proof.holds() ? report : report.ends_with(ErrorKind::unsuitable);
 }
 
@@ -745,6 +757,12 @@ cli::Action declare_check_study(CLI::App& app) {
   app.add_option("-d,--device", options->device,
                  "Check also that this device can play each stimulus, and has each of them loaded within the "
                  "protocol's lead; a warning if the lead is below twice the slowest load");
+  app.footer(
+      "Refused are: unknown members, texts that are missing, keys with two meanings, stimuli that are not "
+      "those "
+      "of the key; with a device also a stimulus that it cannot play. A band of playback that loses much of "
+      "a "
+      "stimulus at an accepted speed is a warning. 'run' checks the same.");
   return [options] { return run_check_study(*options); };
 }
 

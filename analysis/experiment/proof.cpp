@@ -23,11 +23,12 @@ using schema::Result;
 
 namespace {
 
-constexpr const char *kStretchColumns = "standard_interval\tnominal_stretch\tpredicted_stretch",
+constexpr const char *kStretchColumns =
+                         "standard_interval\tnominal_stretch\tpredicted_stretch\tmeasured_stretch",
                      *kIdentificationColumns = "block\tcondition\tpresented",
-                     *kAmplitudeColumns = "nominal_ratio\tpredicted_ratio",
+                     *kAmplitudeColumns = "nominal_ratio\tpredicted_ratio\tmeasured_ratio",
                      *kOrderingColumns = "explorations", *kFidelityColumns = "block\tsample\tpresented",
-                     *kAdjustmentColumns = "series\tstart_ratio\tpredicted_ratio\tbound";
+                     *kAdjustmentColumns = "series\tstart_ratio\tpredicted_ratio\tmeasured_ratio\tbound";
 constexpr const char* kTrialColumns =
     "attempt\ttrial\t{}\tpredicted_error_db\tmeasured_error_db\t{}{}\tanswer\tanswer_s\tdelivered\twhy\t"
     "simulated\n";
@@ -40,16 +41,6 @@ schema::Task task_of(const Run& run) {
 std::string folder_with(const std::string& stem) {
   const auto folder = std::filesystem::path(stem).parent_path().string();
   return folder.empty() ? "" : folder + "/";
-}
-
-Result<void> check_unchanged(const schema::RunPlanned& plan, const Study& study) {
-  const auto changed = [&](const std::string& path) {
-    return fail(ErrorKind::unsuitable, "has changed since the run began", path,
-                "take it from a copy; a changed protocol is a new study");
-  };
-  if (plan.protocol_sha256 != study.protocol.sha256) return changed(schema::protocol_path(study.stem));
-  if (plan.key_sha256 != study.key.sha256) return changed(schema::key_path(study.stem));
-  return {};
 }
 
 // Reasons that no session contains.
@@ -87,8 +78,11 @@ class Prover {
     }
     if (!facts->simulated.empty()) proof_.simulated = facts->simulated;
     const auto replayed = playback::replay_session(session);
+    const bool damaged = !replayed || replayed->first_difference || replayed->damaged_at;
     if (replayed && replayed->same())
       ++proof_.same_to_the_bit;
+    else if (!damaged && !attempt.judged->delivered)
+      ++proof_.same_until_lost;
     else
       proof_.faults.push_back(session + ": computed again, its drive is not the same to the bit");
     return std::move(*facts);
@@ -114,18 +108,23 @@ class Prover {
       compare_ratio(again);
     if (task_of(run_) != schema::Task::two_interval) return;
     const double nominal = stimulus_of(run_.study.key, attempt.trial.code).stretch;
-    if (const auto predicted = predicted_stretch(again))
-      proof_.stretch_error = std::max(proof_.stretch_error.value_or(0), std::abs(*predicted - nominal));
-    else
+    take_error(stretch_by(Displacement::measured, again), nominal, proof_.measured_stretch_error);
+    if (!take_error(stretch_by(Displacement::predicted, again), nominal, proof_.stretch_error))
       proof_.faults.push_back(fmt::format("attempt {}: its sessions have no period", attempt.begun.attempt));
+  }
+
+  // False: the value is unknown.
+  static bool take_error(const std::optional<double>& value, double expected,
+                         std::optional<double>& largest) {
+    if (value) largest = std::max(largest.value_or(0), std::abs(*value - expected));
+    return value.has_value();
   }
 
   void compare_ratio(const Attempt& attempt) {
     const double asked = task_of(run_) == schema::Task::amplitude ? attempt.trial.ratio
                                                                   : accepted_ratio(attempt).value_or(NAN);
-    if (const auto predicted = predicted_ratio(run_, attempt))
-      proof_.ratio_error = std::max(proof_.ratio_error.value_or(0), std::abs(*predicted - asked));
-    else
+    take_error(ratio_by(Displacement::measured, run_, attempt), asked, proof_.measured_ratio_error);
+    if (!take_error(ratio_by(Displacement::predicted, run_, attempt), asked, proof_.ratio_error))
       proof_.faults.push_back(
           fmt::format("attempt {}: its session does not say the gain", attempt.begun.attempt));
   }
@@ -158,12 +157,16 @@ std::string bound_cell(const Run& run, const Attempt& attempt) {
 std::string cells_of_task(const Run& run, const Attempt& attempt) {
   if (task_of(run) == schema::Task::ordering) return fmt::format("{}", attempt.begun.stimuli.size());
   const schema::CodedStimulus& stimulus = stimulus_of(run.study.key, attempt.trial.code);
-  const auto ratio = attempt.judged ? predicted_ratio(run, attempt) : std::nullopt;
+  const auto by = [&](Displacement which) {
+    if (!attempt.judged) return std::string();
+    return number_cell(task_of(run) == schema::Task::two_interval ? stretch_by(which, attempt)
+                                                                  : ratio_by(which, run, attempt));
+  };
+  const std::string both = by(Displacement::predicted) + "\t" + by(Displacement::measured);
   if (task_of(run) == schema::Task::adjustment)
     return fmt::format("{}\t{:.9g}\t{}\t{}", attempt.trial.is_ascending() ? "ascending" : "descending",
-                       attempt.trial.ratio, number_cell(ratio), bound_cell(run, attempt));
-  if (task_of(run) == schema::Task::amplitude)
-    return fmt::format("{:.9g}\t{}", attempt.trial.ratio, number_cell(ratio));
+                       attempt.trial.ratio, both, bound_cell(run, attempt));
+  if (task_of(run) == schema::Task::amplitude) return fmt::format("{:.9g}\t{}", attempt.trial.ratio, both);
   if (task_of(run) == schema::Task::fidelity)
     return fmt::format("{}\t{}\t{}", attempt.trial.block,
                        stimulus_of(run.study.key, attempt.trial.sample).name, stimulus.name);
@@ -171,9 +174,7 @@ std::string cells_of_task(const Run& run, const Attempt& attempt) {
     return fmt::format("{}\t{}\t{}", attempt.trial.block,
                        attempt.trial.real ? schema::kRealCondition : schema::kVirtualCondition,
                        stimulus.name);
-  const auto predicted = attempt.judged ? predicted_stretch(attempt) : std::nullopt;
-  return fmt::format("{}\t{:.9g}\t{}", attempt.trial.standard_comes_first() ? 1 : 2, stimulus.stretch,
-                     number_cell(predicted));
+  return fmt::format("{}\t{:.9g}\t{}", attempt.trial.standard_comes_first() ? 1 : 2, stimulus.stretch, both);
 }
 
 // The answer as a number, or what stands for one.
@@ -220,6 +221,16 @@ std::string trial_row(const Run& run, const Attempt& attempt) {
 
 }  // namespace
 
+Result<void> check_unchanged(const schema::RunPlanned& plan, const Study& study) {
+  const auto changed = [&](const std::string& path) {
+    return fail(ErrorKind::unsuitable, fmt::format("has changed since the run of {} began", plan.participant),
+                path, "take it from a copy; a changed protocol is a new study (new -o)");
+  };
+  if (plan.protocol_sha256 != study.protocol.sha256) return changed(schema::protocol_path(study.stem));
+  if (plan.key_sha256 != study.key.sha256) return changed(schema::key_path(study.stem));
+  return {};
+}
+
 Result<Run> read_run(const std::string& name) {
   auto journal = schema::read_journal(schema::journal_path(name));
   TACTO_TRY(journal);
@@ -252,18 +263,22 @@ Proof prove(const Run& run, const std::function<void(double)>& tell) {
   return proof;
 }
 
-std::optional<double> predicted_stretch(const Attempt& attempt) {
+std::optional<double> stretch_by(Displacement which, const Attempt& attempt) {
   if (attempt.judged->intervals.size() != 2) return std::nullopt;
+  const auto period_m = which == Displacement::predicted ? &schema::IntervalFacts::predicted_period_m
+                                                         : &schema::IntervalFacts::measured_period_m;
   const std::size_t standard = attempt.trial.standard_comes_first() ? 0 : 1;
-  const auto& of_standard = attempt.judged->intervals[standard].predicted_period_m;
-  const auto& of_stretched = attempt.judged->intervals[1 - standard].predicted_period_m;
+  const auto& of_standard = attempt.judged->intervals[standard].*period_m;
+  const auto& of_stretched = attempt.judged->intervals[1 - standard].*period_m;
   if (!of_standard || !of_stretched) return std::nullopt;
   return *of_stretched / *of_standard - 1;
 }
 
-std::optional<double> predicted_ratio(const Run& run, const Attempt& attempt) {
+std::optional<double> ratio_by(Displacement which, const Run& run, const Attempt& attempt) {
   if (attempt.judged->intervals.empty()) return std::nullopt;
-  const auto& gain_m_per_n = attempt.judged->intervals.back().predicted_gain_m_per_n;
+  const schema::IntervalFacts& last = attempt.judged->intervals.back();
+  const auto& gain_m_per_n =
+      which == Displacement::predicted ? last.predicted_gain_m_per_n : last.measured_gain_m_per_n;
   if (!gain_m_per_n) return std::nullopt;
   return *gain_m_per_n / run.study.protocol.gain_m_per_n;
 }

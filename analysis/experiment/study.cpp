@@ -427,10 +427,12 @@ Result<std::vector<std::string>> lost_band(const Study& study) {
       least = std::min(least, spatial::band_kept_percent(*texture, speed_mps, band));
     }
     if (least < playback::kLeastPowerPercent)
-      notes.push_back(fmt::format("at {} the band of {} to {} keeps only {:.3g} % of a stimulus' power",
-                                  schema::for_people(speed_mps, schema::Dimension::speed),
-                                  schema::for_people(band.low_hz, schema::Dimension::frequency),
-                                  schema::for_people(band.high_hz, schema::Dimension::frequency), least));
+      notes.push_back(
+          fmt::format("at {} the band of {} to {} keeps only {:.3g} % ({:.1f} dB) of a stimulus' power",
+                      schema::for_people(speed_mps, schema::Dimension::speed),
+                      schema::for_people(band.low_hz, schema::Dimension::frequency),
+                      schema::for_people(band.high_hz, schema::Dimension::frequency), least,
+                      10 * std::log10(std::max(least, 1e-28) / 100)));
   }
   return notes;
 }

@@ -364,7 +364,7 @@ class LiveSteps {
     }
     const auto& intervals = attempt.judged->intervals;
     if (task() == schema::Task::amplitude) {
-      const double ratio = predicted_ratio(run_, attempt).value_or(0);
+      const double ratio = ratio_by(Displacement::predicted, run_, attempt).value_or(0);
       return GivenAnswer{rated(*request_.observer, place(attempt), ratio) + schema::kLargestRating + 1, 0};
     }
     const int choice = smaller_period(*request_.observer, place(attempt),
@@ -392,14 +392,16 @@ class LiveSteps {
 };
 
 // The row of block orders that the fewest complete runs have. A journal that cannot be read is of no
-// complete run.
-int next_order(const Study& study) {
+// complete run. Errors: unsuitable: a run of another protocol or key, with which this one could not be
+// analysed.
+Result<int> next_order(const Study& study) {
   std::vector<int> complete(static_cast<std::size_t>(study.protocol.task == schema::Task::identification
                                                          ? williams_rows(study.protocol.conditions.size())
                                                          : 1));
   for (const std::string& stem : runs_of(study)) {
     const auto journal = schema::read_journal(schema::journal_path(stem));
     if (!journal) continue;
+    TACTO_TRY(check_unchanged(journal->plan, study));
     const auto row = static_cast<std::size_t>(journal->plan.order) - 1;
     if (std::holds_alternative<schema::RunEnded>(journal->entries.back()) && row < complete.size())
       ++complete[row];
@@ -446,18 +448,19 @@ Result<Run> begin_run(const std::string& study_name, const std::string& particip
   TACTO_TRY(check_observer(study->protocol, request.observer));
   const auto masking_level = checked_masking_level(study->protocol, request.masking_level_db);
   TACTO_TRY(masking_level);
+  const auto order = next_order(*study);
+  TACTO_TRY(order);
   const auto slowest = check_on_device(*study, request.device_uri);
   TACTO_TRY(slowest);
-  const int order = next_order(*study);
   const std::string stem = study->run(participant);
   auto file = schema::JournalFile::create(schema::journal_path(stem));
   TACTO_TRY(file);
   schema::RunPlanned plan{
       study->name(),           participant,           study->protocol.sha256,
       study->key.sha256,       request.device_uri,    request.observer ? request.observer->text : "",
-      schema::creation_time(), std::string(kCreator), order,
+      schema::creation_time(), std::string(kCreator), *order,
       request.language,        *masking_level};
-  TrialQueue queue = queue_of_run(study->protocol, study->key, participant, order);
+  TrialQueue queue = queue_of_run(study->protocol, study->key, participant, *order);
   Run run{stem, {plan, {}, 0}, std::move(*study), std::move(queue)};
   TACTO_TRY(go_on(run, *file, request, slowest->keeps_time(), plan));
   return run;
@@ -470,7 +473,8 @@ Result<Run> resume_run(const std::string& name, RunRequest request) {
   auto run = run_of(schema::run_stem(name), std::move(journal));
   TACTO_TRY(run);
   if (run->queue.has_ended())
-    return fail(ErrorKind::usage, "this run is complete", schema::journal_path(name), "");
+    return fail(ErrorKind::usage, "this run is complete", schema::journal_path(name),
+                "prove it, or analyse the study");
   const schema::RunPlanned& plan = run->journal.plan;
   if (request.device_uri.empty()) request.device_uri = plan.device;
   request.observer.reset();

@@ -63,9 +63,10 @@ struct IntervalFacts {
   std::optional<double> predicted_error_db;    ///< of the worst stroke; none: the target is unknown
   std::optional<double> measured_error_db;     ///< the same, if the tray has a sensor
   std::optional<double> predicted_period_m;    ///< of the predicted displacement along position
+  std::optional<double> measured_period_m;     ///< the same of the measured one
   /// RMS of the predicted displacement of all strokes, re that of the texture's force in the band; if the
   /// gain was changed, of the last stroke, at the last gain.
-  std::optional<double> predicted_gain_m_per_n;
+  std::optional<double> predicted_gain_m_per_n, measured_gain_m_per_n;
   std::optional<double> last_gain;  ///< at the end of playback, as a factor of the texture's gain
   bool operator==(const IntervalFacts&) const = default;
 };

@@ -49,7 +49,9 @@ constexpr PerhapsFact kPerhapsFacts[] = {{"removed_by_limits_db", &IntervalFacts
                                          {"predicted_error_db", &IntervalFacts::predicted_error_db},
                                          {"measured_error_db", &IntervalFacts::measured_error_db},
                                          {"predicted_period_m", &IntervalFacts::predicted_period_m},
+                                         {"measured_period_m", &IntervalFacts::measured_period_m},
                                          {"predicted_gain_m_per_n", &IntervalFacts::predicted_gain_m_per_n},
+                                         {"measured_gain_m_per_n", &IntervalFacts::measured_gain_m_per_n},
                                          {"last_gain", &IntervalFacts::last_gain}};
 
 struct PlanText {

@@ -91,6 +91,19 @@ def in_german(shown):
     return {"BEGINN": b" ", "FRAGE": b"j", "PAUSE": b"x"}.get(said, b"")
 
 
+def no_screen_names_a_stimulus():
+    """What the participant and the operator see of a whole run."""
+    new_study("blind", breaks={"after_trials": 1}, texts={"en": GERMAN})
+    person = Person(*run("blind", "P01"))
+    operator = Person("experiment", "watch", "blind", "--time", "60s")
+    assert person.ends(in_german) == 0 and operator.ends() == 0
+    key = json.loads(pathlib.Path("blind.key.json").read_text())["stimuli"]
+    names = {each["code"] for each in key} | {f"{each['stretch']:g}" for each in key} | {each["sha256"][:8] for each in key}
+    for screen in (person.shown, operator.shown):
+        assert not any(re.search(rf"(?<![\w.]){re.escape(name)}(?![\w.])", screen.decode()) for name in names - {"0"}), screen
+    assert b"complete" in operator.shown and b"FRAGE" in person.shown
+
+
 def a_person_reads_another_language_and_has_a_break():
     english = new_study("words", breaks={"after_trials": 1}, texts={"de": GERMAN})["texts"]["en"]
     assert tacto.error_of(*run("words", "P01", "--language", "fr"), code=2)["where"] == "--language"
@@ -186,6 +199,7 @@ def a_missing_or_unknown_text_is_one_error():
 def study():
     the_noise_is_written_and_its_level_is_logged()
     a_protocol_without_noise_says_so()
+    no_screen_names_a_stimulus()
     a_person_reads_another_language_and_has_a_break()
     the_screen_shows_how_to_move()
     the_screen_says_how_the_finger_presses()
