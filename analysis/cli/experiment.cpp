@@ -443,6 +443,9 @@ Result<Report> run_analyse(const AnalyseOptions& o, bool json) {
   auto report = analyse_task(o, json);
   TACTO_TRY(report);
   if (!o.fit.outputs.empty()) TACTO_TRY(log_outputs(schema::stem_of(o.fit.file, ".protocol"), o.fit.outputs));
+  const auto protocol = schema::read_protocol(o.fit.file);
+  TACTO_TRY(protocol);
+  if (!protocol->analysis.empty()) report->add("intended_analysis", protocol->analysis);
   return report;
 }
 

@@ -95,7 +95,10 @@ Report study_report(const Study& study) {
         .add("conditions", protocol.conditions.size());
   report.add("repetitions", protocol.repetitions)
       .add("trials", ordered_trials(protocol, study.key, "P1", 1).size());
-  report.add("masking_noise", noise_in_words(protocol.masking_noise));
+  if (protocol.practice > 0) report.add("practice", protocol.practice);
+  std::vector<std::string> languages;
+  for (const auto& [language, texts] : protocol.texts) languages.push_back(language);
+  report.add("languages", languages).add("masking_noise", noise_in_words(protocol.masking_noise));
   report.add("pacing_cue", protocol.pace.cue).add("normal_force", force_in_words(protocol.normal_force));
   return report.add("interval_s", paced_path(protocol.pace).duration_s());
 }
@@ -280,7 +283,7 @@ Report progress_row(const std::string& stem, const TrialQueue& queue) {
   Report row;
   row.add("run", stem).add("complete", queue.has_ended());
   row.add("trials", queue.trials()).add("delivered_and_answered", queue.counted());
-  row.add("attempts", queue.attempts().size());
+  row.add("attempts", queue.tried());
   add_lost_trials(row, queue);
   return row;
 }
@@ -530,7 +533,7 @@ struct WatchOptions {
 
 std::string progress_in_words(const std::string& stem, const TrialQueue& queue) {
   return fmt::format("{}: {} of {} trials, {} attempts{}\n", stem, queue.counted(), queue.trials(),
-                     queue.attempts().size(), queue.has_ended() ? ", complete" : "");
+                     queue.tried(), queue.has_ended() ? ", complete" : "");
 }
 
 Result<Report> run_watch_study(const WatchOptions& o) {

@@ -110,7 +110,11 @@ Participant ParticipantScreen::participant() {
     return wait_for({}) != 0;
   };
   const auto guide_interval = [this](const Guidance& now) { guide(now); };
-  return {place, go_ahead, answer, explore, turn, too_early, {}, rest, guide_interval};
+  const auto practise = [this] {
+    welcome();
+    show(texts_.practice);
+  };
+  return {place, go_ahead, answer, explore, turn, too_early, {}, rest, practise, guide_interval};
 }
 
 // One line, which is written again where it changes: the mark along its bar, the time to the beginning, and
@@ -331,7 +335,7 @@ Result<Participant> answers_from(const std::string& file, const schema::Protocol
   const auto wanted = [ratios = answers.ratios](std::size_t at) {
     return at < ratios.size() ? std::optional(ratios[at]) : std::nullopt;
   };
-  return Participant{place, [](int) { return true; }, answer, explore, {}, {}, wanted, {}, {}};
+  return Participant{place, [](int) { return true; }, answer, explore, {}, {}, wanted, {}, {}, {}};
 }
 
 }  // namespace tacto::analysis

@@ -10,16 +10,6 @@
 
 namespace tacto::analysis {
 
-/// Where the finger is to be.
-struct CuedPlace {
-  double part = 0;  ///< of the way from pace.from_m to pace.to_m
-  int stroke = 0;   ///< the last one that has begun, from 1; 0: none
-};
-
-/// At `played_s` of an interval whose finger moves along paced_path(); after its end it repeats that path,
-/// without end, forth and back. Before 0: at the beginning.
-CuedPlace cued_place(const schema::ProtocolPace& pace, double played_s);
-
 enum class PressedAs { below, within, above };
 
 PressedAs pressed_as(const schema::ForceRange& range, double force_n);

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "analysis/experiment/interval_guide.hpp"
 #include "playback/player/play.hpp"
 #include "playback/player/player_device.hpp"
 #include "playback/prepare/displacement_limit.hpp"

@@ -56,10 +56,11 @@ class Prover {
   Prover(const Run& run, Proof& proof) : run_(run), proof_(proof) {}
 
   void take(const Attempt& attempt) {
-    if (!attempt.answered) ++proof_.interrupted;
-    if (attempt.placed && attempt.answered) ++proof_.placed;
+    const bool practice = attempt.trial.is_practice();  // its sessions are proven, too
+    if (!practice && !attempt.answered) ++proof_.interrupted;
+    if (!practice && attempt.placed && attempt.answered) ++proof_.placed;
     if (!attempt.judged) return;
-    if (!attempt.judged->delivered) ++proof_.failed;
+    if (!practice && !attempt.judged->delivered) ++proof_.failed;
     std::vector<schema::IntervalFacts> facts;
     for (std::size_t i = 0; i < attempt.judged->intervals.size(); ++i)
       if (auto again = facts_again(attempt, i)) facts.push_back(std::move(*again));
@@ -253,12 +254,12 @@ Proof prove(const Run& run, const std::function<void(double)>& tell) {
   Proof proof;
   proof.trials = run.queue.trials();
   proof.ratio_tolerance = kRatioTolerance * run.study.protocol.largest_ratio;
-  proof.attempts = run.queue.attempts().size();
+  proof.attempts = run.queue.tried();
   Prover prover(run, proof);
   double done = 0;
   for (const Attempt& attempt : run.queue.attempts()) {
     prover.take(attempt);
-    tell(++done / static_cast<double>(proof.attempts));
+    tell(++done / static_cast<double>(run.queue.attempts().size()));
   }
   return proof;
 }
@@ -309,7 +310,8 @@ std::string trials_table(const Run& run) {
   const auto& [columns, answer] = kColumnsOfTask[static_cast<int>(task_of(run))];
   const char* const force = run.study.protocol.normal_force ? "force_within\t" : "";
   std::string table = fmt::format(kTrialColumns, columns, force, answer);
-  for (const Attempt& attempt : run.queue.attempts()) table += trial_row(run, attempt) + "\n";
+  for (const Attempt& attempt : run.queue.attempts())
+    if (!attempt.trial.is_practice()) table += trial_row(run, attempt) + "\n";
   return table;
 }
 

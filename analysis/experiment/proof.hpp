@@ -53,8 +53,8 @@ struct Proof {
   std::string simulated;
 
   bool holds() const {
-    return faults.empty() && same_to_the_bit + same_until_lost == sessions && stretch_error.value_or(0) <= kStretchTolerance &&
-           ratio_error.value_or(0) <= ratio_tolerance;
+    return faults.empty() && same_to_the_bit + same_until_lost == sessions &&
+           stretch_error.value_or(0) <= kStretchTolerance && ratio_error.value_or(0) <= ratio_tolerance;
   }
 };
 
@@ -82,7 +82,7 @@ int rating_of(const Attempt& attempt);
 /// The observer of the run and what it got; empty: a person answered.
 std::string observer_in_words(const Run& run);
 
-/// STUDY-P07.trials.tsv: a row for each attempt. Its columns are those of the task.
+/// STUDY-P07.trials.tsv: a row for each attempt that is no practice. Its columns are those of the task.
 std::string trials_table(const Run& run);
 
 }  // namespace tacto::analysis

@@ -147,6 +147,9 @@ bool is_right(const Run& run, const Attempt& attempt) {
 // fidelity.
 std::vector<std::vector<std::string>> rows_of(const Run& run) {
   std::vector<std::vector<std::string>> rows;
+  std::vector<const Attempt*> attempts = {nullptr};  // of each line
+  for (const Attempt& each : run.queue.attempts())
+    if (!each.trial.is_practice()) attempts.push_back(&each);
   std::vector<std::string> lines = split(trials_table(run), '\n');
   lines.pop_back();
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -155,7 +158,7 @@ std::vector<std::vector<std::string>> rows_of(const Run& run) {
     if (!is_two_interval(run.study.protocol) && task != schema::Task::identification &&
         task != schema::Task::fidelity)
       continue;
-    const Attempt* const attempt = i > 0 ? &run.queue.attempts()[i - 1] : nullptr;
+    const Attempt* const attempt = attempts[i];
     const bool answered = attempt != nullptr && attempt->answered;
     const char* const name = is_two_interval(run.study.protocol) ? "seemed_longer" : "correct";
     rows.back().emplace_back(attempt == nullptr ? name

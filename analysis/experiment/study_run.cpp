@@ -46,7 +46,7 @@ class LiveSteps {
             [this] { return rest(); },
             [this](const StudyTrial& trial) {
               const double longest_s = run_.study.protocol.longest_s;
-              return longest_s > 0 && block_s(trial.block) >= longest_s;
+              return !trial.is_practice() && longest_s > 0 && block_s(trial.block) >= longest_s;
             }};
   }
 
@@ -125,6 +125,7 @@ class LiveSteps {
 
   Result<std::optional<schema::JournalEntry>> present(const Attempt& attempt) {
     request_.tell(static_cast<double>(run_.queue.counted()) / static_cast<double>(run_.queue.trials()));
+    if (attempt.trial.is_practice() && request_.participant.practise) request_.participant.practise();
     if (task() == schema::Task::ordering) return explore(attempt);
     if (task() == schema::Task::fidelity) {
       const auto beside = place_beside(attempt);

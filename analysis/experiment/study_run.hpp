@@ -41,6 +41,8 @@ struct Participant {
   std::function<std::optional<double>(std::size_t number)> wanted;
   /// Of a person: a break, until a key is pressed; false: the run ends.
   std::function<bool()> rest;
+  /// Of a person: says that a practice trial comes.
+  std::function<void()> practise = {};
   /// Of a person: shows how the finger is to move, at each message of ticks.
   IntervalGuide::Show guide = {};
 };

@@ -34,7 +34,7 @@ struct AttemptBegun {
   std::string trial;                  ///< CODE.REPETITION
   std::vector<std::string> stimuli;   ///< codes, in the order of the intervals
   std::vector<std::string> sessions;  ///< from the journal's folder; none of a real sample
-  int block = 1;                      ///< of the trials
+  int block = 1;                      ///< of the trials; 0: practice
   double block_s = 0;                 ///< time of the block so far, without interruptions
 };
 

@@ -90,6 +90,7 @@ struct ProtocolTexts {
   std::string left;  ///< before the numbers of the textures that have yet to be explored; in an ordering only
   /// While an interval is awaited and played, if the protocol has a range of normal force.
   std::string force_below = {}, force_within = {}, force_above = {};
+  std::string practice = {};  ///< before each practice trial
 };
 
 inline constexpr const char* kUsualLanguage = "en";
@@ -157,6 +158,8 @@ struct Protocol {
   std::vector<std::string> unknown_members = {};
   std::string sha256;  ///< of the file that was read
   std::optional<ForceRange> normal_force = std::nullopt;
+  int practice = 0;      ///< trials before the first one, which are not counted
+  std::string analysis;  ///< that is intended, in words; the analysis prints it
 };
 
 /// By stem, NAME.protocol.json or a JSON file with another name. Errors: not_found; malformed, with the

@@ -81,6 +81,7 @@ constexpr ShownText kShownTexts[] = {
     {"left", &ProtocolTexts::left, [](const Protocol& protocol) { return protocol.task == Task::ordering; }},
     {"too_early", &ProtocolTexts::too_early,
      [](const Protocol& protocol) { return protocol.task == Task::adjustment; }},
+    {"practice", &ProtocolTexts::practice, [](const Protocol& protocol) { return protocol.practice > 0; }},
     {"force_below", &ProtocolTexts::force_below, has_force_range},
     {"force_within", &ProtocolTexts::force_within, has_force_range},
     {"force_above", &ProtocolTexts::force_above, has_force_range}};
@@ -160,6 +161,8 @@ Protocol protocol_from(const Document& document) {
   for (const auto& [language, texts] : body["texts"].items())
     for (const ShownText& each : kShownTexts)
       protocol.texts[language].*each.member = text_or(texts, each.name);
+  protocol.practice = body.value("practice", 0);
+  protocol.analysis = text_or(body, "analysis");
   protocol.notes = text_or(body, "notes");
   keep_unknown(document, protocol);
   return protocol;
@@ -237,6 +240,8 @@ Json protocol_body(const Protocol& protocol) {
   for (const auto& [language, texts] : protocol.texts)
     for (const ShownText& each : kShownTexts)
       put_text(body["texts"][language], each.name, texts.*each.member);
+  if (protocol.practice > 0) body["practice"] = protocol.practice;
+  put_text(body, "analysis", protocol.analysis);
   put_text(body, "notes", protocol.notes);
   return body;
 }

@@ -73,6 +73,13 @@ schema::Protocol twelve_beside_samples() {
   return protocol;
 }
 
+schema::Protocol adaptive(schema::LevelMethod method) {
+  schema::Protocol protocol = stretch_protocol("7", method);
+  protocol.repetitions = 20;
+  protocol.most_attempts = 100;
+  return protocol;
+}
+
 // A run whose journal is a text: every seventh attempt is not delivered.
 class TextRun {
  public:
@@ -208,6 +215,40 @@ TEST(ExperimentRun, AJournalCutAtEachByteIsResumedWithEachAnswerOnce) {
     ASSERT_EQ(counted.size(), 20u) << bytes;
     for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
     ASSERT_EQ(resumed.queue().answers(), lines_with(resumed.text(), R"("event":"answered")")) << bytes;
+  }
+}
+
+// Practice trials are the last ones of the first block. They come once, and count nowhere; an interrupted one
+// comes again.
+TEST(ExperimentRun, PracticeComesFirstAndCountsNowhere) {
+  for (schema::Protocol protocol : {twenty_trials(), ten_trials(), three_orders(), twelve_beside_samples(),
+                                    adaptive(schema::LevelMethod::staircase)}) {
+    const auto trials = ordered_trials(protocol, key_of(protocol), "P01", 1);
+    const std::size_t own = trials.size();
+    protocol.practice = 2;
+    TextRun whole(protocol);
+    ASSERT_TRUE(whole.go_on(""));
+    const std::string& text = whole.text();
+    const auto& attempts = whole.queue().attempts();
+    ASSERT_TRUE(whole.queue().has_ended());
+    EXPECT_EQ(whole.queue().trials(), own);
+    EXPECT_EQ(whole.queue().counted(), own);
+    EXPECT_EQ(whole.queue().tried() + 2, attempts.size());
+    EXPECT_EQ(whole.queue().abandoned(), 0U);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(attempts[i].trial.is_practice(), i < 2);
+    const auto block =
+        static_cast<std::size_t>(std::ranges::count(trials, trials.front().block, &StudyTrial::block));
+    for (std::size_t i = 0; i < 2 && !trials.front().adaptive; ++i)
+      EXPECT_EQ(attempts[i].begun.trial, trials[block - 2 + i].name());
+    for (std::size_t bytes = text.find('\n') + 1; bytes <= text.size(); bytes += 7) {
+      TextRun resumed(protocol);
+      const auto went_on = resumed.go_on(text.substr(0, bytes));
+      ASSERT_TRUE(went_on) << bytes << ": " << schema::message(went_on.error());
+      ASSERT_EQ(resumed.queue().counted(), own) << bytes;
+      ASSERT_EQ(resumed.queue().attempts().size() - resumed.queue().tried(),
+                static_cast<std::size_t>(std::ranges::count_if(
+                    resumed.queue().attempts(), [](const Attempt& each) { return each.begun.block == 0; })));
+    }
   }
 }
 
@@ -371,13 +412,6 @@ TEST(ExperimentRun, ATextureBesideNoSampleOrAnotherOneIsRefused) {
   ASSERT_TRUE(queue.take(schema::DeliveryJudged{1, true, {}, {}}));
   ASSERT_TRUE(queue.take(schema::AttemptAnswered{1, 1, "same", 0}));
   EXPECT_TRUE(queue.attempts().front().counts());
-}
-
-schema::Protocol adaptive(schema::LevelMethod method) {
-  schema::Protocol protocol = stretch_protocol("7", method);
-  protocol.repetitions = 20;
-  protocol.most_attempts = 100;
-  return protocol;
 }
 
 std::vector<double> stretches_of(const TrialQueue& queue, const schema::ProtocolKey& key, bool counted) {

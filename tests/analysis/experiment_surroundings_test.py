@@ -91,6 +91,30 @@ def in_german(shown):
     return {"BEGINN": b" ", "FRAGE": b"j", "PAUSE": b"x"}.get(said, b"")
 
 
+def practice_is_in_no_table():
+    german = {**GERMAN, "practice": "PROBE"}
+    new_study("probe", practice=2, breaks={"after_trials": 100}, texts={"en": german}, analysis="the JND of each person")
+    checked = tacto.run_json("experiment", "check", "probe")
+    assert (checked["practice"], checked["trials"], checked["languages"]) == (2, 2, ["en"])
+    person = Person(*run("probe", "P01"))
+    assert person.ends(in_german) == 0 and person.shown.count(b"PROBE") == 2 and person.shown.count(b"WILLKOMMEN") == 1
+    begun = [entry for entry in journal("probe-P01") if entry["event"] == "begun"]
+    assert [entry["block"] for entry in begun][:3] == [0, 0, 1] and len(begun) >= 4
+    with open("probe-P01.trials.tsv") as file:
+        rows = list(csv.DictReader(file, delimiter="\t"))
+    assert [int(row["attempt"]) for row in rows] == list(range(3, len(begun) + 1))
+    proof = tacto.run_json("experiment", "prove", "probe-P01")
+    assert proof["proven"] is True and proof["attempts"] == len(rows) and proof["sessions"] == 2 * len(begun)
+    tacto.run(*run("probe", "P02", "--observer", "weber=25%,hurry=100%"))  # practice is not repeated
+    assert [entry["block"] for entry in journal("probe-P02") if entry["event"] == "begun"] == [0, 0] + [1] * 6
+    tacto.run("experiment", "export", "probe", "--unblind", "-o", "probe-out")
+    with open("probe-out/trials.csv") as file:
+        exported = list(csv.DictReader(file))
+    assert len(exported) == len(rows) + 6
+    for row in exported:
+        assert row["seemed_longer"] == str(int(row["answer_interval"] == row["standard_interval"])), row
+
+
 def no_screen_names_a_stimulus():
     """What the participant and the operator see of a whole run."""
     new_study("blind", breaks={"after_trials": 1}, texts={"en": GERMAN})
@@ -199,6 +223,7 @@ def a_missing_or_unknown_text_is_one_error():
 def study():
     the_noise_is_written_and_its_level_is_logged()
     a_protocol_without_noise_says_so()
+    practice_is_in_no_table()
     no_screen_names_a_stimulus()
     a_person_reads_another_language_and_has_a_break()
     the_screen_shows_how_to_move()
