@@ -183,10 +183,12 @@ Result<void> play_through(const Playing& playing, const std::string& session,
   const auto late_s = wait_for_begin(playing, stop_asked);
   TACTO_TRY(late_s);
   outcome.late_s = *late_s;
-  TACTO_TRY(player.play());
-  const PlayTime time =
-      begin_path(player, playing.device, playing.here, outcome.asked_s, playing.begins_at.has_value());
-  TACTO_TRY(run_until(player, time, playing.script, playing.steer, playing.watch, stop_asked, progress));
+  if (player.state() != PlayerState::fault) {  // one while it waited is in the outcome, as one while it plays
+    TACTO_TRY(player.play());
+    const PlayTime time =
+        begin_path(player, playing.device, playing.here, outcome.asked_s, playing.begins_at.has_value());
+    TACTO_TRY(run_until(player, time, playing.script, playing.steer, playing.watch, stop_asked, progress));
+  }
   outcome.status = player.status();
   if (player.state() != PlayerState::fault) TACTO_TRY(ramp_down(player));
   TACTO_TRY(player.disarm());

@@ -195,17 +195,19 @@ def no_kill_loses_an_answer():
 
 
 def lost_ticks_come_again():
-    """The process stops while the device plays: what the link could not keep is lost, the trial says so, and the rest is
-    proven. Whether it stops in an interval is seen by the session's size."""
+    """The process stops while the device plays, and in the next interval while it waits for the beginning: what the link
+    could not keep is lost, the device's watchdog ends the playback, the trial says so and comes again, and the run is
+    proven. Where it stops is seen by the size of the session, whose upload has 30 kB."""
     two_stretches("lost", repetitions=1, most_attempts=2, lead_s=0.3, pace={"from_m": 0.01, "to_m": 0.03, "speed_mps": 0.06, "strokes": 2})
     command = ["experiment", "run", "lost", "-d", "sim:paced=1,link_buffer=20ms", "--participant", "P01", "--observer", "weber=25%"]
     process = subprocess.Popen([tacto.COMMAND, *command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    session = pathlib.Path("lost-P01/001-1.session")
-    while process.poll() is None and not (session.exists() and session.stat().st_size > 40_000):
-        time.sleep(0.001)
-    process.send_signal(signal.SIGSTOP)
-    time.sleep(0.15)
-    process.send_signal(signal.SIGCONT)
+    for name, size in (("001-1", 70_000), ("001-2", 31_000)):
+        session = pathlib.Path(f"lost-P01/{name}.session")
+        while process.poll() is None and not (session.exists() and session.stat().st_size > size):
+            time.sleep(0.001)
+        process.send_signal(signal.SIGSTOP)
+        time.sleep(0.15)
+        process.send_signal(signal.SIGCONT)
     assert process.wait() == 0
     rows = table("lost-P01")
     assert rows[0]["delivered"] == "no" and "lost ticks" in rows[0]["why"], rows[0]

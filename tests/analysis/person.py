@@ -22,8 +22,8 @@ class Person:
 
     def reads(self, reply):
         """Reads what is shown next; False: the command has closed its screen. Presses reply(shown) when nothing new is
-        shown for 0.2 s: a key from before its prompt is no answer, so it has to come again."""
-        while not select.select([self.run.stderr], [], [], 0.2)[0]:
+        shown for 0.05 s: a key from before its prompt is no answer, so it has to come again."""
+        while not select.select([self.run.stderr], [], [], 0.05)[0]:
             self.press(reply(self.shown))
         more = os.read(self.run.stderr.fileno(), 4096)
         self.shown += more
