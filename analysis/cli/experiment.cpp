@@ -443,6 +443,9 @@ Result<Report> run_analyse(const AnalyseOptions& o, bool json) {
   auto report = analyse_task(o, json);
   TACTO_TRY(report);
   if (!o.fit.outputs.empty()) TACTO_TRY(log_outputs(schema::stem_of(o.fit.file, ".protocol"), o.fit.outputs));
+  const auto protocol = schema::read_protocol(o.fit.file);
+  TACTO_TRY(protocol);
+  if (!protocol->analysis.empty()) report->add("intended_analysis", protocol->analysis);
   return report;
 }
 
@@ -515,33 +518,31 @@ cli::Action declare_experiment(CLI::App& app) {
 
 const cli::Verb kExperimentVerb{
     "experiment", "Psychophysics: run a protocol, prove what was delivered, fit the answers",
-    "tactograph experiment new stretch -o stretch\n"
-    "  tactograph experiment new identification --textures A,B,C,D,E --comparisons C,D,E "
-    "-o surfaces\n"
-    "  tactograph experiment new amplitude --textures E -o amplitude\n"
+    "tactograph experiment new stretch --pacing-cue -o stretch\n"
+    "  tactograph experiment check stretch -d usb:\n"
+    "  tactograph experiment run stretch -d usb: --participant P01\n"
+    "  tactograph experiment run stretch -d sim: --participant P02 --observer weber=25%,lapse=2%\n"
+    "  tactograph experiment resume stretch-P01\n"
+    "  tactograph experiment watch stretch\n"
+    "  tactograph experiment prove stretch-P01\n"
+    "  tactograph experiment analyse stretch --unblind -o stretch.html\n"
+    "  tactograph experiment power stretch --weber 15.5%,25.3% --spread 23%\n"
+    "  tactograph experiment export stretch -o stretch-export\n"
+    "  tactograph experiment withdraw stretch --participant P07\n"
+    "  tactograph experiment new identification --textures A,B,C,D,E --comparisons C,D,E -o surfaces\n"
+    "  tactograph experiment run surfaces -d sim: --participant P01 --observer template\n"
     "  tactograph experiment new fidelity --textures A,C,E -o bench\n"
     "  tactograph experiment run bench -d sim: --participant P01 --observer template\n"
-    "  tactograph experiment run stretch -d usb: --participant P01\n"
-    "  tactograph experiment run stretch -d sim: --participant P02 --observer "
-    "weber=25%,lapse=2%\n"
-    "  tactograph experiment run surfaces -d sim: --participant P01 --observer "
-    "template\n"
-    "  tactograph experiment run amplitude -d sim: --participant P01 --observer "
-    "match=86%,weber=10%\n"
+    "  tactograph experiment new amplitude --textures E -o amplitude\n"
+    "  tactograph experiment run amplitude -d sim: --participant P01 --observer match=86%,weber=10%\n"
     "  tactograph experiment new ordering --textures A,C,E --intended 0.2,0.5,1 -o roughness\n"
     "  tactograph experiment run roughness -d sim: --participant P01 --observer order,noise=1dB\n"
     "  tactograph experiment new adjustment --textures E --goal least -o least\n"
     "  tactograph experiment run least -d sim: --participant P01 --observer threshold=20%,sd=10%\n"
-    "  tactograph experiment new stretch --masking-noise 65dB -o quiet\n"
+    "  tactograph experiment new stretch --masking-noise 65dB --normal-force 0.3N,0.8N -o quiet\n"
     "  tactograph experiment noise quiet -o noise.wav\n"
     "  tactograph experiment run quiet -d usb: --participant P01 --masking-level 64.5dB\n"
-    "  tactograph experiment watch stretch\n"
-    "  tactograph experiment prove stretch-P01\n"
-    "  tactograph experiment analyse stretch --unblind -o stretch.html\n"
     "  tactograph experiment prove sessions/2026-11-29.session\n"
-    "  tactograph experiment power stretch --weber 15.5%,25.3% --spread 23%\n"
-    "  tactograph experiment export stretch -o stretch-export\n"
-    "  tactograph experiment withdraw stretch --participant P07\n"
     "  tactograph experiment fit answers.csv --guess 50% -o answers.html\n"
     "  tactograph experiment fit answers.csv --by participant,vibration_hz\n"
     "  tactograph experiment fit --pairs preferences.csv",

@@ -46,6 +46,8 @@ struct NewStudyOptions {
   schema::Goal goal = schema::Goal::least;
   schema::LevelMethod method = schema::LevelMethod::constant;
   std::optional<double> masking_db;
+  bool pacing_cue = false;
+  std::vector<std::string> normal_force;
   schema::Existing existing = schema::Existing::keep;
 };
 
@@ -65,6 +67,12 @@ constexpr const char* kAnswersHelp =
     "File with an answer on each line, its word or its key, and between them the labels (K3) of the real "
     "samples that the operator places; of ordering the numbers from least to most (2 1 3); of adjustment the "
     "ratio that is set (0.25; the nearest step is used, and printed); default: the keys of this terminal";
+
+std::string force_in_words(const std::optional<schema::ForceRange>& range) {
+  if (!range) return "none";
+  const auto words = [](double force_n) { return schema::for_people(force_n, schema::Dimension::force); };
+  return fmt::format("{} to {}", words(range->low_n), words(range->high_n));
+}
 
 Report study_report(const Study& study) {
   const schema::Protocol& protocol = study.protocol;
@@ -87,7 +95,11 @@ Report study_report(const Study& study) {
         .add("conditions", protocol.conditions.size());
   report.add("repetitions", protocol.repetitions)
       .add("trials", ordered_trials(protocol, study.key, "P1", 1).size());
-  report.add("masking_noise", noise_in_words(protocol.masking_noise));
+  if (protocol.practice > 0) report.add("practice", protocol.practice);
+  std::vector<std::string> languages;
+  for (const auto& [language, texts] : protocol.texts) languages.push_back(language);
+  report.add("languages", languages).add("masking_noise", noise_in_words(protocol.masking_noise));
+  report.add("pacing_cue", protocol.pace.cue).add("normal_force", force_in_words(protocol.normal_force));
   return report.add("interval_s", paced_path(protocol.pace).duration_s());
 }
 
@@ -182,11 +194,31 @@ Result<schema::Protocol> new_protocol(const NewStudyOptions& o, NamedTextures& t
   return identification_protocol(o.seed, textures, comparisons);
 }
 
+Result<schema::ForceRange> parse_force_range(const std::vector<std::string>& ends) {
+  std::vector<double> forces_n;
+  for (const std::string& end : ends) {
+    const auto force_n = schema::parse_quantity(end, schema::Dimension::force);
+    if (!force_n)
+      return schema::fail(ErrorKind::usage, force_n.error().what, "--normal-force", force_n.error().remedy);
+    forces_n.push_back(*force_n);
+  }
+  if (forces_n.size() == 2 && 0 <= forces_n[0] && forces_n[0] < forces_n[1])
+    return schema::ForceRange{forces_n[0], forces_n[1]};
+  return schema::fail(ErrorKind::usage, "needs the lowest and the highest force", "--normal-force",
+                      "give for example 0.3N,0.8N");
+}
+
 Result<Report> run_new_study(const NewStudyOptions& o) {
   NamedTextures textures;
   auto protocol = new_protocol(o, textures);
   TACTO_TRY(protocol);
   if (o.masking_db) protocol->masking_noise = usual_masking_noise(*o.masking_db);
+  if (o.pacing_cue) add_pacing_cue(*protocol);
+  if (!o.normal_force.empty()) {
+    const auto range = parse_force_range(o.normal_force);
+    TACTO_TRY(range);
+    add_normal_force(*protocol, *range);
+  }
   const auto study = write_study(o.stem.empty() ? o.what : o.stem, *protocol, textures, o.existing);
   TACTO_TRY(study);
   auto report = warn_and_report(*study);
@@ -194,8 +226,10 @@ Result<Report> run_new_study(const NewStudyOptions& o) {
   std::vector<std::string> keys;
   for (const auto& [key, word] : protocol->choices) keys.push_back(fmt::format("{}: {}", key, word));
   report->add("answer_keys", keys);
-  return report->add("written", std::vector<std::string>{schema::protocol_path(study->stem),
-                                                         schema::key_path(study->stem), study->stem + "/"});
+  report->add("written", std::vector<std::string>{schema::protocol_path(study->stem),
+                                                  schema::key_path(study->stem), study->stem + "/"});
+  return report->add("next",
+                     fmt::format("tactograph experiment check {} -d DEVICE", cli::shell_word(study->stem)));
 }
 
 Result<Report> run_check_study(const CheckStudyOptions& o) {
@@ -209,6 +243,16 @@ Result<Report> run_check_study(const CheckStudyOptions& o) {
   }
   auto report = warn_and_report(*study);
   TACTO_TRY(report);
+  if (study->protocol.normal_force) {
+    const auto reported = o.device.empty() ? Result<bool>(false) : reports_normal_force(o.device);
+    TACTO_TRY(reported);
+    report->add("normal_force_reported", o.device.empty() ? "not checked: no device is named"
+                                         : *reported      ? "yes"
+                                                          : "no");
+    if (!o.device.empty() && !*reported)
+      cli::warn(
+          "this device reports no normal force: the screen says nothing of it, and the trials 'unknown'");
+  }
   report->add("lead_s", study->protocol.lead_s);
   if (!slowest)
     report->add("slowest_load", "not measured: no device is named");
@@ -222,7 +266,10 @@ Result<Report> run_check_study(const CheckStudyOptions& o) {
                     "stimulus was loaded only once: "
                     "an interval may begin late",
                     study->protocol.lead_s, kUsualLeadOverLoad, slowest->time_s));
-  return report->add("valid", true);
+  report->add("valid", true);
+  return report->add("next", fmt::format("tactograph experiment run {} -d {} --participant P01",
+                                         cli::shell_word(study->stem),
+                                         o.device.empty() ? "DEVICE" : cli::shell_word(o.device)));
 }
 
 // Trials that have no answer, and will get none.
@@ -236,7 +283,7 @@ Report progress_row(const std::string& stem, const TrialQueue& queue) {
   Report row;
   row.add("run", stem).add("complete", queue.has_ended());
   row.add("trials", queue.trials()).add("delivered_and_answered", queue.counted());
-  row.add("attempts", queue.attempts().size());
+  row.add("attempts", queue.tried());
   add_lost_trials(row, queue);
   return row;
 }
@@ -248,8 +295,9 @@ Report report_of_run(const Run& run) {
   std::vector<std::string> written = {schema::journal_path(run.stem), run.stem + "/"};
   if (run.queue.has_ended()) written.push_back(run.stem + ".trials.tsv");
   report.add("written", written);
-  if (!run.queue.has_ended()) return report.add("next", "tactograph experiment resume " + run.stem);
-  return report.add("next", "tactograph experiment prove " + run.stem);
+  if (!run.queue.has_ended())
+    return report.add("next", "tactograph experiment resume " + cli::shell_word(run.stem));
+  return report.add("next", "tactograph experiment prove " + cli::shell_word(run.stem));
 }
 
 // What a file of answers asked for, and the nearest setting, which was accepted.
@@ -348,8 +396,10 @@ std::string proof_in_words(const Proof& proof, const TrialQueue& queue, schema::
   if (proof.ratio_error)
     words += fmt::format("; predicted ratio within {:.2g} of the {} one", *proof.ratio_error,
                          task == schema::Task::adjustment ? "accepted" : "asked");
-  return words +
-         fmt::format("; {} of {} sessions the same to the bit", proof.same_to_the_bit, proof.sessions);
+  words += fmt::format("; {} of {} sessions the same to the bit", proof.same_to_the_bit, proof.sessions);
+  if (proof.same_until_lost > 0)
+    words += fmt::format(", {} not delivered ones up to the first lost tick", proof.same_until_lost);
+  return words;
 }
 
 struct ProveOptions {
@@ -437,11 +487,18 @@ Result<Report> run_prove_run(const ProveOptions& o) {
     report.add("real_samples", proof.placed);
   if (proof.stretch_error) report.add("stretch_error", *proof.stretch_error);
   if (proof.ratio_error) report.add("ratio_error", *proof.ratio_error);
+  if (proof.measured_stretch_error) report.add("measured_stretch_error", *proof.measured_stretch_error);
+  if (proof.measured_ratio_error) report.add("measured_ratio_error", *proof.measured_ratio_error);
   report.add("recorded", "ticks and drive").add("predicted", "displacement, by the transducer's model");
   if (!proof.simulated.empty()) report.add("simulated", proof.simulated);
   if (run->study.protocol.masking_noise) report.add("masking_noise", noise_of_run(*run));
+  if (run->study.protocol.normal_force)
+    report.add("normal_force",
+               force_in_words(run->study.protocol.normal_force) + "; not proven: no session records it");
   if (!run->journal.plan.observer.empty()) report.add("observer", observer_in_words(*run));
   if (!proof.faults.empty()) report.add("faults", proof.faults);
+  if (proof.holds() && run->queue.has_ended())
+    report.add("next", "tactograph experiment analyse " + cli::shell_word(run->study.stem));
   return proof.holds() ? report : report.ends_with(ErrorKind::unsuitable);
 }
 
@@ -476,7 +533,7 @@ struct WatchOptions {
 
 std::string progress_in_words(const std::string& stem, const TrialQueue& queue) {
   return fmt::format("{}: {} of {} trials, {} attempts{}\n", stem, queue.counted(), queue.trials(),
-                     queue.attempts().size(), queue.has_ended() ? ", complete" : "");
+                     queue.tried(), queue.has_ended() ? ", complete" : "");
 }
 
 Result<Report> run_watch_study(const WatchOptions& o) {
@@ -667,6 +724,13 @@ cli::Action declare_new_study(CLI::App& app) {
   cli::add_quantity(app, "--masking-noise", options->masking_db, schema::Dimension::level,
                     "Level of masking noise at the ear, 65dB (re 20 uPa): 15-1500 Hz, within 3 dB; default: "
                     "the protocol has none");
+  app.add_flag("--pacing-cue", options->pacing_cue,
+               "The participant's screen shows a mark that moves as the finger is to move");
+  app.add_option(
+         "--normal-force", options->normal_force,
+         "The participant's screen says whether the normal force, as the device reports it, is below, "
+         "within or above this range: 0.3N,0.8N")
+      ->delimiter(',');
   app.footer(
       "stretch: which of two sinusoids has the smaller period. identification: which of the standards is a "
       "comparison, a real sample in one block and played in the other one, each of 100 trials or 15 "
@@ -696,6 +760,12 @@ cli::Action declare_check_study(CLI::App& app) {
   app.add_option("-d,--device", options->device,
                  "Check also that this device can play each stimulus, and has each of them loaded within the "
                  "protocol's lead; a warning if the lead is below twice the slowest load");
+  app.footer(
+      "Refused are: unknown members, texts that are missing, keys with two meanings, stimuli that are not "
+      "those "
+      "of the key; with a device also a stimulus that it cannot play. A band of playback that loses much of "
+      "a "
+      "stimulus at an accepted speed is a warning. 'run' checks the same.");
   return [options] { return run_check_study(*options); };
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <sstream>
 #include <thread>
@@ -79,6 +80,7 @@ Participant ParticipantScreen::participant() {
     welcome();
     show(texts_.begin);
     if (wait_for(protocol_.begin_key) == 0) return false;
+    guided_.clear();
     show(adjusts(interval) ? texts_.question : texts_.interval);
     return true;
   };
@@ -107,7 +109,27 @@ Participant ParticipantScreen::participant() {
     show(texts_.rest);
     return wait_for({}) != 0;
   };
-  return {place, go_ahead, answer, explore, turn, too_early, {}, rest};
+  const auto guide_interval = [this](const Guidance& now) { guide(now); };
+  const auto practise = [this] {
+    welcome();
+    show(texts_.practice);
+  };
+  return {place, go_ahead, answer, explore, turn, too_early, {}, rest, practise, guide_interval};
+}
+
+// One line, which is written again where it changes: the mark along its bar, the time to the beginning, and
+// the words about the force.
+void ParticipantScreen::guide(const Guidance& now) {
+  constexpr int kBarColumns = 41;
+  const std::string* const words[] = {&texts_.force_below, &texts_.force_within, &texts_.force_above};
+  std::string line;
+  if (now.cued_part) {
+    line = fmt::format("|{:{}}|", "", kBarColumns);
+    line[1 + static_cast<std::size_t>(std::lround(*now.cued_part * (kBarColumns - 1)))] = 'O';
+    line += now.begins_in_s > 0 ? fmt::format(" {:3.1f} s ", now.begins_in_s) : std::string(7, ' ');
+  }
+  if (now.pressed) line += *words[static_cast<int>(*now.pressed)];
+  if (std::exchange(guided_, line) != line) fmt::print(stderr, "\r{}\x1b[K", line);
 }
 
 void ParticipantScreen::welcome() {
@@ -133,6 +155,7 @@ std::optional<int> ParticipantScreen::wait_for_texture(const std::vector<int>& l
   if (key == 0) return std::nullopt;
   const auto number = keys.find(key) + 1;
   if (number > protocol_.choices.size()) return 0;
+  guided_.clear();
   show(texts_.interval);
   return static_cast<int>(number);
 }
@@ -312,7 +335,7 @@ Result<Participant> answers_from(const std::string& file, const schema::Protocol
   const auto wanted = [ratios = answers.ratios](std::size_t at) {
     return at < ratios.size() ? std::optional(ratios[at]) : std::nullopt;
   };
-  return Participant{place, [](int) { return true; }, answer, explore, {}, {}, wanted, {}};
+  return Participant{place, [](int) { return true; }, answer, explore, {}, {}, wanted, {}, {}, {}};
 }
 
 }  // namespace tacto::analysis

@@ -10,8 +10,8 @@
 
 namespace tacto::analysis {
 
-/// Shows the protocol's texts in one language on stderr and reads its keys from the terminal, each without
-/// Enter. Neither a stimulus nor a score is shown. Both references must outlive this.
+/// Shows the protocol's texts in one language and its pacing cue on stderr, and reads its keys from the
+/// terminal, each without Enter. Neither a stimulus nor a score is shown. Both references must outlive this.
 class ParticipantScreen {
  public:
   ParticipantScreen(const schema::Protocol& protocol, schema::ProtocolTexts texts,
@@ -23,6 +23,7 @@ class ParticipantScreen {
   void show_end() const;
 
  private:
+  void guide(const Guidance& now);
   void drain_keys();
   char wait_for(std::string_view keys);
   schema::Result<bool> wait_for_label(const std::string& label);
@@ -38,6 +39,7 @@ class ParticipantScreen {
   const std::function<bool()>& stop_asked_;
   cli::TerminalKeys keys_;
   bool welcomed_ = false;
+  std::string guided_;  // the line of guide() that is shown
 };
 
 /// The answers of a file, one on each line: a word or a key of the protocol; of ordering all of them, from

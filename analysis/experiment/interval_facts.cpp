@@ -33,22 +33,25 @@ struct TickCounter {
 };
 
 // Of the longest stroke.
-std::optional<double> predicted_period_m(const std::string& session) {
+void add_periods(const std::string& session, IntervalFacts& facts) {
   const auto stroke = playback::read_session_stroke(session, 0);
-  if (!stroke) return std::nullopt;
+  if (!stroke) return;
   std::vector<double> position_m;
   for (const playback::SessionRow& row : stroke->rows) position_m.push_back(row.position_m);
-  return spatial_period_m(position_m, stroke->predicted_m);
+  facts.predicted_period_m = spatial_period_m(position_m, stroke->predicted_m);
+  if (!stroke->measured_m.empty()) facts.measured_period_m = spatial_period_m(position_m, stroke->measured_m);
 }
 
-// Precondition: each has a target, of one texture at this gain.
-double predicted_gain_m_per_n(std::span<const playback::PlayedStroke> strokes, double gain_m_per_n) {
-  double predicted_m2 = 0, target_m2 = 0;
+// By the RMS of the displacement that `rms_m` gives of each stroke. Precondition: each has a target, of one
+// texture at this gain.
+double gain_by_m_per_n(std::span<const playback::PlayedStroke> strokes, double gain_m_per_n,
+                       double (*rms_m)(const playback::PlayedStroke&)) {
+  double displacement_m2 = 0, target_m2 = 0;
   for (const playback::PlayedStroke& stroke : strokes) {
-    predicted_m2 += stroke.predicted.rms_m * stroke.predicted.rms_m;
+    displacement_m2 += rms_m(stroke) * rms_m(stroke);
     target_m2 += stroke.target_rms_m * stroke.target_rms_m;
   }
-  return gain_m_per_n * std::sqrt(predicted_m2 / target_m2);
+  return gain_m_per_n * std::sqrt(displacement_m2 / target_m2);
 }
 
 void add_count(std::vector<std::string>& why, std::uint64_t count, int limit, const char* what) {
@@ -115,13 +118,18 @@ Result<IntervalFacts> interval_facts(const std::string& session) {
     add_strokes(report->strokes, facts);
     const schema::SessionHeader& header = reader->header();
     facts.last_gain = report->last_gain;
-    const std::span<const playback::PlayedStroke> strokes = report->strokes;
-    if (header.textures.size() == 1 && facts.predicted_error_db)
+    if (header.textures.size() == 1 && facts.predicted_error_db) {
+      const std::span<const playback::PlayedStroke> all = report->strokes;
+      const auto strokes = report->last_gain == header.initial_gain ? all : all.last(1);
+      const double gain_m_per_n = report->last_gain * header.textures.front().gain_m_per_n;
       facts.predicted_gain_m_per_n =
-          predicted_gain_m_per_n(report->last_gain == header.initial_gain ? strokes : strokes.last(1),
-                                 report->last_gain * header.textures.front().gain_m_per_n);
+          gain_by_m_per_n(strokes, gain_m_per_n, [](const auto& stroke) { return stroke.predicted.rms_m; });
+      if (facts.measured_error_db)
+        facts.measured_gain_m_per_n =
+            gain_by_m_per_n(strokes, gain_m_per_n, [](const auto& stroke) { return stroke.measured->rms_m; });
+    }
   }
-  if (facts.strokes > 0) facts.predicted_period_m = predicted_period_m(session);
+  if (facts.strokes > 0) add_periods(session, facts);
   return facts;
 }
 

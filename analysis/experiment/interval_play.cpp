@@ -31,15 +31,23 @@ bool is_emulated(const std::string& device_uri) {
   return device_uri.starts_with(kSimulated);
 }
 
-// The way after `t` seconds of a stroke that lasts `moving_s` + kTurnS: even acceleration in the first
-// kTurnS, even deceleration in the last.
-double stroke_way_m(double t, double speed_mps, double moving_s) {
-  const double a = speed_mps / kTurnS;
-  if (t < kTurnS) return a * t * t / 2;
-  if (t < moving_s) return speed_mps * (t - kTurnS / 2);
-  const double left = moving_s + kTurnS - t;
-  return speed_mps * moving_s - a * left * left / 2;
-}
+// One stroke of a pace: even acceleration in the first kTurnS, even deceleration in the last.
+struct PacedStroke {
+  double moving_s, whole_s, speed_mps;
+
+  explicit PacedStroke(const schema::ProtocolPace& pace)
+      : moving_s(std::max((pace.to_m - pace.from_m) / pace.speed_mps, kTurnS)),
+        whole_s(moving_s + kTurnS),
+        speed_mps((pace.to_m - pace.from_m) / moving_s) {}
+
+  // The way after `t` seconds of it.
+  double way_m(double t) const {
+    const double a = speed_mps / kTurnS, left = whole_s - t;
+    if (t < kTurnS) return a * t * t / 2;
+    if (t < moving_s) return speed_mps * (t - kTurnS / 2);
+    return speed_mps * moving_s - a * left * left / 2;
+  }
+};
 
 playback::PlayOptions options_of(const schema::Protocol& protocol, const IntervalPlay& play) {
   playback::PlayOptions options;
@@ -53,6 +61,8 @@ playback::PlayOptions options_of(const schema::Protocol& protocol, const Interva
   options.time_s = play.steer ? kLongestSettingS : path.duration_s();
   options.path_repeated = static_cast<bool>(play.steer);
   options.steer = play.steer;
+  options.watch = play.watch;
+  options.follow_force = protocol.normal_force.has_value();
   if (is_emulated(play.device_uri)) options.finger_path = std::move(path);
   return options;
 }
@@ -88,20 +98,30 @@ Result<double> load_time_s(const Study& study, const std::string& code, const st
 }  // namespace
 
 playback::FingerPath paced_path(const schema::ProtocolPace& pace) {
-  const double stroke_m = pace.to_m - pace.from_m;
-  const double moving_s = std::max(stroke_m / pace.speed_mps, kTurnS), whole_s = moving_s + kTurnS;
-  const double speed_mps = stroke_m / moving_s;
+  const PacedStroke paced(pace);
   playback::FingerPath path{{0, kRestS}, {pace.from_m, pace.from_m}};
-  const int knots = static_cast<int>(std::ceil(whole_s / kKnotS));
+  const int knots = static_cast<int>(std::ceil(paced.whole_s / kKnotS));
   for (int stroke = 0; stroke < pace.strokes; ++stroke)
     for (int i = 1; i <= knots; ++i) {
-      const double t = whole_s * i / knots, way = stroke_way_m(t, speed_mps, moving_s);
-      path.time_s.push_back(kRestS + stroke * whole_s + t);
+      const double t = paced.whole_s * i / knots, way = paced.way_m(t);
+      path.time_s.push_back(kRestS + stroke * paced.whole_s + t);
       path.position_m.push_back(stroke % 2 == 0 ? pace.from_m + way : pace.to_m - way);
     }
   path.time_s.push_back(path.time_s.back() + kRestS);
   path.position_m.push_back(path.position_m.back());
   return path;
+}
+
+CuedPlace cued_place(const schema::ProtocolPace& pace, double played_s) {
+  const PacedStroke paced(pace);
+  const double pass_s = 2 * kRestS + pace.strokes * paced.whole_s, passes = std::floor(played_s / pass_s);
+  const double moved_s = played_s - passes * pass_s - kRestS;
+  if (passes < 0) return {};
+  const int before = static_cast<int>(passes) * pace.strokes;
+  const int stroke = std::clamp(static_cast<int>(std::floor(moved_s / paced.whole_s)), 0, pace.strokes - 1);
+  const double way_m = paced.way_m(std::clamp(moved_s - stroke * paced.whole_s, 0.0, paced.whole_s));
+  const double part = way_m / (pace.to_m - pace.from_m);
+  return {(before + stroke) % 2 == 0 ? part : 1 - part, moved_s < 0 ? before : before + stroke + 1};
 }
 
 schema::ProtocolPace pace_of(const schema::Protocol& protocol, const IntervalPlay& play) {
@@ -117,6 +137,12 @@ Result<std::string> play_interval(const schema::Protocol& protocol, const Interv
   const auto outcome = playback::play_once(options, play.stop_asked);
   TACTO_TRY(outcome);
   return outcome->late_s > kLateStartS ? fmt::format("began {:.3f} s late", outcome->late_s) : std::string();
+}
+
+Result<bool> reports_normal_force(const std::string& device_uri) {
+  const auto device = playback::open_player_device(device_uri, {});
+  TACTO_TRY(device);
+  return playback::force_channel(*device->client) != nullptr;
 }
 
 Result<SlowestLoad> check_on_device(const Study& study, const std::string& device_uri) {

@@ -16,6 +16,16 @@ namespace tacto::analysis {
 /// acceleration over 50 ms at both ends of each stroke.
 playback::FingerPath paced_path(const schema::ProtocolPace& pace);
 
+/// Where the finger is to be.
+struct CuedPlace {
+  double part = 0;  ///< of the way from pace.from_m to pace.to_m
+  int stroke = 0;   ///< the last one that has begun, from 1; 0: none
+};
+
+/// At `played_s` of an interval whose finger moves along paced_path(); after its end it repeats that path,
+/// without end, forth and back. Before 0: at the beginning.
+CuedPlace cued_place(const schema::ProtocolPace& pace, double played_s);
+
 struct IntervalPlay {
   std::string device_uri;
   std::string stimulus;  ///< stem of the texture
@@ -26,6 +36,7 @@ struct IntervalPlay {
   /// Of an interval in which the gain is changed, from `ratio` on: PlayOptions::steer. The interval then
   /// lasts until this ends it, or kLongestSettingS; an emulated finger repeats the pace.
   std::function<schema::Result<bool>(playback::Player&, double)> steer = {};
+  std::function<void(playback::Player&, double)> watch = {};  ///< PlayOptions::watch
 };
 
 inline constexpr double kLongestSettingS = 600;
@@ -49,6 +60,9 @@ struct SlowestLoad {
 
   bool keeps_time() const { return !code.empty(); }  ///< of the device
 };
+
+/// Errors: of opening the device.
+schema::Result<bool> reports_normal_force(const std::string& device_uri);
 
 /// Whether the device can play every stimulus, at the largest gain, each of them loaded once, as an interval
 /// loads it. Errors: those of opening the device, of make_program, of the upload; unsuitable: a stimulus

@@ -23,13 +23,14 @@ using schema::Result;
 
 namespace {
 
-constexpr const char *kStretchColumns = "standard_interval\tnominal_stretch\tpredicted_stretch",
+constexpr const char *kStretchColumns =
+                         "standard_interval\tnominal_stretch\tpredicted_stretch\tmeasured_stretch",
                      *kIdentificationColumns = "block\tcondition\tpresented",
-                     *kAmplitudeColumns = "nominal_ratio\tpredicted_ratio",
+                     *kAmplitudeColumns = "nominal_ratio\tpredicted_ratio\tmeasured_ratio",
                      *kOrderingColumns = "explorations", *kFidelityColumns = "block\tsample\tpresented",
-                     *kAdjustmentColumns = "series\tstart_ratio\tpredicted_ratio\tbound";
+                     *kAdjustmentColumns = "series\tstart_ratio\tpredicted_ratio\tmeasured_ratio\tbound";
 constexpr const char* kTrialColumns =
-    "attempt\ttrial\t{}\tpredicted_error_db\tmeasured_error_db\t{}\tanswer\tanswer_s\tdelivered\twhy\t"
+    "attempt\ttrial\t{}\tpredicted_error_db\tmeasured_error_db\t{}{}\tanswer\tanswer_s\tdelivered\twhy\t"
     "simulated\n";
 constexpr const char* kPlacedReason = "real sample, placed by the operator: no session records it";
 
@@ -40,16 +41,6 @@ schema::Task task_of(const Run& run) {
 std::string folder_with(const std::string& stem) {
   const auto folder = std::filesystem::path(stem).parent_path().string();
   return folder.empty() ? "" : folder + "/";
-}
-
-Result<void> check_unchanged(const schema::RunPlanned& plan, const Study& study) {
-  const auto changed = [&](const std::string& path) {
-    return fail(ErrorKind::unsuitable, "has changed since the run began", path,
-                "take it from a copy; a changed protocol is a new study");
-  };
-  if (plan.protocol_sha256 != study.protocol.sha256) return changed(schema::protocol_path(study.stem));
-  if (plan.key_sha256 != study.key.sha256) return changed(schema::key_path(study.stem));
-  return {};
 }
 
 // Reasons that no session contains.
@@ -65,10 +56,11 @@ class Prover {
   Prover(const Run& run, Proof& proof) : run_(run), proof_(proof) {}
 
   void take(const Attempt& attempt) {
-    if (!attempt.answered) ++proof_.interrupted;
-    if (attempt.placed && attempt.answered) ++proof_.placed;
+    const bool practice = attempt.trial.is_practice();  // its sessions are proven, too
+    if (!practice && !attempt.answered) ++proof_.interrupted;
+    if (!practice && attempt.placed && attempt.answered) ++proof_.placed;
     if (!attempt.judged) return;
-    if (!attempt.judged->delivered) ++proof_.failed;
+    if (!practice && !attempt.judged->delivered) ++proof_.failed;
     std::vector<schema::IntervalFacts> facts;
     for (std::size_t i = 0; i < attempt.judged->intervals.size(); ++i)
       if (auto again = facts_again(attempt, i)) facts.push_back(std::move(*again));
@@ -87,8 +79,11 @@ class Prover {
     }
     if (!facts->simulated.empty()) proof_.simulated = facts->simulated;
     const auto replayed = playback::replay_session(session);
+    const bool damaged = !replayed || replayed->first_difference || replayed->damaged_at;
     if (replayed && replayed->same())
       ++proof_.same_to_the_bit;
+    else if (!damaged && !attempt.judged->delivered)
+      ++proof_.same_until_lost;
     else
       proof_.faults.push_back(session + ": computed again, its drive is not the same to the bit");
     return std::move(*facts);
@@ -114,18 +109,23 @@ class Prover {
       compare_ratio(again);
     if (task_of(run_) != schema::Task::two_interval) return;
     const double nominal = stimulus_of(run_.study.key, attempt.trial.code).stretch;
-    if (const auto predicted = predicted_stretch(again))
-      proof_.stretch_error = std::max(proof_.stretch_error.value_or(0), std::abs(*predicted - nominal));
-    else
+    take_error(stretch_by(Displacement::measured, again), nominal, proof_.measured_stretch_error);
+    if (!take_error(stretch_by(Displacement::predicted, again), nominal, proof_.stretch_error))
       proof_.faults.push_back(fmt::format("attempt {}: its sessions have no period", attempt.begun.attempt));
+  }
+
+  // False: the value is unknown.
+  static bool take_error(const std::optional<double>& value, double expected,
+                         std::optional<double>& largest) {
+    if (value) largest = std::max(largest.value_or(0), std::abs(*value - expected));
+    return value.has_value();
   }
 
   void compare_ratio(const Attempt& attempt) {
     const double asked = task_of(run_) == schema::Task::amplitude ? attempt.trial.ratio
                                                                   : accepted_ratio(attempt).value_or(NAN);
-    if (const auto predicted = predicted_ratio(run_, attempt))
-      proof_.ratio_error = std::max(proof_.ratio_error.value_or(0), std::abs(*predicted - asked));
-    else
+    take_error(ratio_by(Displacement::measured, run_, attempt), asked, proof_.measured_ratio_error);
+    if (!take_error(ratio_by(Displacement::predicted, run_, attempt), asked, proof_.ratio_error))
       proof_.faults.push_back(
           fmt::format("attempt {}: its session does not say the gain", attempt.begun.attempt));
   }
@@ -158,12 +158,16 @@ std::string bound_cell(const Run& run, const Attempt& attempt) {
 std::string cells_of_task(const Run& run, const Attempt& attempt) {
   if (task_of(run) == schema::Task::ordering) return fmt::format("{}", attempt.begun.stimuli.size());
   const schema::CodedStimulus& stimulus = stimulus_of(run.study.key, attempt.trial.code);
-  const auto ratio = attempt.judged ? predicted_ratio(run, attempt) : std::nullopt;
+  const auto by = [&](Displacement which) {
+    if (!attempt.judged) return std::string();
+    return number_cell(task_of(run) == schema::Task::two_interval ? stretch_by(which, attempt)
+                                                                  : ratio_by(which, run, attempt));
+  };
+  const std::string both = by(Displacement::predicted) + "\t" + by(Displacement::measured);
   if (task_of(run) == schema::Task::adjustment)
     return fmt::format("{}\t{:.9g}\t{}\t{}", attempt.trial.is_ascending() ? "ascending" : "descending",
-                       attempt.trial.ratio, number_cell(ratio), bound_cell(run, attempt));
-  if (task_of(run) == schema::Task::amplitude)
-    return fmt::format("{:.9g}\t{}", attempt.trial.ratio, number_cell(ratio));
+                       attempt.trial.ratio, both, bound_cell(run, attempt));
+  if (task_of(run) == schema::Task::amplitude) return fmt::format("{:.9g}\t{}", attempt.trial.ratio, both);
   if (task_of(run) == schema::Task::fidelity)
     return fmt::format("{}\t{}\t{}", attempt.trial.block,
                        stimulus_of(run.study.key, attempt.trial.sample).name, stimulus.name);
@@ -171,9 +175,7 @@ std::string cells_of_task(const Run& run, const Attempt& attempt) {
     return fmt::format("{}\t{}\t{}", attempt.trial.block,
                        attempt.trial.real ? schema::kRealCondition : schema::kVirtualCondition,
                        stimulus.name);
-  const auto predicted = attempt.judged ? predicted_stretch(attempt) : std::nullopt;
-  return fmt::format("{}\t{:.9g}\t{}", attempt.trial.standard_comes_first() ? 1 : 2, stimulus.stretch,
-                     number_cell(predicted));
+  return fmt::format("{}\t{:.9g}\t{}", attempt.trial.standard_comes_first() ? 1 : 2, stimulus.stretch, both);
 }
 
 // The answer as a number, or what stands for one.
@@ -187,12 +189,24 @@ std::string answer_cell(const Run& run, const Attempt& attempt) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
+// The smallest share of the intervals.
+std::string force_cell(const Attempt& attempt) {
+  if (!attempt.judged) return "";
+  double least = 1;
+  for (const std::optional<double>& share : attempt.judged->force_within) {
+    if (!share) return "unknown";
+    least = std::min(least, *share);
+  }
+  return fmt::format("{:.3f}", least);
+}
+
 std::string trial_row(const Run& run, const Attempt& attempt) {
   std::string row =
       fmt::format("{}\t{}\t{}", attempt.begun.attempt, attempt.trial.name(), cells_of_task(run, attempt));
   for (const auto member :
        {&schema::IntervalFacts::predicted_error_db, &schema::IntervalFacts::measured_error_db})
     row += "\t" + (attempt.judged ? level_cell(attempt, member) : "");
+  if (run.study.protocol.normal_force) row += "\t" + force_cell(attempt);
   if (const auto& answered = attempt.answered)
     row += fmt::format("\t{}\t{}\t{:.3f}", answer_cell(run, attempt), answered->word, answered->answer_s);
   else
@@ -207,6 +221,16 @@ std::string trial_row(const Run& run, const Attempt& attempt) {
 }
 
 }  // namespace
+
+Result<void> check_unchanged(const schema::RunPlanned& plan, const Study& study) {
+  const auto changed = [&](const std::string& path) {
+    return fail(ErrorKind::unsuitable, fmt::format("has changed since the run of {} began", plan.participant),
+                path, "take it from a copy; a changed protocol is a new study (new -o)");
+  };
+  if (plan.protocol_sha256 != study.protocol.sha256) return changed(schema::protocol_path(study.stem));
+  if (plan.key_sha256 != study.key.sha256) return changed(schema::key_path(study.stem));
+  return {};
+}
 
 Result<Run> read_run(const std::string& name) {
   auto journal = schema::read_journal(schema::journal_path(name));
@@ -230,28 +254,32 @@ Proof prove(const Run& run, const std::function<void(double)>& tell) {
   Proof proof;
   proof.trials = run.queue.trials();
   proof.ratio_tolerance = kRatioTolerance * run.study.protocol.largest_ratio;
-  proof.attempts = run.queue.attempts().size();
+  proof.attempts = run.queue.tried();
   Prover prover(run, proof);
   double done = 0;
   for (const Attempt& attempt : run.queue.attempts()) {
     prover.take(attempt);
-    tell(++done / static_cast<double>(proof.attempts));
+    tell(++done / static_cast<double>(run.queue.attempts().size()));
   }
   return proof;
 }
 
-std::optional<double> predicted_stretch(const Attempt& attempt) {
+std::optional<double> stretch_by(Displacement which, const Attempt& attempt) {
   if (attempt.judged->intervals.size() != 2) return std::nullopt;
+  const auto period_m = which == Displacement::predicted ? &schema::IntervalFacts::predicted_period_m
+                                                         : &schema::IntervalFacts::measured_period_m;
   const std::size_t standard = attempt.trial.standard_comes_first() ? 0 : 1;
-  const auto& of_standard = attempt.judged->intervals[standard].predicted_period_m;
-  const auto& of_stretched = attempt.judged->intervals[1 - standard].predicted_period_m;
+  const auto& of_standard = attempt.judged->intervals[standard].*period_m;
+  const auto& of_stretched = attempt.judged->intervals[1 - standard].*period_m;
   if (!of_standard || !of_stretched) return std::nullopt;
   return *of_stretched / *of_standard - 1;
 }
 
-std::optional<double> predicted_ratio(const Run& run, const Attempt& attempt) {
+std::optional<double> ratio_by(Displacement which, const Run& run, const Attempt& attempt) {
   if (attempt.judged->intervals.empty()) return std::nullopt;
-  const auto& gain_m_per_n = attempt.judged->intervals.back().predicted_gain_m_per_n;
+  const schema::IntervalFacts& last = attempt.judged->intervals.back();
+  const auto& gain_m_per_n =
+      which == Displacement::predicted ? last.predicted_gain_m_per_n : last.measured_gain_m_per_n;
   if (!gain_m_per_n) return std::nullopt;
   return *gain_m_per_n / run.study.protocol.gain_m_per_n;
 }
@@ -280,8 +308,10 @@ std::string trials_table(const Run& run) {
       {kAmplitudeColumns, "rating"},          {kOrderingColumns, "order"},
       {kAdjustmentColumns, "accepted_ratio"}, {kFidelityColumns, "answer_choice"}};
   const auto& [columns, answer] = kColumnsOfTask[static_cast<int>(task_of(run))];
-  std::string table = fmt::format(kTrialColumns, columns, answer);
-  for (const Attempt& attempt : run.queue.attempts()) table += trial_row(run, attempt) + "\n";
+  const char* const force = run.study.protocol.normal_force ? "force_within\t" : "";
+  std::string table = fmt::format(kTrialColumns, columns, force, answer);
+  for (const Attempt& attempt : run.queue.attempts())
+    if (!attempt.trial.is_practice()) table += trial_row(run, attempt) + "\n";
   return table;
 }
 

@@ -24,6 +24,8 @@ struct Run {
 /// read_study; unsuitable: protocol or key have changed since the run began, an entry that does not follow, a
 /// participant who has withdrawn.
 schema::Result<Run> read_run(const std::string& name);
+/// Errors: unsuitable: the study's protocol or key is another one than that of the run.
+schema::Result<void> check_unchanged(const schema::RunPlanned& plan, const Study& study);
 /// The same for a journal that was read already.
 schema::Result<Run> run_of(const std::string& stem, schema::Journal journal);
 
@@ -37,18 +39,22 @@ struct Proof {
   std::size_t delivered = 0;                              ///< with an answer
   std::size_t attempts = 0, interrupted = 0, failed = 0;  ///< of the attempts: without answer; not delivered
   std::size_t sessions = 0, same_to_the_bit = 0;
+  /// Of attempts that were not delivered: ticks are missing, and the drive before them is the same.
+  std::size_t same_until_lost = 0;
   std::size_t placed = 0;  ///< answered real samples: what they were is the operator's word
   /// Largest |predicted - nominal| of those delivered; of two intervals.
   std::optional<double> stretch_error;
   /// Largest |predicted - asked| of those delivered, of amplitude; |predicted - accepted| of adjustment.
   std::optional<double> ratio_error;
+  /// The same of what the tray's sensor measured, of attempts that have it: printed, and no part of holds().
+  std::optional<double> measured_stretch_error, measured_ratio_error;
   double ratio_tolerance = 0;
   std::vector<std::string> faults;  ///< what differs from the journal, session by session
   std::string simulated;
 
   bool holds() const {
-    return faults.empty() && same_to_the_bit == sessions && stretch_error.value_or(0) <= kStretchTolerance &&
-           ratio_error.value_or(0) <= ratio_tolerance;
+    return faults.empty() && same_to_the_bit + same_until_lost == sessions &&
+           stretch_error.value_or(0) <= kStretchTolerance && ratio_error.value_or(0) <= ratio_tolerance;
   }
 };
 
@@ -56,13 +62,16 @@ struct Proof {
 /// `tell` receives 0 to 1.
 Proof prove(const Run& run, const std::function<void(double)>& tell);
 
-/// Of a trial of two intervals: predicted period of the stretched stimulus over that of the standard, minus
-/// 1; none: a period is unknown.
-std::optional<double> predicted_stretch(const Attempt& attempt);
+/// The displacement that the transducer's model predicts, or that the tray's sensor measured.
+enum class Displacement { predicted, measured };
 
-/// Of a trial of amplitude or adjustment: the gain that the session predicts, over that of the protocol;
-/// none: unknown.
-std::optional<double> predicted_ratio(const Run& run, const Attempt& attempt);
+/// Of a trial of two intervals: period of the stretched stimulus over that of the standard, minus 1; none: a
+/// period is unknown.
+std::optional<double> stretch_by(Displacement which, const Attempt& attempt);
+
+/// Of a trial of amplitude or adjustment: the gain by the displacement, over that of the protocol; none:
+/// unknown.
+std::optional<double> ratio_by(Displacement which, const Run& run, const Attempt& attempt);
 
 /// Of an adjustment: the last gain of its session, over that of the protocol; none: unknown.
 std::optional<double> accepted_ratio(const Attempt& attempt);
@@ -73,7 +82,7 @@ int rating_of(const Attempt& attempt);
 /// The observer of the run and what it got; empty: a person answered.
 std::string observer_in_words(const Run& run);
 
-/// STUDY-P07.trials.tsv: a row for each attempt. Its columns are those of the task.
+/// STUDY-P07.trials.tsv: a row for each attempt that is no practice. Its columns are those of the task.
 std::string trials_table(const Run& run);
 
 }  // namespace tacto::analysis

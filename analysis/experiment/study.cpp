@@ -209,6 +209,9 @@ schema::Protocol stretch_protocol(const std::string& seed, schema::LevelMethod m
   protocol.begin_key = " ";
   protocol.most_attempts = 3;
   protocol.participants = 8;
+  protocol.analysis =
+      "Of each participant PSE and JND, which is the Weber fraction, by a cumulative normal function with "
+      "lapses; over participants the geometric mean of the JNDs.";
   // At 45 mm/s the longest period, 2.99 mm, is at 15.04 Hz: still in the band from 15 Hz.
   protocol.delivered = {0, 0, 10, 0, -40, -20, 0.045, 0.085};
   schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
@@ -231,6 +234,8 @@ Result<schema::Protocol> identification_protocol(const std::string& seed, const 
   schema::Protocol protocol = stretch_protocol(seed);
   schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
   protocol.task = schema::Task::identification;
+  protocol.analysis =
+      "Of each participant and condition success and transmitted information; over participants their means.";
   TACTO_TRY(fit_to_textures(protocol, textures, 1));
   protocol.comparisons = comparisons;
   protocol.conditions = {schema::kRealCondition, schema::kVirtualCondition};
@@ -254,6 +259,7 @@ Result<schema::Protocol> amplitude_protocol(const std::string& seed, const Named
   schema::Protocol protocol = stretch_protocol(seed);
   schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
   protocol.task = schema::Task::amplitude;
+  protocol.analysis = "Of each participant the fitted match; over participants its geometric mean.";
   protocol.largest_ratio = 2;
   TACTO_TRY(fit_to_textures(protocol, textures, protocol.largest_ratio));
   protocol.repetitions = 60;
@@ -273,6 +279,8 @@ Result<schema::Protocol> ordering_protocol(const std::string& seed, const NamedT
   schema::Protocol protocol = stretch_protocol(seed);
   schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
   protocol.task = schema::Task::ordering;
+  protocol.analysis =
+      "Mean ranks over participants, their Kendall's W, and their correlation with the intended parameter.";
   TACTO_TRY(fit_to_textures(protocol, textures, 1));
   protocol.repetitions = 3;
   for (const std::string& name : protocol.standards) {
@@ -307,6 +315,9 @@ Result<schema::Protocol> adjustment_protocol(const std::string& seed, const Name
   schema::Protocol protocol = stretch_protocol(seed);
   schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
   protocol.task = schema::Task::adjustment;
+  protocol.analysis =
+      "Of each participant the geometric mean of the accepted ratios, of ascending and of descending series; "
+      "over participants the mean of both, and their difference.";
   protocol.goal = goal;
   protocol.smallest_ratio = 0.05, protocol.largest_ratio = 4, protocol.step_db = 1;
   TACTO_TRY(fit_to_textures(protocol, textures, protocol.largest_ratio));
@@ -336,6 +347,9 @@ Result<schema::Protocol> fidelity_protocol(const std::string& seed, const NamedT
   schema::Protocol protocol = stretch_protocol(seed);
   schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
   protocol.task = schema::Task::fidelity;
+  protocol.analysis =
+      "Of each participant d' of 'the same' beside the own and beside another sample; over participants its "
+      "mean.";
   TACTO_TRY(fit_to_textures(protocol, textures, 1));
   const double others = static_cast<double>(textures.size()) - 1;
   protocol.repetitions = static_cast<int>(std::max(1.0, std::round(10 / others)));
@@ -347,6 +361,22 @@ Result<schema::Protocol> fidelity_protocol(const std::string& seed, const NamedT
   texts.question = "Feel the sample beside it. Is it the same texture? f: the same, j: a different one.";
   texts.place = "For the operator: put this sample beside the device, type its label and press Enter.";
   return protocol;
+}
+
+void add_pacing_cue(schema::Protocol& protocol) {
+  constexpr const char* kFollowMark = " Move as the mark O moves.";
+  schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
+  protocol.pace.cue = true;
+  texts.interval += kFollowMark;
+  if (protocol.task == schema::Task::adjustment) texts.question += kFollowMark;
+}
+
+void add_normal_force(schema::Protocol& protocol, const schema::ForceRange& range) {
+  schema::ProtocolTexts& texts = protocol.texts[schema::kUsualLanguage];
+  protocol.normal_force = range;
+  texts.force_below = "Press harder.";
+  texts.force_within = "The force is right.";
+  texts.force_above = "Press less hard.";
 }
 
 Result<Study> write_study(const std::string& stem, const schema::Protocol& protocol,
@@ -411,10 +441,12 @@ Result<std::vector<std::string>> lost_band(const Study& study) {
       least = std::min(least, spatial::band_kept_percent(*texture, speed_mps, band));
     }
     if (least < playback::kLeastPowerPercent)
-      notes.push_back(fmt::format("at {} the band of {} to {} keeps only {:.3g} % of a stimulus' power",
-                                  schema::for_people(speed_mps, schema::Dimension::speed),
-                                  schema::for_people(band.low_hz, schema::Dimension::frequency),
-                                  schema::for_people(band.high_hz, schema::Dimension::frequency), least));
+      notes.push_back(
+          fmt::format("at {} the band of {} to {} keeps only {:.3g} % ({:.1f} dB) of a stimulus' power",
+                      schema::for_people(speed_mps, schema::Dimension::speed),
+                      schema::for_people(band.low_hz, schema::Dimension::frequency),
+                      schema::for_people(band.high_hz, schema::Dimension::frequency), least,
+                      10 * std::log10(std::max(least, 1e-28) / 100)));
   }
   return notes;
 }

@@ -65,6 +65,12 @@ schema::Result<schema::Protocol> adjustment_protocol(const std::string& seed, co
 /// beside the others. Path and gain as of an identification. Errors: as identification_protocol.
 schema::Result<schema::Protocol> fidelity_protocol(const std::string& seed, const NamedTextures& textures);
 
+/// Adds the pacing cue to a protocol, and says so in its texts in kUsualLanguage.
+void add_pacing_cue(schema::Protocol& protocol);
+
+/// Adds a range of normal force to a protocol, with its texts in kUsualLanguage.
+void add_normal_force(schema::Protocol& protocol, const schema::ForceRange& range);
+
 /// Makes the stimuli (spatial/transform; or of `textures`, without what names their surface) and writes all
 /// files. Errors: usage, if there is one of them and it is to be kept, or a folder of another kind;
 /// cannot_write, also if the study has runs; those of stretching.

@@ -131,7 +131,7 @@ Result<AnswersTable> study_answers(const std::string& name, bool unblind) {
   }
   table.pse = known_pse(runs->front().study.protocol);
   table.columns.by = {"participant"};
-  table.columns.level = table.level_name = "stretch";
+  table.columns.level = table.level_name = "stretch of the period (0.3: 30 % longer)";
   table.columns.yes = "seemed longer";
   table.simulated = fmt::format("{}", fmt::join(simulated, "; "));
   return table;

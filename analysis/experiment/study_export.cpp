@@ -41,12 +41,18 @@ constexpr Column kColumns[] = {
     {"bound", "lower or upper: the accepted gain is the end of the range, and so a bound", ""},
     {"nominal_ratio", "gain of the trial over that at which the displacement is the real sample's", "1"},
     {"predicted_ratio", "the same of the displacement that the transducer's model predicts", "1"},
+    {"measured_ratio", "the same of the displacement that the tray's sensor measured", "1"},
     {"rating", "from -3, much weaker than the real sample, to 3, much stronger", ""},
     {"standard_interval", "interval in which the standard was played, 1 or 2", ""},
     {"nominal_stretch", "period of the stretched stimulus over that of the standard, minus 1", "1"},
     {"predicted_stretch", "the same of the displacement that the transducer's model predicts", "1"},
+    {"measured_stretch", "the same of the displacement that the tray's sensor measured", "1"},
     {"predicted_error_db", "RMS of predicted displacement - target of the worst stroke, re the target", "dB"},
     {"measured_error_db", "the same of the displacement that the tray's sensor measured", "dB"},
+    {"force_within",
+     "share of the time with a normal force within the protocol's range, of the interval with the smallest "
+     "share; unknown: the device does not report it. No session records it",
+     "1"},
     {"answer_interval", "interval whose stimulus seemed to have the smaller period, 1 or 2", ""},
     {"answer", "the answer in the protocol's word; of an order the codes", ""},
     {"answer_s", "time from the question to the answer; 0 of an observer or a file", "s"},
@@ -141,6 +147,9 @@ bool is_right(const Run& run, const Attempt& attempt) {
 // fidelity.
 std::vector<std::vector<std::string>> rows_of(const Run& run) {
   std::vector<std::vector<std::string>> rows;
+  std::vector<const Attempt*> attempts = {nullptr};  // of each line
+  for (const Attempt& each : run.queue.attempts())
+    if (!each.trial.is_practice()) attempts.push_back(&each);
   std::vector<std::string> lines = split(trials_table(run), '\n');
   lines.pop_back();
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -149,7 +158,7 @@ std::vector<std::vector<std::string>> rows_of(const Run& run) {
     if (!is_two_interval(run.study.protocol) && task != schema::Task::identification &&
         task != schema::Task::fidelity)
       continue;
-    const Attempt* const attempt = i > 0 ? &run.queue.attempts()[i - 1] : nullptr;
+    const Attempt* const attempt = attempts[i];
     const bool answered = attempt != nullptr && attempt->answered;
     const char* const name = is_two_interval(run.study.protocol) ? "seemed_longer" : "correct";
     rows.back().emplace_back(attempt == nullptr ? name

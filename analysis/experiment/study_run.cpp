@@ -46,7 +46,7 @@ class LiveSteps {
             [this] { return rest(); },
             [this](const StudyTrial& trial) {
               const double longest_s = run_.study.protocol.longest_s;
-              return longest_s > 0 && block_s(trial.block) >= longest_s;
+              return !trial.is_practice() && longest_s > 0 && block_s(trial.block) >= longest_s;
             }};
   }
 
@@ -125,6 +125,7 @@ class LiveSteps {
 
   Result<std::optional<schema::JournalEntry>> present(const Attempt& attempt) {
     request_.tell(static_cast<double>(run_.queue.counted()) / static_cast<double>(run_.queue.trials()));
+    if (attempt.trial.is_practice() && request_.participant.practise) request_.participant.practise();
     if (task() == schema::Task::ordering) return explore(attempt);
     if (task() == schema::Task::fidelity) {
       const auto beside = place_beside(attempt);
@@ -179,15 +180,22 @@ class LiveSteps {
     if (request_.participant.too_early && task() == schema::Task::adjustment && accepted &&
         played.facts.back().strokes < strokes)
       request_.participant.too_early();
-    return judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums, run_.study.protocol,
-                           played.late);
+    return judgement(attempt, std::move(played));
   }
 
   // The intervals of an attempt, in order, and reasons that are in no session.
   struct IntervalsPlayed {
     std::vector<schema::IntervalFacts> facts;
     std::vector<std::string> sums, late;
+    std::vector<std::optional<double>> force_within;  // if the protocol has a range
   };
+
+  schema::DeliveryJudged judgement(const Attempt& attempt, IntervalsPlayed played) const {
+    auto judged = judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums,
+                                  run_.study.protocol, played.late);
+    judged.force_within = std::move(played.force_within);
+    return judged;
+  }
 
   IntervalPlay interval_of(const Attempt& attempt, std::size_t i) const {
     IntervalPlay interval{request_.device_uri,
@@ -209,11 +217,14 @@ class LiveSteps {
     return play_interval_of(interval_of(attempt, i), played);
   }
 
-  Result<bool> play_interval_of(const IntervalPlay& interval, IntervalsPlayed& played) const {
+  Result<bool> play_interval_of(IntervalPlay interval, IntervalsPlayed& played) const {
+    IntervalGuide guide(run_.study.protocol, request_.participant.guide);
+    interval.watch = std::ref(guide);
     const auto late = play_interval(run_.study.protocol, interval);
     TACTO_TRY(late);
     if (request_.stop_asked()) return false;
     if (!late->empty()) played.late.push_back(*late);
+    if (run_.study.protocol.normal_force) played.force_within.push_back(guide.force_within());
     return true;
   }
 
@@ -254,7 +265,7 @@ class LiveSteps {
     };
     LiveSetting setting(protocol, interval.session, pass_s, attempt.trial.ratio, asked_at, ask);
     interval.steer = std::ref(setting);
-    const auto goes_on = play_interval_of(interval, played);
+    const auto goes_on = play_interval_of(std::move(interval), played);
     if (goes_on && !setting.accepted()) played.late.emplace_back(kNotAccepted);
     return goes_on;
   }
@@ -285,8 +296,7 @@ class LiveSteps {
           reasons_against(played.facts.back(), run_.study.protocol, played.sums.back()).empty();
       tries[chosen] = delivered ? 0 : std::max(tries[chosen] - 1, 0);
     }
-    return judged_delivery(attempt.begun.attempt, std::move(played.facts), played.sums, run_.study.protocol,
-                           played.late);
+    return judgement(attempt, std::move(played));
   }
 
   // By the displacement that the sessions predict; the mean level of a texture's intervals.
@@ -355,7 +365,7 @@ class LiveSteps {
     }
     const auto& intervals = attempt.judged->intervals;
     if (task() == schema::Task::amplitude) {
-      const double ratio = predicted_ratio(run_, attempt).value_or(0);
+      const double ratio = ratio_by(Displacement::predicted, run_, attempt).value_or(0);
       return GivenAnswer{rated(*request_.observer, place(attempt), ratio) + schema::kLargestRating + 1, 0};
     }
     const int choice = smaller_period(*request_.observer, place(attempt),
@@ -383,14 +393,16 @@ class LiveSteps {
 };
 
 // The row of block orders that the fewest complete runs have. A journal that cannot be read is of no
-// complete run.
-int next_order(const Study& study) {
+// complete run. Errors: unsuitable: a run of another protocol or key, with which this one could not be
+// analysed.
+Result<int> next_order(const Study& study) {
   std::vector<int> complete(static_cast<std::size_t>(study.protocol.task == schema::Task::identification
                                                          ? williams_rows(study.protocol.conditions.size())
                                                          : 1));
   for (const std::string& stem : runs_of(study)) {
     const auto journal = schema::read_journal(schema::journal_path(stem));
     if (!journal) continue;
+    TACTO_TRY(check_unchanged(journal->plan, study));
     const auto row = static_cast<std::size_t>(journal->plan.order) - 1;
     if (std::holds_alternative<schema::RunEnded>(journal->entries.back()) && row < complete.size())
       ++complete[row];
@@ -437,18 +449,19 @@ Result<Run> begin_run(const std::string& study_name, const std::string& particip
   TACTO_TRY(check_observer(study->protocol, request.observer));
   const auto masking_level = checked_masking_level(study->protocol, request.masking_level_db);
   TACTO_TRY(masking_level);
+  const auto order = next_order(*study);
+  TACTO_TRY(order);
   const auto slowest = check_on_device(*study, request.device_uri);
   TACTO_TRY(slowest);
-  const int order = next_order(*study);
   const std::string stem = study->run(participant);
   auto file = schema::JournalFile::create(schema::journal_path(stem));
   TACTO_TRY(file);
   schema::RunPlanned plan{
       study->name(),           participant,           study->protocol.sha256,
       study->key.sha256,       request.device_uri,    request.observer ? request.observer->text : "",
-      schema::creation_time(), std::string(kCreator), order,
+      schema::creation_time(), std::string(kCreator), *order,
       request.language,        *masking_level};
-  TrialQueue queue = queue_of_run(study->protocol, study->key, participant, order);
+  TrialQueue queue = queue_of_run(study->protocol, study->key, participant, *order);
   Run run{stem, {plan, {}, 0}, std::move(*study), std::move(queue)};
   TACTO_TRY(go_on(run, *file, request, slowest->keeps_time(), plan));
   return run;
@@ -461,7 +474,8 @@ Result<Run> resume_run(const std::string& name, RunRequest request) {
   auto run = run_of(schema::run_stem(name), std::move(journal));
   TACTO_TRY(run);
   if (run->queue.has_ended())
-    return fail(ErrorKind::usage, "this run is complete", schema::journal_path(name), "");
+    return fail(ErrorKind::usage, "this run is complete", schema::journal_path(name),
+                "prove it, or analyse the study");
   const schema::RunPlanned& plan = run->journal.plan;
   if (request.device_uri.empty()) request.device_uri = plan.device;
   request.observer.reset();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/experiment/interval_guide.hpp"
 #include "analysis/experiment/observer.hpp"
 #include "analysis/experiment/proof.hpp"
 
@@ -40,6 +41,10 @@ struct Participant {
   std::function<std::optional<double>(std::size_t number)> wanted;
   /// Of a person: a break, until a key is pressed; false: the run ends.
   std::function<bool()> rest;
+  /// Of a person: says that a practice trial comes.
+  std::function<void()> practise = {};
+  /// Of a person: shows how the finger is to move, at each message of ticks.
+  IntervalGuide::Show guide = {};
 };
 
 struct RunRequest {

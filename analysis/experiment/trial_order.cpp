@@ -124,6 +124,14 @@ std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const s
   return trials;
 }
 
+std::vector<StudyTrial> practice_trials(const std::vector<StudyTrial>& trials, int count) {
+  const auto end = std::ranges::find_if(
+      trials, [&](const StudyTrial& each) { return each.block != trials.front().block; });
+  std::vector<StudyTrial> practice(end - std::min<std::ptrdiff_t>(end - trials.begin(), count), end);
+  for (StudyTrial& trial : practice) trial.block = 0;
+  return practice;
+}
+
 std::vector<schema::CodedStimulus> stimuli_by_code(const schema::Protocol& protocol) {
   std::vector<schema::CodedStimulus> stimuli;
   for (const std::string& name : protocol.standards) stimuli.push_back({{}, 0, name, {}});

@@ -12,7 +12,7 @@ namespace tacto::analysis {
 struct StudyTrial {
   std::string code;  ///< of the stretched stimulus, the comparison or the standard; of ordering "all"
   int repetition = 0;
-  int block = 1;
+  int block = 1;            ///< 0: practice
   bool real = false;        ///< a sample on the bench, instead of playback
   double ratio = 1;         ///< its gain over that of the protocol; of adjustment, the gain at its start
   bool adaptive = false;    ///< its code is chosen when its turn comes
@@ -21,6 +21,7 @@ struct StudyTrial {
 
   std::string name() const { return code + "." + std::to_string(repetition); }
   bool standard_comes_first() const { return repetition % 2 == 1; }
+  bool is_practice() const { return block == 0; }
   bool is_ascending() const { return repetition % 2 == 1; }  ///< of adjustment: it begins at low gains
 };
 
@@ -35,6 +36,10 @@ struct StudyTrial {
 /// sorted by the SHA-256 of SEED/PARTICIPANT/sample/CODE.
 std::vector<StudyTrial> ordered_trials(const schema::Protocol& protocol, const schema::ProtocolKey& key,
                                        const std::string& participant, int order);
+
+/// The last `count` of the first block, as block 0: those that come latest again. Precondition: `trials`
+/// begins with that block.
+std::vector<StudyTrial> practice_trials(const std::vector<StudyTrial>& trials, int count);
 
 /// The stimuli of a protocol, in the order of their codes K1, K2 ...: sorted by the SHA-256 of
 /// SEED/code/STRETCH, with the stretch as in 0.3, or of SEED/code/NAME. Without their sums.

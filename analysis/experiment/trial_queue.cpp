@@ -37,7 +37,8 @@ std::vector<std::string> codes_in(const std::string& word) {
 TrialQueue::TrialQueue(std::vector<StudyTrial> order, int most_attempts, ChooseCode choose)
     : queue_(order.begin(), order.end()),
       choose_(std::move(choose)),
-      trials_(order.size()),
+      trials_(order.size() -
+              static_cast<std::size_t>(std::ranges::count_if(order, &StudyTrial::is_practice))),
       most_attempts_(most_attempts) {}
 
 Result<void> TrialQueue::take(const schema::JournalEntry& entry) {
@@ -89,6 +90,11 @@ std::size_t TrialQueue::counted() const {
   return static_cast<std::size_t>(std::ranges::count_if(attempts_, &Attempt::counts));
 }
 
+std::size_t TrialQueue::tried() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(attempts_, [](const Attempt& each) { return !each.trial.is_practice(); }));
+}
+
 std::size_t TrialQueue::placed() const {
   return static_cast<std::size_t>(
       std::ranges::count_if(attempts_, [](const Attempt& each) { return each.placed && each.answered; }));
@@ -131,8 +137,9 @@ Result<void> TrialQueue::explore(const schema::StimulusExplored& explored) {
 void TrialQueue::close() {
   const Attempt& attempt = attempts_.back();
   open_ = false;
-  if (attempt.counts()) return;
-  const bool failed = attempt.judged && !attempt.judged->delivered;
+  const bool practice = attempt.trial.is_practice();
+  if (attempt.counts() || (practice && attempt.answered)) return;
+  const bool failed = !practice && attempt.judged && !attempt.judged->delivered;
   // A trial of an adaptive method comes again with another code.
   const std::string trial =
       attempt.trial.adaptive ? fmt::format("{}", attempt.trial.repetition) : attempt.begun.trial;

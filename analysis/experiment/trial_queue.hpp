@@ -21,8 +21,11 @@ struct Attempt {
   std::optional<schema::SamplePlaced> placed;
   std::optional<schema::AttemptAnswered> answered;
 
-  /// Delivered, or a real sample of an identification that was placed; and answered.
-  bool counts() const { return answered && (trial.real ? placed.has_value() : judged && judged->delivered); }
+  /// No practice; delivered, or a real sample of an identification that was placed; and answered.
+  bool counts() const {
+    return !trial.is_practice() && answered &&
+           (trial.real ? placed.has_value() : judged && judged->delivered);
+  }
 };
 
 /// The codes of an order, from the word of its answer.
@@ -31,7 +34,8 @@ std::vector<std::string> codes_in(const std::string& word);
 /// Trials in order, without the rest of a block whose time is over. One that has no answer because the run
 /// was interrupted comes again at once, as often as that happens: so a file of answers fits as it did before.
 /// One that was answered but not delivered comes again at the end of its block. After `most_attempts`
-/// attempts that were judged not delivered a trial is abandoned.
+/// attempts that were judged not delivered a trial is abandoned. A practice trial that was answered comes no
+/// more.
 class TrialQueue {
  public:
   /// Of an adaptive method: the code of the next trial, from all attempts.
@@ -48,6 +52,8 @@ class TrialQueue {
   bool has_ended() const { return ended_; }
   const std::vector<Attempt>& attempts() const { return attempts_; }
   std::size_t trials() const { return trials_; }
+  /// Attempts of these trials: without practice.
+  std::size_t tried() const;
   std::size_t counted() const;
   std::size_t answers() const;
   /// Answered attempts for which a real sample was placed.

@@ -54,7 +54,10 @@ TrialQueue queue_of_run(const schema::Protocol& protocol, const schema::Protocol
   const auto choose = [protocol, key](const std::vector<Attempt>& attempts) {
     return adaptive_code(protocol, key, attempts);
   };
-  return TrialQueue(ordered_trials(protocol, key, participant, order), protocol.most_attempts, choose);
+  std::vector<StudyTrial> trials = ordered_trials(protocol, key, participant, order);
+  const std::vector<StudyTrial> practice = practice_trials(trials, protocol.practice);
+  trials.insert(trials.begin(), practice.begin(), practice.end());
+  return TrialQueue(std::move(trials), protocol.most_attempts, choose);
 }
 
 Result<TrialQueue> queue_of(const schema::Journal& journal, const schema::Protocol& protocol,

@@ -481,8 +481,9 @@ Result<void> check_answers(const std::vector<LevelCount>& levels, const Psychome
         fmt::format("all {:g} answers are 'yes': the threshold is below {:g}", trials, levels.front().level),
         {}, kRemedy);
   if (!(rise_of(levels) > 0))
-    return fail(ErrorKind::unsuitable, "the answers don't become more frequent as the level rises", {},
-                "name the column of the other answer with --yes");
+    return fail(
+        ErrorKind::unsuitable, "the answers don't become more frequent as the level rises", {},
+        "check whether the two answers were exchanged (in a table: name the other column with --yes)");
   return {};
 }
 

@@ -34,7 +34,7 @@ struct AttemptBegun {
   std::string trial;                  ///< CODE.REPETITION
   std::vector<std::string> stimuli;   ///< codes, in the order of the intervals
   std::vector<std::string> sessions;  ///< from the journal's folder; none of a real sample
-  int block = 1;                      ///< of the trials
+  int block = 1;                      ///< of the trials; 0: practice
   double block_s = 0;                 ///< time of the block so far, without interruptions
 };
 
@@ -63,9 +63,10 @@ struct IntervalFacts {
   std::optional<double> predicted_error_db;    ///< of the worst stroke; none: the target is unknown
   std::optional<double> measured_error_db;     ///< the same, if the tray has a sensor
   std::optional<double> predicted_period_m;    ///< of the predicted displacement along position
+  std::optional<double> measured_period_m;     ///< the same of the measured one
   /// RMS of the predicted displacement of all strokes, re that of the texture's force in the band; if the
   /// gain was changed, of the last stroke, at the last gain.
-  std::optional<double> predicted_gain_m_per_n;
+  std::optional<double> predicted_gain_m_per_n, measured_gain_m_per_n;
   std::optional<double> last_gain;  ///< at the end of playback, as a factor of the texture's gain
   bool operator==(const IntervalFacts&) const = default;
 };
@@ -76,6 +77,9 @@ struct DeliveryJudged {
   bool delivered = false;
   std::vector<std::string> why;          ///< not delivered: each reason
   std::vector<IntervalFacts> intervals;  ///< those that were played
+  /// If the protocol has a range of normal force: the share of each interval's time in which the device
+  /// reported one within it. None: unknown. No session has it.
+  std::vector<std::optional<double>> force_within = {};
 };
 
 struct AttemptAnswered {

@@ -49,7 +49,9 @@ constexpr PerhapsFact kPerhapsFacts[] = {{"removed_by_limits_db", &IntervalFacts
                                          {"predicted_error_db", &IntervalFacts::predicted_error_db},
                                          {"measured_error_db", &IntervalFacts::measured_error_db},
                                          {"predicted_period_m", &IntervalFacts::predicted_period_m},
+                                         {"measured_period_m", &IntervalFacts::measured_period_m},
                                          {"predicted_gain_m_per_n", &IntervalFacts::predicted_gain_m_per_n},
+                                         {"measured_gain_m_per_n", &IntervalFacts::measured_gain_m_per_n},
                                          {"last_gain", &IntervalFacts::last_gain}};
 
 struct PlanText {
@@ -107,6 +109,8 @@ struct EntryWriter {
     body["event"] = "delivered", body["attempt"] = judged.attempt, body["delivered"] = judged.delivered;
     body["why"] = judged.why, body["intervals"] = Json::array();
     for (const IntervalFacts& facts : judged.intervals) body["intervals"].push_back(facts_body(facts));
+    for (const std::optional<double>& share : judged.force_within)
+      body["force_within"].push_back(share ? Json(*share) : Json());
   }
   void operator()(const SamplePlaced& placed) const {
     body["event"] = "placed", body["attempt"] = placed.attempt, body["label"] = placed.label;
@@ -144,6 +148,9 @@ JournalEntry journal_entry_from(const Json& body) {
     DeliveryJudged judged{
         body.at("attempt"), body.at("delivered"), body.at("why").get<std::vector<std::string>>(), {}};
     for (const Json& facts : body.at("intervals")) judged.intervals.push_back(facts_from(facts));
+    if (body.contains("force_within"))
+      for (const Json& share : body.at("force_within"))
+        judged.force_within.push_back(share.is_null() ? std::nullopt : std::optional(share.get<double>()));
     return judged;
   }
   if (event == "answered")

@@ -62,7 +62,8 @@ inline constexpr int kSameChoice = 1;
 struct ProtocolPace {
   double from_m = 0, to_m = 0;  ///< on the texture
   double speed_mps = 0;
-  int strokes = 0;  ///< alternately forth and back
+  int strokes = 0;   ///< alternately forth and back
+  bool cue = false;  ///< the participant's screen shows the movement, as a mark along a bar
 };
 
 /// An interval with more of these, or beyond them, is not delivered. The levels in dB are those of the verb
@@ -87,6 +88,9 @@ struct ProtocolTexts {
   std::string
       too_early;     ///< when a setting is accepted before the strokes of the pace; in an adjustment only
   std::string left;  ///< before the numbers of the textures that have yet to be explored; in an ordering only
+  /// While an interval is awaited and played, if the protocol has a range of normal force.
+  std::string force_below = {}, force_within = {}, force_above = {};
+  std::string practice = {};  ///< before each practice trial
 };
 
 inline constexpr const char* kUsualLanguage = "en";
@@ -95,6 +99,12 @@ inline constexpr const char* kUsualLanguage = "en";
 struct MaskingNoise {
   double low_hz = 0, high_hz = 0;
   double level_db = 0, tolerance_db = 0;  ///< re 20 uPa at the ear, unweighted
+};
+
+/// With which the participant is to press. No session has the normal force, so it decides nothing: the screen
+/// shows it, and the journal keeps how long it was within the range.
+struct ForceRange {
+  double low_n = 0, high_n = 0;
 };
 
 /// A break is due after so many trials or so much time since the last one, the beginning, or an interruption.
@@ -147,6 +157,9 @@ struct Protocol {
   std::string newer_version;
   std::vector<std::string> unknown_members = {};
   std::string sha256;  ///< of the file that was read
+  std::optional<ForceRange> normal_force = std::nullopt;
+  int practice = 0;      ///< trials before the first one, which are not counted
+  std::string analysis;  ///< that is intended, in words; the analysis prints it
 };
 
 /// By stem, NAME.protocol.json or a JSON file with another name. Errors: not_found; malformed, with the

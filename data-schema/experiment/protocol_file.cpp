@@ -66,6 +66,10 @@ bool places_samples(const Protocol& protocol) {
          std::ranges::find(protocol.conditions, kRealCondition) != protocol.conditions.end();
 }
 
+bool has_force_range(const Protocol& protocol) {
+  return protocol.normal_force.has_value();
+}
+
 constexpr ShownText kShownTexts[] = {
     {"welcome", &ProtocolTexts::welcome, is_always_shown},
     {"begin", &ProtocolTexts::begin, is_always_shown},
@@ -76,7 +80,11 @@ constexpr ShownText kShownTexts[] = {
     {"place", &ProtocolTexts::place, places_samples},
     {"left", &ProtocolTexts::left, [](const Protocol& protocol) { return protocol.task == Task::ordering; }},
     {"too_early", &ProtocolTexts::too_early,
-     [](const Protocol& protocol) { return protocol.task == Task::adjustment; }}};
+     [](const Protocol& protocol) { return protocol.task == Task::adjustment; }},
+    {"practice", &ProtocolTexts::practice, [](const Protocol& protocol) { return protocol.practice > 0; }},
+    {"force_below", &ProtocolTexts::force_below, has_force_range},
+    {"force_within", &ProtocolTexts::force_within, has_force_range},
+    {"force_above", &ProtocolTexts::force_above, has_force_range}};
 
 Task task_of(const Json& body) {
   return static_cast<Task>(std::ranges::find(kTaskWords, body["task"].get<std::string>()) -
@@ -131,7 +139,8 @@ Protocol protocol_from(const Document& document) {
   protocol.repetitions = body["repetitions"];
   protocol.seed = body["seed"];
   protocol.gain_m_per_n = body["gain_m_per_n"];
-  protocol.pace = {pace["from_m"], pace["to_m"], pace["speed_mps"], pace["strokes"]};
+  protocol.pace = {pace["from_m"], pace["to_m"], pace["speed_mps"], pace["strokes"],
+                   pace.value("cue", false)};
   protocol.lead_s = body["lead_s"];
   for (const Json& choice : answers["choices"]) protocol.choices.push_back({choice["key"], choice["word"]});
   protocol.begin_key = answers["begin_key"];
@@ -147,9 +156,13 @@ Protocol protocol_from(const Document& document) {
     protocol.masking_noise =
         MaskingNoise{noise["low_hz"], noise["high_hz"], noise["level_db"], noise["tolerance_db"]};
   }
+  if (body.contains("normal_force"))
+    protocol.normal_force = ForceRange{body["normal_force"]["low_n"], body["normal_force"]["high_n"]};
   for (const auto& [language, texts] : body["texts"].items())
     for (const ShownText& each : kShownTexts)
       protocol.texts[language].*each.member = text_or(texts, each.name);
+  protocol.practice = body.value("practice", 0);
+  protocol.analysis = text_or(body, "analysis");
   protocol.notes = text_or(body, "notes");
   keep_unknown(document, protocol);
   return protocol;
@@ -205,6 +218,7 @@ Json protocol_body(const Protocol& protocol) {
                   {"to_m", protocol.pace.to_m},
                   {"speed_mps", protocol.pace.speed_mps},
                   {"strokes", protocol.pace.strokes}};
+  if (protocol.pace.cue) body["pace"]["cue"] = true;
   body["lead_s"] = protocol.lead_s;
   body["answers"] = {{"choices", Json::array()}, {"begin_key", protocol.begin_key}};
   for (const auto& [key, word] : protocol.choices)
@@ -219,11 +233,15 @@ Json protocol_body(const Protocol& protocol) {
                              {"high_hz", noise->high_hz},
                              {"level_db", noise->level_db},
                              {"tolerance_db", noise->tolerance_db}};
+  if (const auto& force = protocol.normal_force)
+    body["normal_force"] = {{"low_n", force->low_n}, {"high_n", force->high_n}};
   if (protocol.breaks.after_trials > 0) body["breaks"]["after_trials"] = protocol.breaks.after_trials;
   if (protocol.breaks.after_s > 0) body["breaks"]["after_s"] = protocol.breaks.after_s;
   for (const auto& [language, texts] : protocol.texts)
     for (const ShownText& each : kShownTexts)
       put_text(body["texts"][language], each.name, texts.*each.member);
+  if (protocol.practice > 0) body["practice"] = protocol.practice;
+  put_text(body, "analysis", protocol.analysis);
   put_text(body, "notes", protocol.notes);
   return body;
 }
@@ -384,6 +402,8 @@ Result<void> check_protocol(const Protocol& protocol, const std::string& path) {
   TACTO_TRY(check_texts(protocol, path));
   if (const auto& noise = protocol.masking_noise; noise && noise->high_hz < noise->low_hz + 1)
     return malformed_at(path, "masking_noise/high_hz", "the band is narrower than 1 Hz", "give a wider band");
+  if (const auto& force = protocol.normal_force; force && !(force->low_n < force->high_n))
+    return malformed_at(path, "normal_force/high_n", "is not above low_n", "give a higher force");
   return check_pace(protocol, path);
 }
 

@@ -40,12 +40,13 @@ std::optional<schema::SessionSensor> TraySamples::sensor(double rate_hz) const {
 
 void TraySamples::begin(double rate_hz, SampleRun::Sink sink) {
   rate_hz_ = rate_hz;
+  force_n_.reset();
   run_.reset();
   if (channel_) run_.emplace(rate_hz, std::move(sink));
 }
 
 Result<void> TraySamples::begin_stream() {
-  if (!run_) return {};
+  if (!run_ && force_ == nullptr) return {};
   next_frame_ = 0;
   const auto begun = client_.start_stream(firmware_host::millihertz(rate_hz_), kFramesOfMessage);
   streams_ = begun.has_value();
@@ -55,7 +56,7 @@ Result<void> TraySamples::begin_stream() {
 // The last message gives the time of its first frame; the times of the others follow from their numbers and
 // the rate.
 void TraySamples::take() {
-  if (!streams_ || !run_ || !client_.last_arrival()) return;
+  if (!streams_ || !client_.last_arrival()) return;
   const firmware_host::FrameArrival& arrival = *client_.last_arrival();
   auto& queue = client_.samples();
   const std::size_t channels = client_.description().channels.size();
@@ -66,10 +67,18 @@ void TraySamples::take() {
     more = frames > 0;
     for (std::size_t i = 0; i < frames; ++i, ++next_frame_) {
       const double since = static_cast<double>(next_frame_) - static_cast<double>(arrival.frame);
-      const auto time_ns = std::llround(1e9 * (arrival.device_s + since / rate_hz_));
-      run_->add(next_frame_, time_ns, codes_[i * channels + *channel_]);
+      const double time_s = arrival.device_s + since / rate_hz_;
+      if (force_ != nullptr) take_force(codes_[i * channels + force_->index], time_s);
+      if (run_) run_->add(next_frame_, std::llround(1e9 * time_s), codes_[i * channels + *channel_]);
     }
   }
+}
+
+void TraySamples::take_force(std::int32_t code, double time_s) {
+  force_s_ = time_s;
+  const double now_n = code * force_->scale + force_->offset;
+  const double before_n = force_n_.value_or(now_n);
+  force_n_ = before_n - (now_n - before_n) * std::expm1(-1 / (kForceMeanS * rate_hz_));
 }
 
 Result<void> TraySamples::end_stream() {

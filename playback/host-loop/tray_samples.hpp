@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the sensor of the driven tray measures during a playback, for the session.
+// What the sensor of the driven tray measures during a playback, for the session; and the normal force.
 #pragma once
 
 #include <cmath>
@@ -13,6 +13,7 @@
 
 #include "data-schema/session/session.hpp"
 #include "firmware-host/link/client.hpp"
+#include "playback/prepare/upload.hpp"
 
 namespace tacto::playback {
 
@@ -55,8 +56,11 @@ std::optional<std::size_t> tray_sensor_channel(const firmware_host::Description&
 /// adds them to run(). For one thread, that of the client.
 class TraySamples {
  public:
-  explicit TraySamples(firmware_host::Client& client)
-      : client_(client), channel_(tray_sensor_channel(client.description())) {}
+  /// With `follow_force` the stream is also read for normal_force_n().
+  explicit TraySamples(firmware_host::Client& client, bool follow_force = false)
+      : client_(client),
+        channel_(tray_sensor_channel(client.description())),
+        force_(follow_force ? force_channel(client) : nullptr) {}
 
   /// Whether a command belongs to the stream only. Precondition: a whole frame.
   static bool streams(std::span<const std::uint8_t> frame);
@@ -70,12 +74,23 @@ class TraySamples {
   /// Reads the remaining samples. Errors: device.
   schema::Result<void> end_stream();
   void end();
+  /// The normal force, a mean over the last kForceMeanS or so (first-order low-pass); none: no sample of it
+  /// in the last kForceAgeS before `now_s` of the device's clock.
+  std::optional<double> normal_force_n(double now_s) const {
+    return now_s - force_s_ < kForceAgeS ? force_n_ : std::nullopt;
+  }
   /// Null if there is no sensor or no session.
   SampleRun* run() { return run_ ? &*run_ : nullptr; }
 
  private:
+  static constexpr double kForceMeanS = 0.1, kForceAgeS = 0.25;
+  void take_force(std::int32_t code, double time_s);
+
   firmware_host::Client& client_;
   std::optional<std::size_t> channel_;
+  const wire::Channel* force_;  // null: not followed
+  std::optional<double> force_n_;
+  double force_s_ = 0;  // the device's clock at its last sample
   std::optional<SampleRun> run_;
   bool streams_ = false;
   double rate_hz_ = 0;

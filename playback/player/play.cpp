@@ -87,13 +87,16 @@ Result<void> follow_script(Player& player, double played_s, std::span<const Time
 
 using Steer = std::function<Result<bool>(Player& player, double played_s)>;
 
+using Watch = std::function<void(Player& player, double played_s)>;
+
 Result<void> run_until(Player& player, const PlayTime& time, std::span<const TimedSceneCommand> script,
-                       const Steer& steer, const std::function<bool()>& stop_asked,
+                       const Steer& steer, const Watch& watch, const std::function<bool()>& stop_asked,
                        const std::function<void(double)>& progress) {
   while (player.armed_s() < time.to_s && !stop_asked()) {
     TACTO_TRY(follow_script(player, player.armed_s() - time.from_s, script));
     if (const auto done = player.step(kPlayStepS); !done) return done;
     if (player.state() == PlayerState::fault) break;
+    if (watch) watch(player, player.armed_s() - time.from_s);
     if (steer) {
       const auto goes_on = steer(player, player.armed_s() - time.from_s);
       TACTO_TRY(goes_on);
@@ -149,6 +152,7 @@ struct Playing {
   std::span<const TimedSceneCommand> script = {};
   std::optional<SteadyClock::time_point> begins_at = std::nullopt;
   Steer steer = {};
+  Watch watch = {};
 };
 
 double seconds_to(SteadyClock::time_point when) {
@@ -162,6 +166,7 @@ Result<double> wait_for_begin(const Playing& playing, const std::function<bool()
        left_s = seconds_to(*playing.begins_at)) {
     TACTO_TRY(playing.player.step(std::min(left_s, kPlayStepS)));
     if (playing.player.state() == PlayerState::fault) break;
+    if (playing.watch) playing.watch(playing.player, -left_s);
   }
   return std::max(0.0, -seconds_to(*playing.begins_at));
 }
@@ -178,10 +183,12 @@ Result<void> play_through(const Playing& playing, const std::string& session,
   const auto late_s = wait_for_begin(playing, stop_asked);
   TACTO_TRY(late_s);
   outcome.late_s = *late_s;
-  TACTO_TRY(player.play());
-  const PlayTime time =
-      begin_path(player, playing.device, playing.here, outcome.asked_s, playing.begins_at.has_value());
-  TACTO_TRY(run_until(player, time, playing.script, playing.steer, stop_asked, progress));
+  if (player.state() != PlayerState::fault) {  // one while it waited is in the outcome, as one while it plays
+    TACTO_TRY(player.play());
+    const PlayTime time =
+        begin_path(player, playing.device, playing.here, outcome.asked_s, playing.begins_at.has_value());
+    TACTO_TRY(run_until(player, time, playing.script, playing.steer, playing.watch, stop_asked, progress));
+  }
   outcome.status = player.status();
   if (player.state() != PlayerState::fault) TACTO_TRY(ramp_down(player));
   TACTO_TRY(player.disarm());
@@ -249,6 +256,7 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   TACTO_TRY(device);
   PlayerOptions player_options;
   player_options.full_queue = device->full_queue();
+  player_options.follow_force = options.follow_force;
   if (options.without_watchdog)
     player_options.note = "--no-watchdog: the card keeps its last voltage if the program dies";
   const auto here = loop_of(options, *device, player_options);
@@ -266,7 +274,7 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   TACTO_TRY((*player)->load(std::move(*program)));
   TACTO_TRY((*player)->gain(options.gain));
   if (device->device->is_real_time()) lock_memory();  // a real-time thread of this process may tick
-  const Playing playing{*device, *here, **player, {}, options.begins_at, options.steer};
+  const Playing playing{*device, *here, **player, {}, options.begins_at, options.steer, options.watch};
   TACTO_TRY(play_through(playing, options.session, stop_asked, progress, outcome));
   if (*here) outcome.looped = looped_by(*here->loop);
   tell_limits(options.session, outcome);
@@ -306,7 +314,7 @@ Result<PlayOutcome> play_forces_once(const ForcePlayOptions& options, const std:
   TACTO_TRY(script);
   note_moves(*script, outcome.notes);
   TACTO_TRY((*player)->load(std::move(*program)));
-  const Playing playing{device->player, {}, **player, *script, {}, {}};
+  const Playing playing{device->player, {}, **player, *script};
   TACTO_TRY(play_through(playing, options.session, stop_asked, progress, outcome));
   return outcome;
 }

@@ -33,6 +33,9 @@ struct PlayOptions {
   /// Called between the messages of ticks, with the seconds since the beginning; it may change the gain and
   /// set marks. False ends the playback, by a ramp.
   std::function<schema::Result<bool>(Player& player, double played_s)> steer = {};
+  /// Called like `steer`, also while `begins_at` is awaited, when `played_s` is below 0; it may add notes.
+  std::function<void(Player& player, double played_s)> watch = {};
+  bool follow_force = false;  ///< PlayerOptions::follow_force
 };
 
 /// Figures of a loop on this computer.

@@ -97,7 +97,11 @@ std::string_view to_string(PlayerState state) {
 }
 
 Player::Player(firmware_host::Client& client, std::string uri, const PlayerOptions& options, double metres)
-    : client_(client), uri_(std::move(uri)), options_(options), metres_per_count_(metres), tray_(client) {
+    : client_(client),
+      uri_(std::move(uri)),
+      options_(options),
+      metres_per_count_(metres),
+      tray_(client, options.follow_force) {
   client_.listen([this](std::span<const std::uint8_t> frame) { keep(frame); });
 }
 
@@ -273,7 +277,7 @@ Result<void> Player::arm(const std::string& session_path) {
   if (forces_)
     for (const HeldLayer& layer : forces_->held) recorder_->event({0, steady_ns(), held_words(layer)});
   if (const auto streams = options_.loop != nullptr ? Result<void>() : tray_.begin_stream(); !streams)
-    recorder_->event({0, steady_ns(), "no samples of the tray: " + schema::message(streams.error())});
+    recorder_->event({0, steady_ns(), "no samples of the sensors: " + schema::message(streams.error())});
   const auto beaten = beat();
   enter(PlayerState::armed, "");
   return beaten;
@@ -331,6 +335,10 @@ Result<std::uint64_t> Player::mark(const std::string& text) {
   ++marks_;
   recorder_->event({view_.expected(), steady_ns(), std::string(schema::kMarkEvent) + text});
   return view_.expected();
+}
+
+void Player::note(const std::string& text) {
+  if (recorder_) recorder_->event({view_.expected(), steady_ns(), text});
 }
 
 wire::Gain Player::device_gain() const {

@@ -30,10 +30,11 @@ std::string_view to_string(PlayerState state);
 struct PlayerOptions {
   FullQueue full_queue = FullQueue::lose;
   double heartbeat_s = 0.025;
-  double most_late = 0.2;    ///< part of the ticks within a second; a larger part is a fault
-  bool tell_limits = false;  ///< live, by a second kernel on the recorder's thread (live_limits.hpp)
-  LoopView* loop = nullptr;  ///< of a loop on this computer; none: the device closes it
-  std::string note;          ///< an event of each session, at its beginning; empty: none
+  double most_late = 0.2;     ///< part of the ticks within a second; a larger part is a fault
+  bool tell_limits = false;   ///< live, by a second kernel on the recorder's thread (live_limits.hpp)
+  LoopView* loop = nullptr;   ///< of a loop on this computer; none: the device closes it
+  std::string note;           ///< an event of each session, at its beginning; empty: none
+  bool follow_force = false;  ///< the device streams its normal force (Player::normal_force_n)
 };
 
 struct PlayerStatus {
@@ -99,6 +100,9 @@ class Player {
   /// Puts a client's mark into the session, and returns its tick: the first one that the device had not sent.
   /// Errors: usage, without a session and after kMostMarks; device.
   schema::Result<std::uint64_t> mark(const std::string& text);
+  /// Puts an event that is no mark into the session, before the first tick that has not arrived; without a
+  /// session nothing.
+  void note(const std::string& text);
   /// Ramps to zero, waits for idle (a second at most), and closes the session; `why` as in stop(). Errors:
   /// device; cannot_write.
   schema::Result<void> disarm(const std::string& why = {});
@@ -108,6 +112,11 @@ class Player {
   schema::Result<void> step(double timeout_s);
 
   PlayerState state() const { return state_; }
+  /// The normal force now, N, if PlayerOptions asks for it: a mean over the last 0.1 s. It is in no session.
+  /// None: the device does not report it, or this computer closes the loop.
+  std::optional<double> normal_force_n() const {
+    return tray_.normal_force_n(1e-9 * static_cast<double>(view_.last().time_ns));
+  }
   /// Counts of the session that is being written, if there is one.
   std::optional<RecorderCounts> recorded() const {
     return recorder_ ? std::optional(recorder_->counts()) : std::nullopt;

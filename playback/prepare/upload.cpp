@@ -90,13 +90,6 @@ Result<void> check_hysteresis(const Client& client, const Prepared& prepared) {
               client.where(), "update its firmware, or play without (--keep-hysteresis)");
 }
 
-const wire::Channel* force_channel(const Client& client) {
-  const auto& channels = client.description().channels;
-  const auto force = std::ranges::find_if(
-      channels, [](const wire::Channel& c) { return std::string_view(c.quantity) == "normal_force"; });
-  return force == channels.end() ? nullptr : &*force;
-}
-
 Result<void> check_contact(const Client& client, const Prepared& prepared) {
   if (!(prepared.gate_on_n > 0) || force_channel(client) != nullptr) return {};
   return fail(ErrorKind::unsuitable,
@@ -131,6 +124,14 @@ Result<void> send_contact(Client& client, const Prepared& prepared) {
 }
 
 }  // namespace
+
+const wire::Channel* force_channel(const Client& client) {
+  const auto& channels = client.description().channels;
+  const auto force = std::ranges::find_if(channels, [](const wire::Channel& c) {
+    return std::string_view(c.quantity) == "normal_force" && std::string_view(c.unit) == "N";
+  });
+  return force == channels.end() ? nullptr : &*force;
+}
 
 Result<void> check_rate(const Client& client, double rate_hz) {
   const wire::Welcome& device = client.description().welcome;

@@ -7,6 +7,9 @@
 
 namespace tacto::playback {
 
+/// The device's channel of normal force, N; null: it has none.
+const wire::Channel* force_channel(const firmware_host::Client& client);
+
 /// Errors: unsuitable: the device cannot tick at this rate.
 schema::Result<void> check_rate(const firmware_host::Client& client, double rate_hz);
 

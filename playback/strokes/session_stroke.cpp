@@ -95,6 +95,14 @@ void keep_stroke(const std::vector<JudgedRow>& rows, std::uint64_t before, std::
     of.rows.push_back(rows[i].row);
     of.predicted_m.push_back(predicted_m[i]);
   }
+  auto reader = MeasuredReader::open(of.overview);
+  if (!reader) return;
+  const MeasuredSection measured = reader->in(rows);
+  for (std::uint64_t i = before; i < before + count; ++i) {
+    const auto at = measured.at(i);
+    if (at) of.measured_m.push_back((*at)[kUnshifted]);
+  }
+  if (of.measured_m.size() < of.rows.size()) of.measured_m.clear();
 }
 
 }  // namespace
@@ -109,7 +117,8 @@ Result<SessionStroke> read_session_stroke(const std::string& name, std::uint64_t
   const auto found = find_stroke(name, *overview, stroke, part_of(progress, 1. / 3, 2. / 3));
   TACTO_TRY(found);
   TACTO_TRY(check_found(*found, stroke, name));
-  SessionStroke of{std::move(*overview), {}, found->chosen, found->strokes, found->sums.first.index, {}, {}};
+  SessionStroke of{
+      std::move(*overview), {}, found->chosen, found->strokes, found->sums.first.index, {}, {}, {}};
   const auto rows = rows_of(name, found->sums, of, part_of(progress, 2. / 3, 1));
   TACTO_TRY(rows);
   const auto before = std::min(of.first_row, rows_around(of.overview.header));

@@ -19,6 +19,7 @@ struct SessionStroke {
   std::uint64_t first_row = 0;       ///< in the session
   std::vector<SessionRow> rows;      ///< of the stroke, one per period
   std::vector<double> predicted_m;   ///< at each row (predicted_displacement_m, with 5 s around)
+  std::vector<double> measured_m;    ///< the same by the tray's sensor; empty: none, or samples are missing
 };
 
 /// `stroke` is 1-based; 0 selects the longest stroke. The session is read row by row; one stroke is held in

@@ -5,10 +5,7 @@ session, the accepted gain from the session, a known observer against NumPy, key
 import csv
 import hashlib
 import json
-import os
 import pathlib
-import pty
-import select
 import signal
 import subprocess
 import time
@@ -18,6 +15,7 @@ import scipy.signal
 import scipy.stats
 
 import tacto
+from person import Person
 
 LOW, HIGH = 0.05, 4.0
 OBSERVER = "threshold=30%,sd=5%,hysteresis=20%,seed=2"
@@ -200,19 +198,10 @@ def a_person_is_told_of_an_early_setting():
     protocol = json.loads(path.read_text())
     protocol["texts"]["en"]["too_early"] = "PATIENCE"
     path.write_text(json.dumps(protocol))
-    ours, its = pty.openpty()
-    command = ["setsid", "--ctty", "--wait", tacto.COMMAND, "experiment", "run", "early", "-d", "sim:paced=1", "--participant", "P01"]
-    run = subprocess.Popen(command, stdin=its, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    shown = b""
-    while b"PATIENCE" not in shown:
-        if select.select([run.stderr], [], [], 0.2)[0]:
-            shown += os.read(run.stderr.fileno(), 4096)
-        elif b"space bar" in shown:
-            os.write(ours, b"a" if b"arrow" in shown else b" ")
-        assert run.poll() is None, shown
-    os.write(ours, b"\x03")
-    run.communicate(timeout=120)
-    os.close(ours), os.close(its)
+    person = Person("experiment", "run", "early", "-d", "sim:paced=1", "--participant", "P01")
+    person.until(b"PATIENCE", lambda shown: b"a" if b"arrow" in shown else b" ")
+    person.press(b"\x03")
+    person.ends()
     judged = [entry for entry in journal("early-P01") if entry["event"] == "delivered"]
     assert judged[0]["delivered"] is False and any("strokes" in why for why in judged[0]["why"])
 
@@ -220,20 +209,10 @@ def a_person_is_told_of_an_early_setting():
 def a_person_uses_the_arrow_keys():
     """In emulated time a key is waited for after each pace, so the number of steps is known."""
     new_study("keys", "--goal", "greatest", repetitions=1, step_db=3)
-    ours, its = pty.openpty()
-    command = ["setsid", "--ctty", "--wait", tacto.COMMAND, "experiment", "run", "keys", "-d", "sim:", "--participant", "P01"]
-    run = subprocess.Popen(command, stdin=its, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    shown = b""
-    while b"arrow" not in shown:
-        if select.select([run.stderr], [], [], 0.2)[0]:
-            shown += os.read(run.stderr.fileno(), 4096)
-        elif b"space bar" in shown:  # again: a key that comes before the terminal is set is lost
-            os.write(ours, b" ")
-        assert run.poll() is None, shown
-    os.write(ours, b"\x1b[A\x1b[Aj\x1b[Bfx \x1b[Aa")  # up, up, up, down, down, two keys without a meaning, up, accepted
-    run.communicate(timeout=120)
-    assert run.returncode == 0
-    os.close(ours), os.close(its)
+    person = Person("experiment", "run", "keys", "-d", "sim:", "--participant", "P01")
+    person.until(b"arrow", lambda shown: b" ")
+    person.press(b"\x1b[A\x1b[Aj\x1b[Bfx \x1b[Aa")  # up, up, up, down, down, two keys without a meaning, up, accepted
+    assert person.ends() == 0
     (row,) = table("keys-P01")
     assert row["answer"] == "accepted" and row["delivered"] == "yes"
     assert abs(20 * np.log10(float(row["accepted_ratio"]) / float(row["start_ratio"])) - 6) < 1e-4

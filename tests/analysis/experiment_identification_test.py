@@ -5,17 +5,14 @@ a run that is killed, confusions against NumPy, a swapped stimulus, export and p
 import csv
 import hashlib
 import json
-import os
 import pathlib
-import pty
-import re
 import shutil
 import subprocess
-import time
 
 import numpy as np
 
 import tacto
+from person import Person
 
 NAMES, COMPARISONS = "ABCDE", "CDE"
 RUN = ["experiment", "run", "faces", "-d", "sim:"]
@@ -137,25 +134,13 @@ def labels_are_typed():
 
 def a_label_is_corrected_while_it_is_typed():
     new_study("typed", 2, conditions=["real"])
-    ours, its = pty.openpty()
-    # Only the controlling terminal of its own session delivers keys.
-    command = ["setsid", "--ctty", "--wait", tacto.COMMAND, "experiment", "run", "typed", "-d", "sim:", "--participant", "P51"]
-    run = subprocess.Popen(command, stdin=its, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    os.write(ours, b"early")  # before the prompt
-    shown = b""
-    while not (label := re.search(rb"press Enter\. (K[0-9]+)\n", shown)):
-        more = os.read(run.stderr.fileno(), 4096)
-        assert more, shown
-        shown += more
-    os.write(ours, b" Kx\x7f\x01\x08" + label[1] + b"  \n")
-    while b'"event":"placed"' not in pathlib.Path("typed-P51.trials.jsonl").read_bytes():
-        assert run.poll() is None
-        os.write(ours, b" ")  # the go-ahead; a key from before its prompt is left out
-        time.sleep(0.01)
-    os.write(ours, b"\x03")  # Ctrl-C
-    run.stderr.read()
-    run.wait()
-    os.close(ours), os.close(its)
+    person = Person("experiment", "run", "typed", "-d", "sim:", "--participant", "P51")
+    person.press(b"early")  # before the prompt
+    label = person.until(rb"press Enter\. (K[0-9]+)\n")
+    person.press(b" Kx\x7f\x01\x08" + label[1] + b"  \n")
+    person.until(b"Which one was it", lambda shown: b" ")  # the go-ahead
+    person.press(b"\x03")  # Ctrl-C
+    person.ends()
     entries = journal("typed-P51")
     assert [entry["event"] for entry in entries] == ["plan", "begun", "placed"] and entries[2]["label"] == label[1].decode(), entries
 

@@ -7,7 +7,6 @@ import hashlib
 import json
 import os
 import pathlib
-import pty
 import re
 import signal
 import subprocess
@@ -17,6 +16,7 @@ import numpy as np
 import scipy.stats
 
 import tacto
+from person import Person
 
 NAMES, INTENDED = "ACE", [0.5, 2.0, 1.0]
 RUN = ["experiment", "run", "rough", "-d", "sim:"]
@@ -123,43 +123,29 @@ def answers_come_from_a_file():
 
 
 def a_person_explores_at_the_terminal():
-    ours, its = pty.openpty()
-    command = ["setsid", "--ctty", "--wait", tacto.COMMAND, *RUN, "--participant", "P03"]
-    run = subprocess.Popen(command, stdin=its, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    path, shown = pathlib.Path("rough-P03.trials.jsonl"), b""
-
-    def until(word):
-        nonlocal shown
-        while word not in shown:
-            more = os.read(run.stderr.fileno(), 4096)
-            assert more, shown
-            shown += more
-        shown = shown[shown.index(word) + len(word):]
+    person = Person(*RUN, "--participant", "P03")
+    path = pathlib.Path("rough-P03.trials.jsonl")
 
     def press(keys, event, count):
-        """Repeats a key until the journal has that event so often: a key from before its prompt is left out."""
+        """Repeats keys until the journal has that event so often: a key from before its prompt is left out."""
         while path.read_bytes().count(f'"event":"{event}"'.encode()) < count:
-            os.write(ours, keys)
+            person.press(keys)
             time.sleep(0.02)
 
-    until(b"1 2 3\n")  # to be felt
+    person.until(b"1 2 3\n")  # to be felt
     press(b"2", "explored", 1)
-    until(b"1 3\n")
-    os.write(ours, b" ")  # too early for the order
+    person.until(b"1 3\n")
+    person.press(b" ")  # too early for the order
     press(b"1", "explored", 2)
-    until(b": 3\n")
+    person.until(b": 3\n")
     press(b"3", "explored", 3)
     press(b"2", "explored", 4)  # again
     press(b" ", "delivered", 1)
-    until(b"Backspace")
+    person.until(b"Backspace")
     # A number twice is left out, backspace removes, and the space bar ends only a whole order.
-    while path.read_bytes().count(b'"event":"answered"') < 1:
-        os.write(ours, b"\x7f\x7f\x7f33 1\x7f21 ")
-        time.sleep(0.05)
-    os.write(ours, b"\x03")
-    run.stderr.read()
-    run.wait()
-    os.close(ours), os.close(its)
+    press(b"\x7f\x7f\x7f33 1\x7f21 ", "answered", 1)
+    person.press(b"\x03")
+    person.ends()
     entries = journal("rough-P03")
     places = arranged("P03", entries[1]["trial"])
     assert [entry["stimulus"] for entry in entries if entry["event"] == "explored" and entry["attempt"] == 1] == [places[i] for i in (1, 0, 2, 1)]

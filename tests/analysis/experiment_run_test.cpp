@@ -12,6 +12,8 @@
 
 #include "analysis/experiment/adaptive_levels.hpp"
 #include "analysis/experiment/interval_facts.hpp"
+#include "analysis/experiment/interval_guide.hpp"
+#include "analysis/experiment/interval_play.hpp"
 #include "analysis/experiment/live_setting.hpp"
 #include "analysis/experiment/observer.hpp"
 #include "analysis/experiment/spatial_period.hpp"
@@ -68,6 +70,13 @@ schema::Protocol twelve_beside_samples() {
   protocol.task = schema::Task::fidelity;
   protocol.standards = {"A", "B", "C"};
   protocol.repetitions = 1;
+  return protocol;
+}
+
+schema::Protocol adaptive(schema::LevelMethod method) {
+  schema::Protocol protocol = stretch_protocol("7", method);
+  protocol.repetitions = 20;
+  protocol.most_attempts = 100;
   return protocol;
 }
 
@@ -206,6 +215,40 @@ TEST(ExperimentRun, AJournalCutAtEachByteIsResumedWithEachAnswerOnce) {
     ASSERT_EQ(counted.size(), 20u) << bytes;
     for (const auto& [trial, times] : counted) ASSERT_EQ(times, 1) << bytes << " " << trial;
     ASSERT_EQ(resumed.queue().answers(), lines_with(resumed.text(), R"("event":"answered")")) << bytes;
+  }
+}
+
+// Practice trials are the last ones of the first block. They come once, and count nowhere; an interrupted one
+// comes again.
+TEST(ExperimentRun, PracticeComesFirstAndCountsNowhere) {
+  for (schema::Protocol protocol : {twenty_trials(), ten_trials(), three_orders(), twelve_beside_samples(),
+                                    adaptive(schema::LevelMethod::staircase)}) {
+    const auto trials = ordered_trials(protocol, key_of(protocol), "P01", 1);
+    const std::size_t own = trials.size();
+    protocol.practice = 2;
+    TextRun whole(protocol);
+    ASSERT_TRUE(whole.go_on(""));
+    const std::string& text = whole.text();
+    const auto& attempts = whole.queue().attempts();
+    ASSERT_TRUE(whole.queue().has_ended());
+    EXPECT_EQ(whole.queue().trials(), own);
+    EXPECT_EQ(whole.queue().counted(), own);
+    EXPECT_EQ(whole.queue().tried() + 2, attempts.size());
+    EXPECT_EQ(whole.queue().abandoned(), 0U);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(attempts[i].trial.is_practice(), i < 2);
+    const auto block =
+        static_cast<std::size_t>(std::ranges::count(trials, trials.front().block, &StudyTrial::block));
+    for (std::size_t i = 0; i < 2 && !trials.front().adaptive; ++i)
+      EXPECT_EQ(attempts[i].begun.trial, trials[block - 2 + i].name());
+    for (std::size_t bytes = text.find('\n') + 1; bytes <= text.size(); bytes += 7) {
+      TextRun resumed(protocol);
+      const auto went_on = resumed.go_on(text.substr(0, bytes));
+      ASSERT_TRUE(went_on) << bytes << ": " << schema::message(went_on.error());
+      ASSERT_EQ(resumed.queue().counted(), own) << bytes;
+      ASSERT_EQ(resumed.queue().attempts().size() - resumed.queue().tried(),
+                static_cast<std::size_t>(std::ranges::count_if(
+                    resumed.queue().attempts(), [](const Attempt& each) { return each.begun.block == 0; })));
+    }
   }
 }
 
@@ -369,13 +412,6 @@ TEST(ExperimentRun, ATextureBesideNoSampleOrAnotherOneIsRefused) {
   ASSERT_TRUE(queue.take(schema::DeliveryJudged{1, true, {}, {}}));
   ASSERT_TRUE(queue.take(schema::AttemptAnswered{1, 1, "same", 0}));
   EXPECT_TRUE(queue.attempts().front().counts());
-}
-
-schema::Protocol adaptive(schema::LevelMethod method) {
-  schema::Protocol protocol = stretch_protocol("7", method);
-  protocol.repetitions = 20;
-  protocol.most_attempts = 100;
-  return protocol;
 }
 
 std::vector<double> stretches_of(const TrialQueue& queue, const schema::ProtocolKey& key, bool counted) {
@@ -586,6 +622,49 @@ TEST(ExperimentRun, HalfOfTheTrialsBeginWithTheStandard) {
   }
   EXPECT_EQ(names.size(), 80u);
   for (const auto& [code, times] : first) EXPECT_EQ(times, 5) << code;
+}
+
+// The cue is where an emulated finger is, which follows the path by its knots, forth and back if it has an
+// odd number of strokes. Between two knots, 5 ms, the way bends by at most a t^2 / 8 = 4 um of 1.2 m/s^2.
+TEST(ExperimentRun, TheCueMovesAsThePacedFinger) {
+  for (const int strokes : {1, 2, 3}) {
+    schema::ProtocolPace pace = stretch_protocol("1").pace;
+    pace.strokes = strokes;
+    const playback::FingerPath path = paced_path(pace);
+    const double pass_s = path.duration_s();
+    EXPECT_EQ(cued_place(pace, -1).part, 0);
+    EXPECT_EQ(cued_place(pace, -1).stroke, 0);
+    EXPECT_EQ(cued_place(pace, 0.049).stroke, 0);
+    for (double t = 0; t < 3 * pass_s; t += 0.0037) {
+      const auto pass = static_cast<int>(t / pass_s);
+      double on_path_s = t - pass * pass_s;
+      if (strokes % 2 == 1 && pass % 2 == 1) on_path_s = pass_s - on_path_s;
+      const auto next = std::ranges::upper_bound(path.time_s, on_path_s);
+      const auto i = std::min(static_cast<std::size_t>(next - path.time_s.begin()), path.time_s.size() - 1);
+      const double share = (on_path_s - path.time_s[i - 1]) / (path.time_s[i] - path.time_s[i - 1]);
+      const double place_m = std::lerp(path.position_m[i - 1], path.position_m[i], share);
+      const CuedPlace cued = cued_place(pace, t);
+      ASSERT_NEAR(pace.from_m + cued.part * (pace.to_m - pace.from_m), place_m, 4e-6) << strokes << " " << t;
+      ASSERT_EQ(cued.stroke,
+                std::clamp(static_cast<int>(std::ceil((t - pass * pass_s - 0.05) * strokes / (pass_s - 0.1))),
+                           0, strokes) +
+                    pass * strokes)
+          << strokes << " " << t;
+    }
+    // The speed in the middle of a stroke is the asked one.
+    const double middle_s = 0.05 + (pass_s - 0.1) / strokes / 2;
+    EXPECT_NEAR((cued_place(pace, middle_s + 0.01).part - cued_place(pace, middle_s).part) *
+                    (pace.to_m - pace.from_m) / 0.01,
+                pace.speed_mps, 1e-9);
+  }
+}
+
+TEST(ExperimentRun, TheForceIsBelowWithinOrAboveItsRange) {
+  const schema::ForceRange range{0.3, 0.8};
+  EXPECT_EQ(pressed_as(range, 0.29), PressedAs::below);
+  EXPECT_EQ(pressed_as(range, 0.3), PressedAs::within);
+  EXPECT_EQ(pressed_as(range, 0.8), PressedAs::within);
+  EXPECT_EQ(pressed_as(range, 0.81), PressedAs::above);
 }
 
 schema::IntervalFacts good_facts() {

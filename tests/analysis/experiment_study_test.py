@@ -189,7 +189,10 @@ def bad_input():
     changed = pathlib.Path("stretch.protocol.json")
     text = changed.read_text()
     changed.write_text(text.replace('"repetitions": 1', '"repetitions": 2'))
-    assert "stretch.protocol.json" in tacto.run("experiment", "prove", "stretch-P01", code=5)[1]
+    # Another participant, too: runs of two protocols could not be analysed together.
+    for verb in (["prove", "stretch-P01"], ["run", "stretch", "-d", "sim:", "--participant", "P05", "--observer", OBSERVER]):
+        assert "stretch.protocol.json" in tacto.run("experiment", *verb, code=5)[1]
+    assert not pathlib.Path("stretch-P05.trials.jsonl").exists()
     changed.write_text(text)
 
 

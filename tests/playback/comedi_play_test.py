@@ -237,10 +237,27 @@ def doctor_says_the_rate():
     tacto.run("validate", "bench")
 
 
+def an_experiment_says_that_the_normal_force_is_unknown():
+    """The card has no input for it. Its counter does not follow the cue, so no trial is delivered."""
+    wire()
+    tacto.run("experiment", "new", "stretch", "-o", "force", "--normal-force", "0.3N,0.8N")
+    protocol, key = pathlib.Path("force.protocol.json"), pathlib.Path("force.key.json")
+    changes = {"repetitions": 1, "most_attempts": 1, "levels": [-0.5, 0.5], "pace": {"from_m": 0.01, "to_m": 0.02, "speed_mps": 0.06, "strokes": 1}}
+    protocol.write_text(json.dumps({**json.loads(protocol.read_text()), **changes}))
+    stimuli = json.loads(key.read_text())
+    key.write_text(json.dumps({**stimuli, "stimuli": [each for each in stimuli["stimuli"] if each["stretch"] in (-0.5, 0, 0.5)]}))
+    checked = json.loads(run("experiment", "check", "force", "-d", "comedi:bench")[1])
+    assert checked["normal_force_reported"] == "no" and any("normal force" in warning for warning in checked["warnings"]), checked
+    code, _, err = run("experiment", "run", "force", "-d", "comedi:bench", "--participant", "P01", "--observer", "weber=25%")
+    assert code == 0, err
+    head, *rows = pathlib.Path("force-P01.trials.tsv").read_text().splitlines()
+    assert [row.split("\t")[head.split("\t").index("force_within")] for row in rows] == ["unknown", "unknown"]
+
+
 def test():
     write_grating()
     for step in (plays_what_the_encoder_reads, every_end_is_at_zero, without_a_watchdog_only_on_request, an_input_can_be_the_position, an_ni_counter_counts_all_edges,
-                 what_cannot_be_played_is_refused, doctor_says_the_rate):
+                 what_cannot_be_played_is_refused, doctor_says_the_rate, an_experiment_says_that_the_normal_force_is_unknown):
         step()
         print(f"{step.__name__}: passed")
 
