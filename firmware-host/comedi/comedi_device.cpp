@@ -48,6 +48,11 @@ class ComediDevice final : public Device {
                                  comedi_get_driver_name(device->card_.get()));
     about.clock = "device";
     about.transducer = wiring.transducer;
+    if (wiring.encoder)
+      about.warnings.push_back(fmt::format(
+          "the encoder at counter {} is not recorded: the card samples inputs by its own clock, but "
+          "a counter only by instructions of this computer; for textures wire a position to an input",
+          wiring.encoder->counter));
     TACTO_TRY(device->find_inputs(wiring));
     TACTO_TRY(device->plan_command(wiring.rate_hz));
     const auto asked_bytes = static_cast<unsigned>(kBuffer_s * about.sample_rate_hz) *

@@ -228,6 +228,8 @@ def doctor_says_the_rate():
     assert code == 0 and report["can_record"] and least == 1000 and 1000 <= most <= 2500, (report, err)
     assert playing_row["state"] == "works" and "line 3" in report["watchdog"] and "output 0" in report["drive"] and "counter 0" in report["encoder"], report
     assert log()[-1] == ("ao", ZERO)
+    device_row = next(row for row in report["checks"] if row["check"] == "device")
+    assert device_row["state"] == "warning" and "counter 0" in device_row["what_to_do"], device_row  # its counts are not recorded
     wire(watchdog=None)
     rows = {row["check"]: row["state"] for row in json.loads(run("doctor", "-d", "comedi:bench")[1])["checks"]}
     assert rows["playing"] == "warning", rows
