@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "firmware-host/comedi/comedi_card.hpp"
+#include "firmware-host/comedi/comedi_player.hpp"
 #include "firmware-host/link/code_range.hpp"
 
 namespace tacto::firmware_host {
@@ -48,11 +49,6 @@ class ComediDevice final : public Device {
                                  comedi_get_driver_name(device->card_.get()));
     about.clock = "device";
     about.transducer = wiring.transducer;
-    if (wiring.encoder)
-      about.warnings.push_back(fmt::format(
-          "the encoder at counter {} is not recorded: the card samples inputs by its own clock, but "
-          "a counter only by instructions of this computer; for textures wire a position to an input",
-          wiring.encoder->counter));
     TACTO_TRY(device->find_inputs(wiring));
     TACTO_TRY(device->plan_command(wiring.rate_hz));
     const auto asked_bytes = static_cast<unsigned>(kBuffer_s * about.sample_rate_hz) *
@@ -225,7 +221,7 @@ class ComediDevice final : public Device {
 Result<std::unique_ptr<Device>> open_comedi_device(const std::string& uri, std::string_view parameters) {
   const auto wiring = read_comedi_wiring(uri, parameters);
   TACTO_TRY(wiring);
-  return ComediDevice::open(uri, *wiring);
+  return wiring->encoder ? open_comedi_counter(uri, *wiring) : ComediDevice::open(uri, *wiring);
 }
 
 }  // namespace tacto::firmware_host
