@@ -5,7 +5,9 @@ import hashlib
 import json
 import pathlib
 import subprocess
+import sys
 
+import h5py
 import numpy as np
 import scipy.io
 import tacto
@@ -213,6 +215,16 @@ def matlab_files_hold_the_physical_values():
     assert pathlib.Path("mine.mat").read_bytes() == b"MATLAB 5.0 MAT-file, mine"
 
 
+def version_7_3_is_read_by_hdf5():
+    """`export` writes it above 2 GB; here by write_mat73.cpp. MATLAB stores arrays column by column, so HDF5's are transposed."""
+    subprocess.run([sys.argv[1], "large.mat"], check=True)
+    with h5py.File("large.mat") as mat:
+        assert mat.userblock_size == 512 and pathlib.Path("large.mat").read_bytes()[:20] == b"MATLAB 7.3 MAT-file,"
+        assert np.array_equal(mat["force_n"][:].ravel(), np.arange(1000) / 7) and mat["force_n"].attrs["MATLAB_class"] == b"double"
+        assert np.array_equal(mat["cells"][:], (np.arange(6, dtype=np.float32) / np.float32(10)).reshape(2, 3)) and mat["cells"].dtype == np.float32
+        assert mat["provenance/gain"][0, 0] == 0.1 and "".join(map(chr, mat["provenance/program"][:].ravel())) == "tactograph"
+
+
 def wrong_use():
     tacto.run("record", "-d", "sim:", "--time", "0.5s", "-o", "c")
     tacto.run("export", "nothing", code=NOT_FOUND)
@@ -235,5 +247,5 @@ def wrong_use():
 if __name__ == "__main__":
     for test in (a_recording_comes_back_whole, simulated_data_say_so_in_each_row, a_texture_and_an_average, mpeg_haptics_keep_the_error_that_was_asked_for,
                  of_the_real_finger, the_error_is_kept_in_100_random_textures,
-                 matlab_files_hold_the_physical_values, wrong_use):
+                 matlab_files_hold_the_physical_values, version_7_3_is_read_by_hdf5, wrong_use):
         tacto.in_folder(test)
