@@ -147,6 +147,22 @@ def an_unplugged_board():
         falls_to_zero(board)
 
 
+def a_board_that_restarts():
+    """The host ends with the device's error and a session that replays; the board is idle, and works again only when it is greeted."""
+    with QemuBoard(str(IMAGE)) as board:
+        board.greet()
+        program = start_playing(board, "restarted")
+        board.restart()
+        _, error = program.communicate(timeout=120)
+        assert program.returncode == DEVICE, (program.returncode, error)
+        (session,) = pathlib.Path().glob("restarted-*.session")
+        assert tacto.run_json("replay", session.stem)["same_to_the_bit"]
+        board.forget_all()
+        board.greet()
+        assert not list(board.ticks()), "it plays after its restart"
+        assert checks(board.port)["device"]["state"] == "works"
+
+
 def a_texture_that_is_too_large(board):
     """With hermite this texture takes more than the RAM holds. The error names what fits."""
     _, error = tacto.run("play", "oak", "-d", f"tty:{board.port}", "--transducer", "wiertlewski2011", "--interpolation", "hermite",
@@ -196,7 +212,7 @@ def test():
                      damaged_bytes_are_gaps):
             step(board)
             print(step.__name__, flush=True)
-    for step in (a_stopped_host, an_unplugged_board, a_damaged_flash_is_refused):
+    for step in (a_stopped_host, an_unplugged_board, a_board_that_restarts, a_damaged_flash_is_refused):
         step()
         print(step.__name__, flush=True)
 
