@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <utility>
 
 #include "capture/cli/verbs.hpp"
 #include "capture/import/height_map_import.hpp"
@@ -129,11 +130,19 @@ std::vector<cli::Report> rows_of(const Imported& imported) {
   return rows;
 }
 
-// The channels that `spatial` can make textures of; its default is tangential_force.
+// The channels that `spatial` can make textures of; its default is tangential_force. Three axes of an
+// acceleration come as one signal first: one axis alone misses what is across it.
 std::vector<std::string> names_for_textures(const schema::RecordingHeader& header) {
+  constexpr std::string_view kAxis = "acceleration";
+  const bool three_axes = std::ranges::count(header.channels, kAxis, &schema::Channel::quantity) == 3;
+  bool reduced = false;
   std::vector<std::string> names;
-  for (const std::size_t index : schema::texture_channels(header))
-    names.push_back(header.channels[index].name);
+  for (const std::size_t index : schema::texture_channels(header)) {
+    const schema::Channel& channel = header.channels[index];
+    if (three_axes && channel.quantity == kAxis && !std::exchange(reduced, true))
+      names.push_back("acceleration:dft321");
+    names.push_back(channel.name);
+  }
   const auto usual = std::ranges::find(names, "tangential_force");
   return usual == names.end() ? names : std::vector{*usual};
 }

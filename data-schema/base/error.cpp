@@ -4,7 +4,9 @@
 namespace tacto::schema {
 
 std::string message(const Error& error) {
-  std::string text = error.where.empty() ? error.what : error.where + ": " + error.what;
+  // "sim:" ends with the colon.
+  const char* const between = error.where.empty() ? "" : error.where.ends_with(':') ? " " : ": ";
+  std::string text = error.where + between + error.what;
   if (!error.remedy.empty()) text += "; " + error.remedy;
   return text;
 }

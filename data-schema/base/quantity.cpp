@@ -113,7 +113,9 @@ std::optional<NumberAndUnit> split(std::string_view text) {
 
 tl::unexpected<Error> wrong(std::string_view text, std::string_view why, Dimension dimension) {
   return fail(ErrorKind::usage, fmt::format("'{}' {}", text, why), {},
-              fmt::format("give a number with one of: {}", units_of(dimension)));
+              dimension == Dimension::none
+                  ? "give a number without a unit"
+                  : fmt::format("give a number with one of: {}", units_of(dimension)));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "data-schema/base/quantity.hpp"
+#include "firmware-host/comedi/ni_x_series.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -66,9 +67,14 @@ Result<ComediCard> open_comedi_card(const schema::Wiring& wiring) {
   if (why == EACCES || why == EPERM)
     return fail(ErrorKind::not_found, "this user may not open the card", wiring.card,
                 "add the user to the group of the file ('iocard' in Debian), then log in again");
-  return fail(ErrorKind::not_found, fmt::format("no card can be opened: {}", std::strerror(why)), wiring.card,
-              "load the card's comedi driver with modprobe, or correct 'card' in the wiring; NI X series "
-              "(PCIe-63xx) have no comedi driver");
+  const std::string closed = fmt::format("no card can be opened: {}", std::strerror(why));
+  if (const auto without_driver = ni_x_series_cards(); !without_driver.empty())
+    return fail(ErrorKind::not_found,
+                fmt::format("{}; comedi has no driver for NI's X series: {}", closed,
+                            fmt::join(without_driver, ", ")),
+                wiring.card, "use a card of NI's M or E series, or of another maker");
+  return fail(ErrorKind::not_found, closed, wiring.card,
+              "load the card's comedi driver with modprobe, or correct 'card' in the wiring");
 }
 
 std::string comedi_card_name(comedi_t* card, const schema::Wiring& wiring) {

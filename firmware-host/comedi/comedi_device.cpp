@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "firmware-host/comedi/comedi_card.hpp"
+#include "firmware-host/comedi/comedi_player.hpp"
 #include "firmware-host/link/code_range.hpp"
 
 namespace tacto::firmware_host {
@@ -220,7 +221,7 @@ class ComediDevice final : public Device {
 Result<std::unique_ptr<Device>> open_comedi_device(const std::string& uri, std::string_view parameters) {
   const auto wiring = read_comedi_wiring(uri, parameters);
   TACTO_TRY(wiring);
-  return ComediDevice::open(uri, *wiring);
+  return wiring->encoder ? open_comedi_counter(uri, *wiring) : ComediDevice::open(uri, *wiring);
 }
 
 }  // namespace tacto::firmware_host

@@ -11,9 +11,10 @@
 
 namespace tacto::firmware_host {
 
-/// "comedi:NAME" with NAME.wiring.json. The rate is the card's nearest one, with a warning if it is another
-/// than the wiring's. Errors: usage; as read_wiring(); not_found: no card, or no permission; unsuitable: the
-/// card has no such input, range or rate, or cannot sample by its own clock.
+/// "comedi:NAME" with NAME.wiring.json; with an encoder open_comedi_counter(). The rate is the card's nearest
+/// one, with a warning if it is another than the wiring's. Errors: usage; as read_wiring(); not_found: no
+/// card, or no permission; unsuitable: the card has no such input, range or rate, or cannot sample by its own
+/// clock.
 schema::Result<std::unique_ptr<Device>> open_comedi_device(const std::string& uri,
                                                            std::string_view parameters);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -16,7 +17,9 @@
 #include "data-schema/base/statistics.hpp"
 #include "firmware-host/comedi/comedi_card.hpp"
 #include "firmware-host/core/firmware/firmware.hpp"
+#include "firmware-host/core/kernel/ring.hpp"
 #include "firmware-host/link/awake_cores.hpp"
+#include "firmware-host/link/code_range.hpp"
 #include "firmware-host/link/hosted_board.hpp"
 #include "firmware-host/link/memory_transport.hpp"
 #include "firmware-host/link/realtime_priority.hpp"
@@ -39,7 +42,16 @@ constexpr double kFall_s = 0.025;
 constexpr auto kCoreRest = std::chrono::microseconds(200);
 constexpr std::size_t kMostInputs = wire::kMaxChannels - 1;
 
-// One thread ticks and polls.
+// A frame that was sampled by instructions.
+struct CountedFrame {
+  std::uint64_t number = 0;  // periods since the start
+  double at_s = 0;           // of the steady clock
+  std::int32_t codes[wire::kMaxChannels] = {};
+};
+using CountedFrames =
+    core::Ring<CountedFrame, 1U << 15>;  // 1.6 s or more: so long the program may be stopped
+
+// One thread ticks and polls, or samples.
 class ComediBoard {
  public:
   static Result<std::unique_ptr<ComediBoard>> open(const schema::Wiring& wiring) {
@@ -55,14 +67,38 @@ class ComediBoard {
     board->thread_ = std::thread([&self = *board] { self.run(); });
     return board;
   }
+  /// Without output, watchdog and core.
+  static Result<std::unique_ptr<ComediBoard>> open_to_record(const schema::Wiring& wiring) {
+    auto card = open_comedi_card(wiring);
+    TACTO_TRY(card);
+    std::unique_ptr<ComediBoard> board(new ComediBoard(std::move(*card), wiring));
+    board->wiring_.output.reset();
+    board->wiring_.watchdog.reset();
+    board->frames_ = std::make_unique<CountedFrames>();
+    TACTO_TRY(board->find_position());
+    TACTO_TRY(board->find_inputs());
+    TACTO_TRY(board->measure_rate());
+    return board;
+  }
   ComediBoard(const ComediBoard&) = delete;
   ComediBoard& operator=(const ComediBoard&) = delete;
-  ~ComediBoard() {
+  ~ComediBoard() { end(); }
+  void end() {
     ending_.store(true);
     if (thread_.joinable()) thread_.join();
   }
 
   CoreLink& link() { return link_; }
+  comedi_t* card() const { return card_.get(); }
+  const std::vector<schema::Channel>& channels() const { return channels_; }
+  double most_rate_hz() const { return most_rate_hz_; }
+  /// Of a board that records: samples until end(). What was left in the queue is gone.
+  void begin(double rate_hz) {
+    ending_.store(false);
+    frames_->clear();
+    thread_ = std::thread([this, rate_hz] { sample(rate_hz); });
+  }
+  CountedFrames& frames() { return *frames_; }
   /// The library's number of the first instruction's error; 0: none.
   int failure() const { return failure_.load(); }
 
@@ -154,7 +190,7 @@ class ComediBoard {
   Result<void> find_inputs() {
     if (wiring_.inputs.size() > kMostInputs)
       return fail(ErrorKind::unsuitable, fmt::format("the wiring has {} inputs", wiring_.inputs.size()),
-                  wiring_.name, fmt::format("to play, use at most {}", kMostInputs));
+                  wiring_.name, fmt::format("beside an encoder, or to play, use at most {}", kMostInputs));
     const auto subdevice =
         find_comedi_channel(card_.get(), wiring_, {COMEDI_SUBD_AI}, std::nullopt, 0, "analog input");
     TACTO_TRY(subdevice);
@@ -200,7 +236,7 @@ class ComediBoard {
     if (most_rate_hz_ >= kLeastRate_hz) return {};
     return fail(
         ErrorKind::unsuitable,
-        fmt::format("the card is too slow to play: the instructions of a tick take {:.3g} ms", 1e3 * tick_s),
+        fmt::format("the card is too slow: the instructions of a tick take {:.3g} ms", 1e3 * tick_s),
         wiring_.card,
         fmt::format("they may take {:g} ms at {:g} ticks per second: use fewer inputs, or another card",
                     1e3 * kInstructionShare / kLeastRate_hz, kLeastRate_hz));
@@ -294,6 +330,7 @@ class ComediBoard {
   }
 
   void write_drive(float volts) noexcept {
+    if (!wiring_.output) return;
     const schema::WiredOutput& wired = *wiring_.output;
     const double code = std::round((volts - wired.range_from_v) * codes_per_volt_);
     const auto held = static_cast<lsampl_t>(std::clamp(code, 0.0, static_cast<double>(output_most_)));
@@ -337,6 +374,26 @@ class ComediBoard {
     write_drive(0);
   }
 
+  // The real-time thread of a recording. A period that is missed is skipped; so is a frame for which there is
+  // no room.
+  void sample(double rate_hz) noexcept {
+    const RealtimePriority priority(kTickPriority);
+    const AwakeCores awake;
+    clock_.begin(rate_hz);
+    std::uint64_t missed = 0;
+    for (std::uint64_t number = 0; !ending_.load(std::memory_order_relaxed) && failure() == 0; ++number) {
+      const std::uint64_t before = missed;
+      clock_.wait(missed);
+      number += missed - before;
+      CountedFrame* const frame = frames_->place();
+      if (frame == nullptr) continue;
+      frame->number = number;
+      frame->at_s = 1e-9 * static_cast<double>(TickClock::now_ns());
+      read_position();
+      if (read_channels(frame->codes)) frames_->push();
+    }
+  }
+
   schema::Wiring wiring_;
   ComediCard card_;
   unsigned output_ = 0, output_range_ = 0, analog_input_ = 0;  // subdevices, and an index
@@ -353,6 +410,7 @@ class ComediBoard {
   std::vector<wire::Note> notes_;
   HostedProfile profile_;
   CoreLink link_;
+  std::unique_ptr<CountedFrames> frames_;  // of a recording
   std::atomic<int> failure_{0};
   std::atomic<bool> ending_{false};
   // Of the real-time thread.
@@ -383,6 +441,107 @@ class ComediTransport final : public MemoryTransport {
   std::string uri_;
 };
 
+// Records with the encoder at a counter.
+class CountedDevice final : public Device {
+ public:
+  static Result<std::unique_ptr<Device>> open(const std::string& uri, const schema::Wiring& wiring) {
+    auto board = ComediBoard::open_to_record(wiring);
+    TACTO_TRY(board);
+    auto device = std::make_unique<CountedDevice>();
+    device->board_ = std::move(*board);
+    Capabilities& about = device->about_;
+    comedi_t* const card = device->board_->card();
+    about.uri = uri;
+    about.name = comedi_card_name(card, wiring);
+    about.serial = wiring.name;
+    about.firmware = fmt::format("comedi {}, driver {}", comedi_version(card), comedi_get_driver_name(card));
+    about.clock = "host";
+    about.transducer = wiring.transducer;
+    about.channels = device->board_->channels();
+    const double possible_hz = std::min(wiring.rate_hz, device->board_->most_rate_hz());
+    about.sample_rate_hz = 1e9 / std::floor(1e9 / possible_hz);  // whole nanoseconds, as TickClock has them
+    about.warnings.push_back(
+        fmt::format("sampled by instructions, at the times of this computer, because a card's clock does not "
+                    "sample the counter of the encoder: {:.6g} Hz{}",
+                    about.sample_rate_hz,
+                    possible_hz < wiring.rate_hz ? fmt::format(", not {:g} Hz", wiring.rate_hz) : ""));
+    return std::unique_ptr<Device>(std::move(device));
+  }
+
+  const Capabilities& capabilities() const override { return about_; }
+  Result<void> start() override {
+    board_->end();
+    counts_ = {};
+    events_ = {};
+    next_number_ = 0;
+    next_pair_s_ = 0;
+    started_ = true;
+    board_->begin(about_.sample_rate_hz);
+    return {};
+  }
+
+  Result<std::size_t> read(std::span<std::int32_t> interleaved) override {
+    if (!started_) return fail(ErrorKind::device, "the device is not started", about_.uri);
+    const std::size_t channels = about_.channels.size(), room = interleaved.size() / channels;
+    std::size_t frames = 0;
+    while (frames == 0 && room > 0) {
+      const int why = board_->failure();  // read first: all frames before it are in the queue
+      const CountedFrame* front = nullptr;
+      while (frames < room && (front = board_->frames().front()) != nullptr) {
+        if (front->number != next_number_) {
+          if (frames > 0) break;
+          add_gap(front->number);
+        }
+        std::copy_n(front->codes, channels,
+                    interleaved.begin() + static_cast<std::ptrdiff_t>(frames * channels));
+        note_clock(*front);
+        ++next_number_;
+        ++frames;
+        board_->frames().pop();
+      }
+      if (frames > 0) break;
+      if (why != 0)
+        return fail(ErrorKind::device,
+                    fmt::format("the card refuses an instruction: {}", comedi_strerror(why)), about_.uri,
+                    "check the card and its driver");
+      std::this_thread::sleep_for(kCountedWait);
+    }
+    counts_.clipped += clipped_codes(interleaved.first(frames * channels), about_.channels);
+    counts_.frames += frames;
+    return frames;
+  }
+
+  Result<void> stop() override {
+    board_->end();
+    started_ = false;
+    return {};
+  }
+  StreamCounts counts() const override { return counts_; }
+  StreamEvents take_events() override { return std::exchange(events_, {}); }
+
+ private:
+  void add_gap(std::uint64_t number) {
+    events_.gaps.push_back({counts_.frames, number, number - next_number_});
+    counts_.lost_frames += number - next_number_;
+    next_number_ = number;
+  }
+  void note_clock(const CountedFrame& frame) {
+    if (frame.at_s < next_pair_s_) return;
+    next_pair_s_ = frame.at_s + 1;
+    events_.clock_pairs.push_back(
+        {frame.number, static_cast<double>(frame.number) / about_.sample_rate_hz, frame.at_s});
+  }
+
+  static constexpr auto kCountedWait = std::chrono::milliseconds(2);
+  std::unique_ptr<ComediBoard> board_;
+  Capabilities about_;
+  StreamCounts counts_;
+  StreamEvents events_;
+  std::uint64_t next_number_ = 0;
+  double next_pair_s_ = 0;
+  bool started_ = false;
+};
+
 Result<void> check_wired(const schema::Wiring& wiring, const std::string& uri, bool without_watchdog) {
   if (!wiring.output)
     return fail(ErrorKind::unsuitable, "the wiring names no output", uri,
@@ -399,6 +558,10 @@ Result<void> check_wired(const schema::Wiring& wiring, const std::string& uri, b
 }
 
 }  // namespace
+
+Result<std::unique_ptr<Device>> open_comedi_counter(const std::string& uri, const schema::Wiring& wiring) {
+  return CountedDevice::open(uri, wiring);
+}
 
 Result<std::unique_ptr<Device>> open_comedi_to_play(const std::string& uri, std::string_view parameters,
                                                     bool without_watchdog) {

@@ -7,9 +7,17 @@
 #include <string>
 #include <string_view>
 
+#include "data-schema/wiring/wiring.hpp"
 #include "firmware-host/link/device.hpp"
 
 namespace tacto::firmware_host {
+
+/// A device that records position from the counter of the wiring's encoder, and its inputs, by instructions
+/// in a real-time thread: at the wiring's rate, or the greatest at which the instructions take half of a
+/// period, with a warning. A period that this computer misses is a gap. Nothing is driven. Errors: as for
+/// playing.
+schema::Result<std::unique_ptr<Device>> open_comedi_counter(const std::string& uri,
+                                                            const schema::Wiring& wiring);
 
 /// "comedi:NAME" with NAME.wiring.json. The card is read and written by instructions in each tick, at rates
 /// up to that which is measured here: a tick's instructions then take half of its period. The output is at 0

@@ -23,6 +23,7 @@
 #include "playback/cli/play_reports.hpp"
 #include "playback/cli/scene_forces.hpp"
 #include "playback/cli/verbs.hpp"
+#include "playback/model/texture_lookup.hpp"
 #include "playback/player/program.hpp"
 #include "playback/render/at_speed.hpp"
 
@@ -104,8 +105,8 @@ struct Beginning {
   std::size_t samples = 0;
 };
 
-// By bisection, each cut prepared: a cut may have finer content than the whole, so the number of samples is
-// not proportional to the length.
+// By bisection, each cut prepared: the number of samples is not proportional to the length, because a short
+// cut has shorter fades at its ends, whose content is finer.
 Beginning longest_beginning(const schema::Texture& texture, std::size_t room, const Program& program,
                             const PrepareOptions& options) {
   Beginning longest;
@@ -284,6 +285,8 @@ Result<Report> explained(const ExplainOptions& o, const Program& program) {
   add_kept_gain(report, program.kept_gain);
   report.add("textures", rows_of_textures(program)).add("texture_files_read", made.built.texture_files);
   add_loop(report, made.loop_period_m, made.loop_seam_m);
+  if (program.scene_path.empty() && program.session.textures.front().ends == schema::TextureEnds::stop)
+    report.add("fade_of_ends_m", fade_of(program.length_m));
   report.add("levels", rows_of_levels(made));
   cli::add_choices(report, choices_in(program.options));
   add_chain(report, made);

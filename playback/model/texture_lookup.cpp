@@ -14,8 +14,12 @@ constexpr double kFadeM = 1e-3;
 constexpr double kLargestFadeShare = 0.1;
 }  // namespace
 
+double fade_of(double length_m) {
+  return std::min(kFadeM, kLargestFadeShare * length_m);
+}
+
 TextureLookup::TextureLookup(const schema::SpaceSignal& signal, double at_m)
-    : signal_(signal), at_m_(at_m), fade_m_(std::min(kFadeM, kLargestFadeShare * signal.length_m())) {}
+    : signal_(signal), at_m_(at_m), fade_m_(fade_of(signal.length_m())) {}
 
 bool TextureLookup::contains(double position_m) const {
   return position_m >= at_m_ && position_m <= at_m_ + signal_.length_m();

@@ -8,6 +8,9 @@
 
 namespace tacto::playback {
 
+/// How long the ends of a texture fade: 1 mm, or a tenth of one that is shorter than 10 mm.
+double fade_of(double length_m);
+
 /// A texture placed with its first sample at `at_m`, and interpolated by cubic Hermite polynomials whose
 /// slopes are central differences of fourth order. Error for a sinusoid of spatial frequency k: at most
 /// 0.0026 w^4 + 0.0032 w^5 of its amplitude, w = 2 pi k pitch: -132 dB at 15 /mm on a 1 um grid, -88 dB at 50
@@ -23,7 +26,6 @@ class TextureLookup {
   /// Value at a bench position, in the unit of the texture.
   double operator()(double position_m) const;
   bool contains(double position_m) const;
-  /// 1 mm, or a tenth of a texture shorter than 10 mm.
   double fade_m() const { return fade_m_; }
 
  private:

@@ -10,11 +10,14 @@ import argparse
 import glob
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+CORPUS = 400  # recordings of the measured `corpus run`
 PYTHON = "/usr/bin/python3"  # Debian's own: SciPy is installed for it
 # stage -> its name in the table
 STAGES = {
@@ -103,7 +106,34 @@ def memory(tactograph):
     return {"idle_mb": idle, "above_idle_mb": rows}
 
 
-def print_table(ours, theirs, used):
+def corpus_rates(tactograph):
+    """Recordings of 2 s at 10 kHz a second: {jobs: (by the clock, by CPU time)} of `corpus run`, step spatial."""
+    rates = {}
+    with tempfile.TemporaryDirectory() as folder:
+        progress(f"corpus run on {CORPUS} recordings")
+        os.mkdir(os.path.join(folder, "raw"))
+        for surface in "ABCDE":
+            subprocess.run([tactograph, "record", "-d", f"sim:surface={surface},seed=3", "--time", "2s", "-o", surface], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+            with open(os.path.join(folder, f"{surface}.json"), encoding="utf-8") as file:
+                side = json.load(file)
+            for i in range(CORPUS // 5):
+                name = f"{surface}{i}"
+                side["data"]["file"] = f"{name}.wav"
+                shutil.copy(os.path.join(folder, f"{surface}.wav"), os.path.join(folder, "raw", f"{name}.wav"))
+                with open(os.path.join(folder, "raw", f"{name}.json"), "w", encoding="utf-8") as file:
+                    json.dump(side, file)
+        for jobs in (1, 2):
+            study = f"study{jobs}"
+            subprocess.run([tactograph, "corpus", "init", study, "--recordings", "raw", "--steps", "spatial"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+            began, before = time.monotonic(), os.times()
+            subprocess.run([tactograph, "corpus", "run", study, "--jobs", str(jobs)], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+            after = os.times()
+            cpu_s = after.children_user + after.children_system - before.children_user - before.children_system
+            rates[jobs] = (CORPUS / (time.monotonic() - began), CORPUS / cpu_s)
+    return rates
+
+
+def print_table(ours, theirs, used, corpus):
     print(f"{'stage':56} {'SciPy':>10} {'here':>10} {'ratio':>7}   error")
     for stage, title in STAGES.items():
         mine, other = ours[stage], theirs.get(stage)
@@ -123,6 +153,9 @@ def print_table(ours, theirs, used):
         print(f"{title:64} median {mesh['median_ns'] / 1e3:.2f} us, p99 {mesh['p99_ns'] / 1e3:.2f} us (at most {most})")
     print(f"  force within {mesh['worst_angle_mrad']:.1f} mrad of the ball's normal (half angle of a facet: 14.0); along the motion, without friction, of 1 N: "
           f"{abs(mesh['tangential_mean']):.5f} N in the mean (at most 0.001), {mesh['tangential_ripple']:.4f} N from tick to tick")
+    clock = {jobs: rate for jobs, (rate, _) in corpus.items()}
+    print(f"\ncorpus run, spatial, {CORPUS} recordings of 2 s at 10 kHz: {clock[1]:.0f} a second by one job (at least 60), {clock[2]:.0f} by two, "
+          f"{clock[2] / clock[1]:.2f} times (at least 1.9); a second of CPU makes {corpus[1][1]:.0f}, with two jobs {corpus[2][1]:.0f}")
     print(f"\npeak memory above an idle process ({used['idle_mb']:.0f} MB):")
     for what, mb in used["above_idle_mb"].items():
         print(f"  {what:24} {mb:6.1f} MB")
@@ -138,11 +171,12 @@ def main():
     missing = [stage for stage in (*STAGES, *PLACES) if stage not in ours]
     if missing:
         raise SystemExit(f"table.py: no benchmark is named {', '.join(missing)}")
-    used = memory(os.path.abspath(arguments.tactograph))
-    print_table(ours, theirs, used)
+    tactograph = os.path.abspath(arguments.tactograph)
+    used, corpus = memory(tactograph), corpus_rates(tactograph)
+    print_table(ours, theirs, used, corpus)
     if arguments.output:
         with open(arguments.output, "w", encoding="utf-8") as file:
-            json.dump({"here": ours, "scipy_ms": theirs, "memory": used}, file, indent=1)
+            json.dump({"here": ours, "scipy_ms": theirs, "memory": used, "corpus_per_s": corpus}, file, indent=1)
 
 
 if __name__ == "__main__":

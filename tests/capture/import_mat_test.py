@@ -100,7 +100,7 @@ def refuse_all_cuts(name, column):
     whole = pathlib.Path(name).read_bytes()
     words = ["-o", "x", "--rate", "1kHz", "--channel", f"tangential_force={column}*1N"]
     tacto.run("import", name, *words, "--force")
-    for length in random.Random(4).sample(range(130, len(whole)), 100):
+    for length in random.Random(4).sample(range(130, len(whole)), 200):
         pathlib.Path("cut.mat").write_bytes(whole[:length])
         done = tacto.subprocess.run([tacto.COMMAND, "import", "cut.mat", *words, "--force"], capture_output=True, text=True)
         assert done.returncode in (USAGE, MALFORMED) and done.stderr.count("\n") == 1, (name, length, done)

@@ -39,6 +39,11 @@ def the_next_command_works():
         "tactograph spatial labelled --channel 'left one' -o labelled"
     assert next_of("two", "net_force=f*1N", "acceleration=a*1g", x).endswith(
         "--channel net_force -o two  # or --channel acceleration")
+    axes = [f"{name}:acceleration={column}*1g" for name, column in (("ax", "a"), ("ay", "f"), ("az", "2"))]
+    assert next_of("axes", *axes, x) == "tactograph spatial axes --channel acceleration:dft321 -o axes  # or --channel ax, ay, az"
+    assert next_of("force-and-axes", "net_force=f*1N", *axes, x).endswith(
+        "--channel net_force -o force-and-axes  # or --channel acceleration:dft321, ax, ay, az")
+    assert next_of("two-axes", *axes[:2], x).endswith("--channel ax -o two-axes  # or --channel ay")
     assert next_of("a'b c", f, x) == "tactograph spatial 'a'\\''b c' -o 'a'\\''b c'"
     assert next_of("placeless", f) == "tactograph info placeless"
     assert next_of("normal", "normal_force=f*1N", x) == "tactograph info normal"

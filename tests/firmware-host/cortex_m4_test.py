@@ -76,7 +76,7 @@ def say_worst(core, tick, poll):
     rows = re.findall(r'^ *{"(\w+)", Core::(\w+), ([\d\']+)', BOARDS.read_text(), re.M)
     for name, _, clock in (row for row in rows if row[1] == core):
         hz = int(clock.replace("'", ""))
-        print(f"worst case of a tick on {name}: {CYCLES_PER_INSTRUCTION * tick:.0f} cycles of {hz / 1e6:.0f} MHz; greatest rate, with "
+        print(f"worst case of a tick on {name} while a texture changes: {CYCLES_PER_INSTRUCTION * tick:.0f} cycles of {hz / 1e6:.0f} MHz; greatest rate, with "
               f"the sending, {hz / CYCLES_PER_INSTRUCTION / (tick + poll) / 1000:.1f} kHz (estimated from instruction counts, "
               f"{CYCLES_PER_INSTRUCTION} cycles each)")
 

@@ -31,8 +31,8 @@ class QemuBoard:
         with socket.socket(socket.AF_UNIX) as waiting:
             waiting.bind(path)
             waiting.listen(1)
-            self._qemu = subprocess.Popen(["qemu-system-arm", "-M", "netduinoplus2", "-display", "none", "-monitor", "none",
-                                           "-serial", f"unix:{path}", "-kernel", image], stdin=subprocess.DEVNULL)
+            self._qemu = subprocess.Popen(["qemu-system-arm", "-M", "netduinoplus2", "-display", "none", "-monitor", "stdio",
+                                           "-serial", f"unix:{path}", "-kernel", image], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL)
             waiting.settimeout(60)
             self._uart, _ = waiting.accept()
         os.unlink(path)
@@ -69,6 +69,11 @@ class QemuBoard:
                 os.close(self._host)
             self._line = None
 
+    def restart(self):
+        """As after a brown-out: the chip begins again, the line stays."""
+        self._qemu.stdin.write(b"system_reset\n")
+        self._qemu.stdin.flush()
+
     def greet(self):
         """Greets the board until it answers; a board that starts loses what it receives."""
         self.forget()
@@ -85,6 +90,10 @@ class QemuBoard:
     def forget(self):
         """From now on messages() begins after what the board has sent so far."""
         self._since += sum(16 + len(payload) for _, payload in self.messages())
+
+    def forget_all(self):
+        """As forget(), also the frame that a restart cut."""
+        self._since = len(self.said)
 
     def messages(self):
         """(type, payload) of the whole frames that the board sent."""

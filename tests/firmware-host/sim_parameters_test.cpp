@@ -90,6 +90,7 @@ TEST_P(SimParametersRefused, SaysWhereAndWhatThereIs) {
   EXPECT_EQ(p.error().kind, schema::ErrorKind::usage);
   EXPECT_EQ(p.error().where, GetParam().where);
   EXPECT_NE(message(p.error()).find(GetParam().says), std::string::npos) << message(p.error());
+  EXPECT_EQ(message(p.error()).find("::"), std::string::npos) << message(p.error());
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -26,7 +26,7 @@ SAMPLES = 12_000                     # of a texture, in the board's RAM
 UNSUITABLE, DEVICE = 5, 8            # exit codes
 PLAYING, FAULTED, HOST_SILENT = 2, 4, 1  # flags of a tick, the code of a fault (core/WIRE.md)
 RATE_HZ = 2000
-RECORD_S = 5
+RECORD_S, NOISY_S = 60, 5
 PITCH_M = 10e-6
 
 
@@ -147,6 +147,22 @@ def an_unplugged_board():
         falls_to_zero(board)
 
 
+def a_board_that_restarts():
+    """The host ends with the device's error and a session that replays; the board is idle, and works again only when it is greeted."""
+    with QemuBoard(str(IMAGE)) as board:
+        board.greet()
+        program = start_playing(board, "restarted")
+        board.restart()
+        _, error = program.communicate(timeout=120)
+        assert program.returncode == DEVICE, (program.returncode, error)
+        (session,) = pathlib.Path().glob("restarted-*.session")
+        assert tacto.run_json("replay", session.stem)["same_to_the_bit"]
+        board.forget_all()
+        board.greet()
+        assert not list(board.ticks()), "it plays after its restart"
+        assert checks(board.port)["device"]["state"] == "works"
+
+
 def a_texture_that_is_too_large(board):
     """With hermite this texture takes more than the RAM holds. The error names what fits."""
     _, error = tacto.run("play", "oak", "-d", f"tty:{board.port}", "--transducer", "wiertlewski2011", "--interpolation", "hermite",
@@ -155,10 +171,18 @@ def a_texture_that_is_too_large(board):
     assert not pathlib.Path("none.session").exists()
 
 
+def identify_needs_a_sensor_at_the_tray(board):
+    """The board's wiring has none, so nothing is driven: identification over a serial port is in tests/usb/serial_test.py."""
+    board.forget()
+    _, error = tacto.run("identify", "-d", f"tty:{board.port}", "--method", "multisine", "--high", "800Hz", "-o", "none", code=UNSUITABLE)
+    assert "displacement" in error and not pathlib.Path("none.transducer.json").exists(), error
+    assert all(drive_v == 0 for _, drive_v, _ in board.ticks())
+
+
 def damaged_bytes_are_gaps(board):
     """Whatever arrives is true, and the line works again afterwards. The board has received random bytes, too."""
     board.corrupt(3000)
-    done = subprocess.run([tacto.COMMAND, "record", "-d", f"tty:{board.port}", "--time", f"{RECORD_S}s", "-o", "noisy", "--allow-gaps"],
+    done = subprocess.run([tacto.COMMAND, "record", "-d", f"tty:{board.port}", "--time", f"{NOISY_S}s", "-o", "noisy", "--allow-gaps"],
                           capture_output=True, text=True, timeout=300)
     assert done.returncode in (0, DEVICE), done
     ticks = is_every_frame_true(codes_of("noisy"))
@@ -184,12 +208,14 @@ def test():
     make_texture()
     with QemuBoard(str(IMAGE)) as board:
         board.greet()
-        for step in (doctor_works_twice, every_frame_comes, a_texture_replays, a_texture_that_is_too_large, damaged_bytes_are_gaps):
+        for step in (doctor_works_twice, every_frame_comes, a_texture_replays, a_texture_that_is_too_large, identify_needs_a_sensor_at_the_tray,
+                     damaged_bytes_are_gaps):
             step(board)
             print(step.__name__, flush=True)
-    for step in (a_stopped_host, an_unplugged_board, a_damaged_flash_is_refused):
+    for step in (a_stopped_host, an_unplugged_board, a_board_that_restarts, a_damaged_flash_is_refused):
         step()
         print(step.__name__, flush=True)
 
 
-tacto.in_folder(test)
+if __name__ == "__main__":
+    tacto.in_folder(test)

@@ -43,7 +43,7 @@ MAY_INCLUDE = {
     "firmware-host/boards/shared": "firmware-host/{boards core/firmware core/kernel core/wire}",
     "firmware-host/boards/stm32f405": "firmware-host/{boards/shared core/firmware}",
     "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
-    "firmware-host/comedi": "data-schema/{base recording wiring} firmware-host/{core/firmware link}",
+    "firmware-host/comedi": "data-schema/{base recording wiring} firmware-host/{core/firmware core/kernel link}",
     "firmware-host/core/firmware": "firmware-host/{core/kernel core/scene core/wire}",
     "firmware-host/core/kernel": "firmware-host/core/wire",
     "firmware-host/core/scene": "firmware-host/core/{kernel wire}",

@@ -15,6 +15,7 @@ import sys
 import time
 
 import numpy as np
+import soundfile
 
 import tacto
 from play_test import write_grating
@@ -196,6 +197,32 @@ def an_ni_counter_counts_all_edges():
     assert words.count("config source") == 2
 
 
+def a_recording_has_the_counter():
+    """By instructions: each frame is the next reading of the card, and a period that this machine missed is a gap."""
+    wire(rate_hz=2000)
+    code, out, err = run("record", "-d", "comedi:bench", "-o", "counted", "--time", "1s", "--allow-gaps")
+    assert code == 0, (out, err)
+    side = json.loads(pathlib.Path("counted.json").read_text())
+    stored = soundfile.read("counted.wav", dtype="int32", always_2d=True)[0]
+    position = side["channels"][0]
+    assert (position["name"], position["unit"], position["scale"], side["sample_rate_hz"], side["clock"]) == ("position", "m", 1e-6, 2000, "host"), side
+    assert len(stored) + sum(gap["count"] for gap in side.get("gaps", [])) >= 2000 and stored.shape[1] == 2, side
+    readings = np.array([value for what, value in log() if what == "count"])
+    counts = (readings - readings[0]) & COUNTER_MOST
+    starts = [i for i in np.flatnonzero(counts == stored[0, 0]) if np.array_equal(counts[i:i + len(stored)], stored[:, 0])]
+    assert starts and np.ptp(stored[:, 0]) > 15_000, (counts[:5], stored[:5])
+    assert np.all(stored[:, 1] >> 16 == ZERO - 1 - 32768), "input 0 reads the output, which nobody drives"
+    assert not any(what in ("ao", "dio") for what, _ in log()), "a recording drives nothing"
+    tacto.run("validate", "counted")
+    slow = run("record", "-d", "comedi:bench", "-o", "slower", "--time", "0.2s", "--allow-gaps", takes_us=150)
+    side = json.loads(pathlib.Path("slower.json").read_text())
+    assert 1000 <= side["sample_rate_hz"] < 2000 and any("2000 Hz" in each for each in side["warnings"]), (slow, side)
+    code, out, err = run("record", "-d", "comedi:bench", "-o", "cut", "--time", "5s", "--allow-gaps", fails_after=1500)
+    assert code == DEVICE and "refuses an instruction" in err, (code, err)
+    # The readings before the failure, but those of the measured rate.
+    assert 1000 < len(soundfile.read("cut.wav", dtype="int32", always_2d=True)[0]) < 1500
+
+
 def what_cannot_be_played_is_refused():
     for changes, place in (({"output": None}, "output"), ({"encoder": None}, "encoder"), ({"output": {"output": 5, "range_v": [-10, 10]}}, "output 5"),
                            ({"output": {"output": 0, "range_v": [-7, 7]}}, "-7 to 7"), ({"encoder": {"counter": 0, "subdevice": 0, "step_m": 1e-6}}, "subdevice 0"),
@@ -257,7 +284,7 @@ def an_experiment_says_that_the_normal_force_is_unknown():
 def test():
     write_grating()
     for step in (plays_what_the_encoder_reads, every_end_is_at_zero, without_a_watchdog_only_on_request, an_input_can_be_the_position, an_ni_counter_counts_all_edges,
-                 what_cannot_be_played_is_refused, doctor_says_the_rate, an_experiment_says_that_the_normal_force_is_unknown):
+                 a_recording_has_the_counter, what_cannot_be_played_is_refused, doctor_says_the_rate, an_experiment_says_that_the_normal_force_is_unknown):
         step()
         print(f"{step.__name__}: passed")
 

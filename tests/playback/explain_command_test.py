@@ -247,9 +247,18 @@ def check_ends(folder):
     for ends in ("stop", "mirror", "loop"):
         report = made.report_of("explain", folder / "t", "--ends", ends)
         assert report["textures"][0]["ends"] == ends and ("loop_period_m" in report) == (ends == "loop"), report
+        assert report.get("fade_of_ends_m") == (0.001 if ends == "stop" else None), report
     assert made.report_of("explain", folder / "t") == made.report_of("explain", folder / "t", "--ends", "stop")
     refused(USAGE, "change the scene", "explain", folder / "bench.scene.json", "--ends", "loop")
     refused(USAGE, "mirror", "explain", folder / "t", "--ends", "miror")
+
+
+def check_short(folder):
+    """The fade of a short texture is the finest that it has: some 12 /fade down to -100 dB."""
+    made.write_texture(folder / "short", 0.01 * np.sin(2 * np.pi * 2e3 * np.arange(round(1.75e-3 / made.PITCH_M)) * made.PITCH_M))
+    report = made.report_of("explain", folder / "short", "--interpolation", "nearest")
+    assert abs(report["fade_of_ends_m"] / 0.175e-3 - 1) < 1e-2, report["fade_of_ends_m"]
+    assert 10 < report["levels"][0]["passes_per_m"] * report["fade_of_ends_m"] < 15, report["levels"][0]
 
 
 def main():
@@ -259,6 +268,7 @@ def main():
         made.write_path(folder / "path.csv", [0, 0.1, 1.1, 1.2], [0.002, 0.002, 0.04, 0.04])
         check_explain(folder)
         check_board(folder)
+        check_short(folder)
         check_scene(folder)
         check_ends(folder)
         check_choice(folder)

@@ -12,9 +12,10 @@ import sys
 import tempfile
 
 META_PACKAGE = "linux-image-amd64"
-# dummy_hcd: controller and device in one; usb_f_fs: the device's function; 9p: the host's files; comedi_test: an
-# emulated data acquisition card.
-WANTED = ["virtio_pci", "9pnet_virtio", "9p", "libcomposite", "usb_f_fs", "dummy_hcd", "comedi_test"]
+# dummy_hcd: controller and device in one; usb_f_fs, usb_f_acm: the device's functions; cdc_acm, ftdi_sio: serial ports, the
+# latter's adapter behind QEMU's xHCI; 9p: the host's files; comedi_test: an emulated data acquisition card.
+WANTED = ["virtio_pci", "9pnet_virtio", "9p", "libcomposite", "usb_f_fs", "usb_f_acm", "dummy_hcd", "xhci_pci", "cdc_acm", "ftdi_sio",
+          "comedi_test"]
 
 
 def output(*command, **more):

@@ -39,7 +39,7 @@ def accelerators():
     return ["kvm", "tcg"] if os.access("/dev/kvm", os.R_OK | os.W_OK) and not tried else ["tcg"]
 
 
-def qemu_command(image, results, accel):
+def qemu_command(image, results, accel, devices):
     share = "local,security_model=none,multidevs=remap"
     processor = "max" if accel == "kvm" else "qemu64"  # the fastest choice for QEMU's emulation
     clock = [] if accel == "kvm" else COUNTED_CLOCK
@@ -47,7 +47,7 @@ def qemu_command(image, results, accel):
             "-nodefaults", "-display", "none", "-no-reboot", "-serial", "stdio",
             "-kernel", str(KERNEL / "vmlinuz"), "-initrd", str(image), "-append", "console=ttyS0 quiet panic=-1",
             "-virtfs", f"{share},path=/,mount_tag=host,readonly=on,id=host",
-            "-virtfs", f"{share},path={results},mount_tag=results,id=results"]
+            "-virtfs", f"{share},path={results},mount_tag=results,id=results", *devices]
 
 
 def write_environment(results, script, environment):
@@ -80,20 +80,21 @@ def wait_for(machine, results, accel, timeout_s):
     return ""
 
 
-def boot(results, accel, timeout_s):
+def boot(results, accel, timeout_s, devices):
     """Returns the guest's output on its serial port, and the reason if it did not end by itself."""
     with tempfile.TemporaryDirectory(prefix="tacto-guest-") as folder:
         image, serial = pathlib.Path(folder) / "initramfs", pathlib.Path(folder) / "serial"
         image.write_bytes(initramfs.for_guest(KERNEL, HERE / "guest" / "init"))
         with serial.open("wb") as port:
-            machine = subprocess.Popen(qemu_command(image, results, accel), stdin=subprocess.DEVNULL, stdout=port,
+            machine = subprocess.Popen(qemu_command(image, results, accel, devices), stdin=subprocess.DEVNULL, stdout=port,
                                        stderr=subprocess.STDOUT)
             ended = wait_for(machine, results, accel, timeout_s)
         return serial.read_text(errors="replace").replace("\r", "") + ended
 
 
-def run(script, results, timeout_s, **environment):
-    """Runs guest/SCRIPT with `environment` set. Files that it writes to /guest/results are in `results` afterwards.
+def run(script, results, timeout_s, devices=(), **environment):
+    """Runs guest/SCRIPT with `environment` set. Files that it writes to /guest/results are in `results` afterwards. `devices`:
+    more of QEMU's options.
 
     Returns its output. Raises GuestFailed with the whole output unless the script ended with 0.
     """
@@ -102,7 +103,7 @@ def run(script, results, timeout_s, **environment):
     write_environment(results, HERE / "guest" / script, environment)
     said = ""
     for accel in accelerators():
-        said += boot(results, accel, timeout_s)
+        said += boot(results, accel, timeout_s, devices)
         if (results / "up").exists():
             break
         if accel == "kvm":

@@ -150,8 +150,9 @@ Result<std::unique_ptr<PlanarDevice>> make_planar_device(const std::string& uri,
                                : key == "paced" ? &paced
                                                 : nullptr;
     if (parameters.front() != ',' || value == nullptr || key.size() == part.size())
-      return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a part of sim:planar", parameters), uri,
-                          "for example sim:planar,device=sandpaper-1990,hand=minsky-radial,paced=1");
+      return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a part of it", parameters), uri,
+                          fmt::format("for example {},hand=minsky-radial,paced=1",
+                                      uri.starts_with(kArmScheme) ? kArmScheme : kPlanarScheme));
     *value = part.substr(key.size() + 1);
     parameters.remove_prefix(1 + part.size());
   }
