@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page of the device: shows what tactographd does, and steers it.
 
+import {errorText, get} from './answers.js';
 import {css, drawFinger, drawMap, sized, Trace} from './strip.js';
 import {CELL_S, Cells, contactWords, decodeTicks, gainWords, lateRows, limitWords, placeWords, roundUp, Spectrum, SPECTRUM_LENGTH, Speeds, stateOf} from './ticks.js';
 
@@ -27,7 +28,6 @@ let heard_ms = 0, beat_ms = 0, worded_ms = 0, mapDrawn = false, paused = false;
 let numbers = 0, waiting = new Map();  // requests without an answer, by id
 
 const mm = (metres, digits = 2) => `${(1e3 * metres).toFixed(digits)} mm`;
-const errorText = ({what, where, remedy}) => `${where ? where + ': ' : ''}${what}${remedy ? ` (${remedy})` : ''}`;
 function put(id, text) { if (at(id).textContent !== text) at(id).textContent = text; }
 
 // Server and daemon.
@@ -134,10 +134,10 @@ async function fetchMap() {
   mapDrawn = false;
   put('map-hint', '');
   if (wanted === '') return;
-  const answer = await fetch('loaded').catch(() => null);
-  if (wanted !== mapOf || answer === null) return;
-  if (answer.ok) map = new Float32Array(await answer.arrayBuffer());
-  else put('map-hint', `No picture: ${errorText((await answer.json()).error)}`);
+  const found = await get('loaded').then((answer) => answer.arrayBuffer()).catch((error) => error);
+  if (wanted !== mapOf) return;
+  if (found instanceof Error) put('map-hint', `No picture: ${found.message}`);
+  else map = new Float32Array(found);
   mapDrawn = false;
 }
 
@@ -309,7 +309,7 @@ function draw(now_ms) {
 }
 
 async function listTextures() {
-  const {textures} = await (await fetch('textures')).json();
+  const {textures} = await (await get('textures')).json();
   const options = textures.filter(({reason}) => reason === undefined).map(({index, name}) => new Option(name, index));
   at('texture').replaceChildren(...options);
   if (options.length === 0) at('texture').append(new Option('this folder has none', ''));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: chooses a texture, moves the finger, shows what the device does, keeps sessions.
 
+import {errorText, get} from './answers.js';
 import {compareWords, fullScale, gainsOf, largestLevel} from './compare.js';
 import {startDevice} from './device.js';
 import {Library} from './library.js';
@@ -36,7 +37,6 @@ let waiting = [];               // for the device: {when, done}
 
 // Words.
 function say(text) { at('message').textContent = text; }
-const errorText = ({what, where, remedy}) => `${where ? where + ': ' : ''}${what}${remedy ? ` (${remedy})` : ''}`;
 const mm = (metres, digits = 2) => `${(1e3 * metres).toFixed(digits)} mm`;
 
 function showState() {
@@ -75,15 +75,6 @@ function hear(message) {
     at('kept').textContent = `Kept: ${message.kept}, ${message.ticks} ticks${message.lost_ticks > 0 ? `, ${message.lost_ticks} lost` : ''}. Check it: tactograph replay ${message.kept}`;
   }
   showState();
-}
-
-async function get(path) {
-  const answer = await fetch(path);
-  if (answer.ok) return answer;
-  const body = await answer.text();
-  let text = body;
-  try { text = errorText(JSON.parse(body).error); } catch { /* no JSON: the text itself */ }
-  throw new Error(text);
 }
 
 // Textures.
