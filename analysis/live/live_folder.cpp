@@ -5,6 +5,7 @@
 #include <chrono>
 #include <set>
 
+#include "data-schema/recording/recording.hpp"
 #include "data-schema/texture/texture.hpp"
 #include "playback/wasm/browser_board.hpp"
 
@@ -15,15 +16,19 @@ namespace fs = std::filesystem;
 
 using schema::Result;
 
-constexpr std::string_view kEnding = ".texture.json", kWavEnding = ".texture.wav";
+constexpr std::string_view kTexture = ".texture", kJson = ".json", kWav = ".wav";
 
-std::string name_of(const std::string& file) {
-  const std::string name = fs::path(file).filename().string();
-  return name.substr(0, name.size() - kEnding.size());
+bool is_texture(const std::string& sidecar) {
+  return fs::path(sidecar).stem().extension() == kTexture;
+}
+
+std::string name_of(const std::string& sidecar) {
+  const fs::path name = fs::path(sidecar).filename().stem();
+  return (is_texture(sidecar) ? name.stem() : name).string();
 }
 
 std::string wav_of(const std::string& sidecar) {
-  return sidecar.substr(0, sidecar.size() - kEnding.size()) + std::string(kWavEnding);
+  return fs::path(sidecar).replace_extension(kWav).string();
 }
 
 // The earliest time if there is no such file.
@@ -45,30 +50,54 @@ void LiveFolder::read_again(Listed& listed, std::size_t index) const {
   listed.row = cli::Report();
   listed.row.add("index", index).add("name", name_of(listed.file));
   listed.thumbnail.clear();
+  const auto read = is_texture(listed.file) ? read_texture(listed) : read_recording(listed);
+  if (!read)
+    listed.row.add("reason", schema::message(read.error()));
+  else
+    listed.row.add("changed_s", unix_s(std::max(listed.sidecar_time, listed.wav_time)));
+}
+
+Result<void> LiveFolder::read_texture(Listed& listed) {
   const auto texture = schema::read_texture(listed.file);
-  if (!texture) {
-    listed.row.add("reason", schema::message(texture.error()));
-    return;
-  }
+  TACTO_TRY(texture);
   const schema::SpaceSignal& signal = texture->signal;
   listed.row.add("length_m", signal.pitch_m * static_cast<double>(signal.values.size()))
       .add("rms", rms_about_mean(signal.values))
       .add("unit", texture->unit)
-      .add("surface", texture->surface)
-      .add("changed_s", unix_s(std::max(listed.sidecar_time, listed.wav_time)));
+      .add("surface", texture->surface);
   listed.thumbnail = texture_map(signal.values, kThumbnailColumns);
+  return {};
 }
 
-// A WAV without its sidecar is listed, too: as one that can't be read.
+Result<void> LiveFolder::read_recording(Listed& listed) {
+  const auto recording = schema::open_recording(listed.file);
+  TACTO_TRY(recording);
+  const schema::RecordingHeader& header = recording->header;
+  std::vector<std::string> channels;
+  for (const schema::Channel& channel : header.channels) channels.push_back(channel.name);
+  std::uint64_t missing = 0;
+  for (const schema::Gap& gap : header.gaps) missing += gap.count;
+  listed.row.add("duration_s", schema::duration_s(header))
+      .add("sample_rate_hz", header.sample_rate_hz)
+      .add("channels", std::move(channels))
+      .add("strokes", header.strokes.size())
+      .add("missing_frames", missing)
+      .add("surface", header.surface);
+  return {};
+}
+
+// A WAV without its sidecar is listed, too: as one that can't be read. Other JSON files are not.
 void LiveFolder::refresh() {
   std::set<std::string> found;
   std::error_code failed;
   for (fs::directory_iterator at(folder_, failed), end; !failed && at != end; at.increment(failed)) {
     std::error_code ignored;
-    std::string path = at->path().string();
-    if (!at->is_regular_file(ignored)) continue;
-    if (path.ends_with(kWavEnding)) path.replace(path.size() - kWavEnding.size(), kWavEnding.size(), kEnding);
-    if (path.ends_with(kEnding)) found.insert(std::move(path));
+    fs::path path = at->path();
+    if (!at->is_regular_file(ignored) || path.filename().string().starts_with(".")) continue;
+    if (path.extension() == kWav)
+      found.insert(path.replace_extension(kJson).string());
+    else if (path.extension() == kJson && is_texture(path.string()))
+      found.insert(path.string());
   }
   reason_ = failed ? failed.message() : std::string();
   for (const std::string& path : found)
@@ -85,23 +114,36 @@ std::string LiveFolder::list_json() const {
   for (const Listed& one : listed_)
     if (std::max(one.sidecar_time, one.wav_time) > fs::file_time_type::min()) by_name.push_back(&one);
   std::ranges::sort(by_name, {}, &Listed::file);
-  std::vector<cli::Report> rows;
-  for (const Listed* const one : by_name) rows.push_back(one->row);
+  std::vector<cli::Report> textures, recordings;
+  for (const Listed* const one : by_name) (is_texture(one->file) ? textures : recordings).push_back(one->row);
   cli::Report list;
-  list.add("textures", std::move(rows));
+  list.add("textures", std::move(textures)).add("recordings", std::move(recordings));
   if (!reason_.empty()) list.add("reason", reason_);
   return list.json();
 }
 
 Result<std::vector<float>> LiveFolder::thumbnail(std::size_t index) const {
   if (index < listed_.size() && !listed_[index].thumbnail.empty()) return listed_[index].thumbnail;
+  if (index < listed_.size() && !is_texture(listed_[index].file))
+    if (const auto recording = schema::open_recording(listed_[index].file);
+        recording && recording->header.frames > 0 && recording->header.frames <= kMostDrawn) {
+      const auto drawn = schema::texture_channels(recording->header);
+      const auto channel = schema::read_channel(*recording, drawn.empty() ? 0 : drawn.front());
+      if (channel) return texture_map(channel->values, kThumbnailColumns);
+    }
   return schema::fail(schema::ErrorKind::not_found, "there is no picture of this index",
                       std::to_string(index), "load the page again");
 }
 
 Result<std::string> LiveFolder::file(std::size_t index) const {
-  if (index < listed_.size()) return fs::absolute(listed_[index].file).lexically_normal().string();
-  return schema::fail(schema::ErrorKind::not_found, "there is no texture of this index",
+  const auto named = named_file(index);
+  TACTO_TRY(named);
+  return fs::absolute(*named).lexically_normal().string();
+}
+
+Result<std::string> LiveFolder::named_file(std::size_t index) const {
+  if (index < listed_.size()) return listed_[index].file;
+  return schema::fail(schema::ErrorKind::not_found, "there is no texture or recording of this index",
                       std::to_string(index), "load the page again");
 }
 
@@ -109,7 +151,7 @@ Result<std::vector<float>> LiveFolder::map_of(const std::string& full_name) cons
   for (const Listed& listed : listed_) {
     const std::string& own = listed.file;
     std::error_code ignored;
-    const std::string sidecar = schema::stem_of(full_name, ".texture") + std::string(kEnding);
+    const std::string sidecar = schema::stem_of(full_name, kTexture) + ".texture.json";
     if (!fs::path(full_name).is_absolute() || !fs::equivalent(own, sidecar, ignored)) continue;
     const auto texture = schema::read_texture(own);
     TACTO_TRY(texture);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The textures of a folder and their spectrograms, by index: the page never names a path.
+// The textures and recordings of a folder and their spectrograms, by index: the page never names a path.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -39,17 +40,22 @@ class LiveFolder {
   LiveFolder(std::string folder, std::string transducer)
       : folder_(std::move(folder)), transducer_(std::move(transducer)) {}
 
-  /// Reads the folder again, and the textures in it that are new or have changed. A texture that was listed
-  /// before keeps its index.
+  const std::string& folder() const { return folder_; }
+  /// Reads the folder again, and the textures and recordings in it that are new or have changed. What was
+  /// listed before keeps its index.
   void refresh();
-  /// JSON: `textures`, by name: index, name, length, RMS, unit, surface, time of the file; one that can't be
+  /// JSON: `textures`, by name: index, name, length, RMS, unit, surface, time of the file; `recordings`:
+  /// duration, rate, channels, strokes and missing frames instead of length, RMS and unit; one that can't be
   /// read has the reason. `reason`: why the folder can't be read.
   std::string list_json() const;
-  /// A small picture of a listed texture: as LiveTexture::map, in kThumbnailColumns. Errors: not_found, also
-  /// for a texture that can't be read.
+  /// A small picture: as LiveTexture::map, in kThumbnailColumns; of a recording along time, of the first
+  /// channel of which a texture can be made. Errors: not_found, also for what can't be read and for a
+  /// recording of more than kMostDrawn frames.
   schema::Result<std::vector<float>> thumbnail(std::size_t index) const;
-  /// The full name of a texture's sidecar. Errors: not_found.
+  /// The full name of a sidecar. Errors: not_found.
   schema::Result<std::string> file(std::size_t index) const;
+  /// The same as the folder was named, for a command line. Errors: not_found.
+  schema::Result<std::string> named_file(std::size_t index) const;
   /// The texture with this full name, by its stem or a file, if it is of this folder: its map, as
   /// LiveTexture::map. Errors: not_found; as read_texture.
   schema::Result<std::vector<float>> map_of(const std::string& full_name) const;
@@ -68,7 +74,8 @@ class LiveFolder {
 
  private:
   static constexpr std::size_t kMostMade = 4, kMostSpectrograms = 2, kThumbnailColumns = 96;
-  // A texture of the list, as its files were at these times.
+  static constexpr std::uint64_t kMostDrawn = std::uint64_t{1} << 22;
+  // A texture or recording of the list, as its files were at these times.
   struct Listed {
     std::string file;  // the sidecar
     std::filesystem::file_time_type sidecar_time, wav_time;
@@ -76,6 +83,8 @@ class LiveFolder {
     std::vector<float> thumbnail;
   };
   void read_again(Listed& listed, std::size_t index) const;
+  static schema::Result<void> read_texture(Listed& listed);
+  static schema::Result<void> read_recording(Listed& listed);
 
   std::string folder_, transducer_, reason_;
   std::vector<Listed> listed_;  // by index

@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "data-schema/base/error.hpp"
 
@@ -14,8 +16,9 @@ namespace tacto::schema {
 
 /// begin: from now on the page sends the log of a playback of this texture. change: its device has the frames
 /// of another one, and the log goes on with the change to it. keep: the log becomes a session. steer: this
-/// page steers the daemon from now on. The others are the daemon's.
-enum class LiveVerb { begin, change, keep, steer, status, load, arm, play, stop, disarm, gain };
+/// page steers the daemon from now on. run: a verb of the command becomes a job; cancel: a job ends. The
+/// others are the daemon's.
+enum class LiveVerb { begin, change, keep, steer, status, load, arm, play, stop, disarm, gain, run, cancel };
 
 inline constexpr double kMostTimes = 1e6;  ///< magnitude of LiveRequest::times
 
@@ -27,6 +30,9 @@ struct LiveRequest {
   std::optional<std::int64_t> id;       ///< comes back in the daemon's answer
   std::optional<std::size_t> texture;   ///< load: index in the folder
   std::optional<double> times_default;  ///< gain
+  std::string job_verb = {};            ///< run: compare, fidelity, trade, report
+  std::vector<std::size_t> files = {};  ///< run: indices in the folder, at most 2
+  std::size_t job = 0;                  ///< cancel
 };
 
 /// Errors: malformed, naming the member, also an unknown one.

@@ -79,7 +79,7 @@ function hear(message) {
 
 // Textures.
 const library = new Library({
-  list: at('textures'), search: at('search'), order: at('order'), count: at('count'), colours: at('colours'), get,
+  list: at('textures'), recordings: at('recordings'), search: at('search'), order: at('order'), count: at('count'), colours: at('colours'), get,
   choose: (row) => choose('A', row).catch((error) => say(error.message)),
   chooseB: (row) => choose('B', row).catch((error) => say(error.message)),
 });
