@@ -33,8 +33,8 @@ using schema::fail;
 using schema::Result;
 
 constexpr int kFirstPort = 7230, kPortsTried = 20;
-constexpr std::string_view kDaemonPath = "/daemon", kJobsPath = "/jobs", kChangePath = "/change/",
-                           kExportPath = "/export/";
+constexpr std::string_view kDaemonPath = "/daemon", kJobsPath = "/jobs", kShapePath = "/shape/",
+                           kChangePath = "/change/", kExportPath = "/export/";
 constexpr std::size_t kLongestPath = 256;
 
 std::string_view type_of_asset(std::string_view name) {
@@ -174,13 +174,14 @@ class Site {
       folder_.refresh();
       return json_answer(folder_.list_json());
     }
-    if (const auto index = number_after("/texture/", request.path)) return texture(*index);
+    if (const auto index = number_after("/texture/", request.path)) return texture(*index, request.query);
     if (const auto index = number_after("/thumbnail/", request.path)) {
       const auto picture = folder_.thumbnail(*index);
       return picture ? bytes_answer(*picture) : error_answer(picture.error());
     }
     if (const auto index = number_after("/spectrogram/", request.path)) return spectrogram(*index);
     if (const auto job = number_after("/result/", request.path)) return result(*job);
+    if (request.path.starts_with(kShapePath)) return shape(request);
     if (request.path.starts_with(kExportPath))
       return exported(std::string_view(request.path).substr(kExportPath.size()), request.query);
     for (const std::string_view part : {"cells", "known"})
@@ -201,6 +202,10 @@ class Site {
     const auto number = folder_.make_spectrogram(index);
     return number ? json_answer(spectrogram_json(*number, **folder_.spectrogram(*number)))
                   : error_answer(number.error());
+  }
+  WebAnswer shape(const WebRequest& request) {
+    const auto made = folder_.shape(std::string_view(request.path).substr(kShapePath.size()), request.query);
+    return made ? json_answer(*made) : error_answer(made.error());
   }
   // A page that a verb has written: without scripts, and of an origin of its own.
   WebAnswer result(std::size_t job) {
@@ -281,8 +286,11 @@ class Site {
     std::size_t number = 0;
     return read_number(digits, number) && digits.empty() ? std::optional(number) : std::nullopt;
   }
-  WebAnswer texture(std::size_t index) {
-    const auto number = folder_.make(index);
+  WebAnswer texture(std::size_t index, const std::string& query) {
+    constexpr std::string_view kInverse = "inverse=";
+    const bool named = query.starts_with(kInverse);
+    const auto number =
+        folder_.make(index, named ? std::optional(query.substr(kInverse.size())) : std::nullopt);
     return number ? json_answer(figures_json(*number, **folder_.made(*number)))
                   : error_answer(number.error());
   }

@@ -272,6 +272,7 @@ Result<std::string> LiveDaemon::line_of(const schema::LiveRequest& request) cons
     auto file = folder_.file(*request.texture);
     TACTO_TRY(file);
     asked.file = std::move(*file);
+    asked.playback.inverse = request.inverse;
   }
   if (request.verb == LiveVerb::arm) {
     asked.while_connected = true;

@@ -2,7 +2,9 @@
 #include "analysis/live/live_folder.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
+#include <cstdlib>
 #include <set>
 
 #include "data-schema/recording/recording.hpp"
@@ -102,7 +104,7 @@ void LiveFolder::refresh() {
   reason_ = failed ? failed.message() : std::string();
   for (const std::string& path : found)
     if (std::ranges::find(listed_, path, &Listed::file) == listed_.end())
-      listed_.push_back({path, {}, {}, {}, {}});
+      listed_.push_back({path, {}, {}, {}, {}, false});
   for (std::size_t i = 0; i < listed_.size(); ++i)
     if (Listed& one = listed_[i];
         one.sidecar_time != time_of(one.file) || one.wav_time != time_of(wav_of(one.file)) || one.row.empty())
@@ -112,7 +114,8 @@ void LiveFolder::refresh() {
 std::string LiveFolder::list_json() const {
   std::vector<const Listed*> by_name;
   for (const Listed& one : listed_)
-    if (std::max(one.sidecar_time, one.wav_time) > fs::file_time_type::min()) by_name.push_back(&one);
+    if (!one.shape && std::max(one.sidecar_time, one.wav_time) > fs::file_time_type::min())
+      by_name.push_back(&one);
   std::ranges::sort(by_name, {}, &Listed::file);
   std::vector<cli::Report> textures, recordings;
   for (const Listed* const one : by_name) (is_texture(one->file) ? textures : recordings).push_back(one->row);
@@ -161,21 +164,22 @@ Result<std::vector<float>> LiveFolder::map_of(const std::string& full_name) cons
                       "start tactograph live with the folder of the daemon's textures");
 }
 
-Result<std::size_t> LiveFolder::make(std::size_t index) {
+Result<std::size_t> LiveFolder::make(std::size_t index, const std::optional<std::string>& inverse) {
   const auto own = file(index);
   TACTO_TRY(own);
-  auto texture = make_live_texture(*own, transducer_);
+  auto texture = make_live_texture(*own, transducer_, inverse);
   TACTO_TRY(texture);
+  texture->session_stem = fs::absolute(fs::path(folder_) / name_of(*own)).lexically_normal().string();
   return made_.add(std::move(*texture));
 }
 
-Result<std::shared_ptr<const LiveTexture>> LiveFolder::made(std::size_t number) const {
+Result<std::shared_ptr<const LiveTexture>> LiveFolder::made(std::size_t number) {
   if (auto found = made_.find(number)) return found;
   return schema::fail(schema::ErrorKind::not_found, "this texture is not prepared any more",
                       std::to_string(number), "choose it again");
 }
 
-Result<LiveChange> LiveFolder::change(std::size_t playing, std::size_t next, double times) const {
+Result<LiveChange> LiveFolder::change(std::size_t playing, std::size_t next, double times) {
   const auto from = made(playing);
   TACTO_TRY(from);
   const auto to = made(next);
@@ -191,10 +195,85 @@ Result<std::size_t> LiveFolder::make_spectrogram(std::size_t index) {
   return spectrograms_.add(std::move(*spectrogram));
 }
 
-Result<std::shared_ptr<const LiveSpectrogram>> LiveFolder::spectrogram(std::size_t number) const {
+Result<std::shared_ptr<const LiveSpectrogram>> LiveFolder::spectrogram(std::size_t number) {
   if (auto found = spectrograms_.find(number)) return found;
   return schema::fail(schema::ErrorKind::not_found, "this spectrogram is not there any more",
                       std::to_string(number), "choose its texture again");
+}
+
+LiveFolder::~LiveFolder() {
+  std::error_code ignored;
+  if (!shapes_.empty()) fs::remove_all(shapes_, ignored);
+}
+
+Result<ShapedTexture> LiveFolder::make_shape(std::string_view source, const std::string& query) const {
+  const auto shape = parse_shape(query);
+  TACTO_TRY(shape);
+  if (source == "grating") return grating_texture(*shape);
+  if (source == "noise") return noise_texture(*shape);
+  std::size_t index = listed_.size();
+  const auto [end, failed] = std::from_chars(source.data(), source.data() + source.size(), index);
+  if (failed != std::errc() || end != source.data() + source.size() || index >= listed_.size() ||
+      listed_[index].shape)
+    return schema::fail(schema::ErrorKind::not_found, "there is no texture of this index",
+                        std::string(source), "load the page again");
+  auto shaped = shaped_texture(listed_[index].file, *shape);
+  if (shaped) shaped->ending = name_of(listed_[index].file) + shaped->ending;
+  return shaped;
+}
+
+Result<std::string> LiveFolder::folder_of_shapes() {
+  if (!shapes_.empty()) return shapes_;
+  std::error_code ignored;
+  for (const fs::path& within : {fs::absolute(folder_), fs::temp_directory_path(ignored)}) {
+    std::string made = (within / ".tactograph-live-XXXXXX").string();
+    if (mkdtemp(made.data()) == nullptr) continue;
+    fs::permissions(made, fs::perms(0755), ignored);
+    return shapes_ = made;
+  }
+  return schema::fail(schema::ErrorKind::cannot_write, "no folder can be made here", folder_,
+                      "free some space, or get the permission to write");
+}
+
+Result<std::string> LiveFolder::shape(std::string_view source, const std::string& query) {
+  const auto shaped = make_shape(source, query);
+  TACTO_TRY(shaped);
+  const auto within = folder_of_shapes();
+  TACTO_TRY(within);
+  const std::size_t index = listed_.size();
+  const auto folder_of = [&](std::size_t one) { return fs::path(*within) / std::to_string(one); };
+  const std::string stem = (folder_of(index) / shaped->ending).string();
+  schema::PendingFiles pending;
+  TACTO_TRY(schema::add_texture(pending, stem, shaped->texture));
+  TACTO_TRY(pending.commit(schema::Existing::replace, schema::Sync::by_caller));  // it is temporary
+  listed_.push_back({stem + ".texture.json", {}, {}, {}, {}, true});
+  shaped_.push_back(index);
+  if (shaped_.size() > kMostShapes) {
+    std::error_code ignored;
+    fs::remove_all(folder_of(shaped_.front()), ignored);
+    shaped_.pop_front();
+  }
+  cli::Report row = shaped->effective;
+  return row.add("index", index).add("name", shaped->ending).json();
+}
+
+Result<std::string> LiveFolder::save(std::size_t index) const {
+  const auto own = file(index);
+  TACTO_TRY(own);
+  if (!listed_[index].shape) return schema::fail(schema::ErrorKind::usage, "is in the folder already", *own);
+  const auto texture = schema::read_texture(*own);
+  TACTO_TRY(texture);
+  constexpr int kTried = 1000;
+  for (int i = 1; i <= kTried; ++i) {
+    const std::string name = name_of(*own) + (i == 1 ? "" : "-" + std::to_string(i));
+    const std::string stem = (fs::path(folder_) / name).string();
+    if (!schema::check_texture_free(stem)) continue;
+    schema::PendingFiles pending;
+    TACTO_TRY(schema::add_texture(pending, stem, *texture));
+    TACTO_TRY(pending.commit(schema::Existing::keep));
+    return stem + ".texture.json";
+  }
+  return schema::fail(schema::ErrorKind::cannot_write, "all names are taken", *own, "remove some textures");
 }
 
 std::string figures_json(std::size_t made, const LiveTexture& texture) {

@@ -112,7 +112,13 @@ class LiveJobs::Page final : public WebConversation {
       TACTO_TRY(jobs_.cancel(request.job));
       return schema::ControlFields{};
     }
-    return fail(ErrorKind::usage, "this page runs jobs", "request", "use another page");
+    if (request.verb == LiveVerb::save) {
+      const auto saved = jobs_.folder_.save(*request.texture);
+      TACTO_TRY(saved);
+      return schema::ControlFields{{"saved", *saved}};
+    }
+    return fail(ErrorKind::usage, "this connection is for jobs and saved textures", "request",
+                "use another page");
   }
   LiveJobs& jobs_;
 };

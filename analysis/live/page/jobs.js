@@ -61,7 +61,7 @@ function show(jobs) {
 function add({number, command}) {
   const state = make('strong', {}), cancel = make('button', {type: 'button', ariaLabel: `Cancel ${command}`, onclick: () => ask('cancel', {job: number})}, 'Cancel');
   const open = make('a', {href: `result/${number}`, target: '_blank', rel: 'noopener', hidden: true});
-  const said = make('pre', {}), printed = make('pre', {}), answer = make('details', {hidden: true}, make('summary', {}, 'What it printed'), printed);
+  const said = make('pre', {}), printed = make('pre', {}), answer = make('details', {hidden: true}, make('summary', {ariaLabel: `What ${command} printed`}, 'What it printed'), printed);
   const element = make('li', {}, make('div', {className: 'row'}, state, cancel), make('code', {}, command), said, answer, open);
   items.set(number, {element, state, cancel, open, said, printed, answer});
   at('jobs').prepend(element);
@@ -71,7 +71,7 @@ function update(item, job) {
   const ends = job.state === 'waiting' || job.state === 'running';
   const put = (element, text) => { if (element.textContent !== text) element.textContent = text; };
   put(item.state, `${MARKS[job.state]} ${job.state === 'running' && job.cancelled ? 'is being cancelled' : job.state}`);
-  item.cancel.hidden = !ends;
+  item.cancel.hidden = item.cancel.disabled = !ends;
   put(item.said, job.state === 'running' ? lastLine(job.said) : job.said.trimEnd());
   put(item.printed, job.printed);
   item.answer.hidden = job.printed === '';
