@@ -263,17 +263,24 @@ Result<std::string> LiveFolder::save(std::size_t index) const {
   if (!listed_[index].shape) return schema::fail(schema::ErrorKind::usage, "is in the folder already", *own);
   const auto texture = schema::read_texture(*own);
   TACTO_TRY(texture);
+  const auto stem = free_stem(
+      name_of(*own), [](const std::string& one) { return schema::check_texture_free(one).has_value(); });
+  TACTO_TRY(stem);
+  schema::PendingFiles pending;
+  TACTO_TRY(schema::add_texture(pending, *stem, *texture));
+  TACTO_TRY(pending.commit(schema::Existing::keep));
+  return *stem + ".texture.json";
+}
+
+Result<std::string> LiveFolder::free_stem(const std::string& name,
+                                          const std::function<bool(const std::string& stem)>& is_free) const {
   constexpr int kTried = 1000;
   for (int i = 1; i <= kTried; ++i) {
-    const std::string name = name_of(*own) + (i == 1 ? "" : "-" + std::to_string(i));
-    const std::string stem = (fs::path(folder_) / name).string();
-    if (!schema::check_texture_free(stem)) continue;
-    schema::PendingFiles pending;
-    TACTO_TRY(schema::add_texture(pending, stem, *texture));
-    TACTO_TRY(pending.commit(schema::Existing::keep));
-    return stem + ".texture.json";
+    std::string stem = (fs::path(folder_) / (i == 1 ? name : name + "-" + std::to_string(i))).string();
+    if (is_free(stem)) return stem;
   }
-  return schema::fail(schema::ErrorKind::cannot_write, "all names are taken", *own, "remove some textures");
+  return schema::fail(schema::ErrorKind::cannot_write, "all such names are taken", name,
+                      "remove or rename some of these files");
 }
 
 std::string figures_json(std::size_t made, const LiveTexture& texture) {

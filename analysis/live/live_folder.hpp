@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,6 +54,9 @@ class LiveFolder {
   ~LiveFolder();
 
   const std::string& folder() const { return folder_; }
+  /// A stem in the folder: NAME, or NAME-2, NAME-3 ..., the first one that is free. Errors: cannot_write.
+  schema::Result<std::string> free_stem(const std::string& name,
+                                        const std::function<bool(const std::string& stem)>& is_free) const;
   /// Reads the folder again, and the textures and recordings in it that are new or have changed. What was
   /// listed before keeps its index.
   void refresh();

@@ -35,6 +35,7 @@ constexpr std::size_t kMostJobs = 20;          // that are listed; the oldest on
 constexpr std::size_t kMostText = 256 * 1024;  // bytes of what a job prints; more is not kept
 constexpr std::size_t kMostPage = 64 << 20;    // bytes
 constexpr double kEndsWithinS = 3;
+constexpr const char* kEnding = ".html";
 
 bool has_ended(std::string_view state) {
   return state != "waiting" && state != "running";
@@ -164,9 +165,14 @@ Result<std::size_t> LiveJobs::add(const LiveRequest& request) {
     name += (name.empty() ? "" : "-") + fs::path(stem_of_input(*file)).filename().string();
   }
   if (needed == 0) job.words.push_back(folder_.folder());
-  const auto output = free_output(name.empty() ? request.job_verb : name + "-" + request.job_verb);
-  TACTO_TRY(output);
-  job.output = *output;
+  const auto is_free = [this](const std::string& stem) {
+    std::error_code ignored;
+    return !fs::exists(stem + kEnding, ignored) &&
+           std::ranges::find(jobs_, stem + kEnding, &Job::output) == jobs_.end();
+  };
+  const auto stem = folder_.free_stem(name + (needed == 0 ? "" : "-") + request.job_verb, is_free);
+  TACTO_TRY(stem);
+  job.output = *stem + kEnding;
   job.words.insert(job.words.end(), {"-o", job.output});
   job.number = next_++;
   jobs_.push_back(std::move(job));
@@ -175,20 +181,6 @@ Result<std::size_t> LiveJobs::add(const LiveRequest& request) {
     jobs_.erase(ended);
   changed_ = true;
   return next_ - 1;
-}
-
-// "C-fidelity.html", "C-fidelity-2.html" ...: no job replaces a file.
-Result<std::string> LiveJobs::free_output(const std::string& name) const {
-  constexpr int kTried = 1000;
-  for (int i = 1; i <= kTried; ++i) {
-    const std::string file =
-        (fs::path(folder_.folder()) / fmt::format("{}{}.html", name, i == 1 ? "" : fmt::format("-{}", i)))
-            .string();
-    std::error_code ignored;
-    if (!fs::exists(file, ignored) && std::ranges::find(jobs_, file, &Job::output) == jobs_.end())
-      return file;
-  }
-  return fail(ErrorKind::cannot_write, "all names of pages are taken", name, "remove some of these pages");
 }
 
 // A verb that is interrupted twice ends at once, so the second request is one more signal.

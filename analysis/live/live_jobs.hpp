@@ -47,7 +47,6 @@ class LiveJobs {
     bool cancelled = false;
   };
   schema::Result<std::size_t> add(const schema::LiveRequest& request);
-  schema::Result<std::string> free_output(const std::string& name) const;
   schema::Result<void> cancel(std::size_t number);
   void start(Job& job);
   void read_output(Job& job);
