@@ -2,6 +2,7 @@
 // The page of jobs: starts verbs of the command on files of the folder, shows what they print, opens their pages.
 
 import {errorText, get} from './answers.js';
+import {make} from './library.js';
 
 const RECONNECT_MS = 2000;
 const FILES = {compare: 2, fidelity: 1, trade: 1, report: 0};  // how many each verb takes
@@ -12,11 +13,6 @@ const at = (id) => document.getElementById(id);
 let socket = null, files = [], items = new Map();  // elements of jobs, by number
 
 function say(text) { if (at('message').textContent !== text) at('message').textContent = text; }
-function make(tag, members, ...parts) {
-  const element = Object.assign(document.createElement(tag), members);
-  element.append(...parts);
-  return element;
-}
 
 function connect() {
   socket = new WebSocket(`ws://${location.host}/jobs`);

@@ -41,7 +41,8 @@ export function recordingWords({duration_s, sample_rate_hz, channels, strokes, m
       `${strokes} stroke${strokes === 1 ? '' : 's'}${missing_frames > 0 ? `, ${missing_frames} frames missing` : ''}${surface ? `, surface ${surface}` : ''}`;
 }
 
-function make(tag, members, ...parts) {
+/** An element with its properties and what is in it. */
+export function make(tag, members, ...parts) {
   const element = Object.assign(document.createElement(tag), members);
   element.append(...parts);
   return element;

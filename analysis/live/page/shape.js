@@ -2,6 +2,7 @@
 // Sliders for what a texture is: a texture of the folder, stretched or cut to a band; or a computed one.
 
 import {errorText, get} from './answers.js';
+import {make} from './library.js';
 
 // Positions of a slider are 0 to STEPS, from `low` to `high` in the slider's unit, which is `times` the unit of its query.
 const STEPS = 200;
@@ -61,17 +62,12 @@ export function effectiveWords(shape) {
   return said.length > 0 ? said.join(', ') : 'as it is';
 }
 
-function make(tag, members, ...parts) {
-  const element = Object.assign(document.createElement(tag), members);
-  element.append(...parts);
-  return element;
-}
-
 export class Shape {
   /** `element`: an empty fieldset. `changed(index)` gives the texture of this index to the device; it returns a promise. */
   constructor(element, changed) {
     this.changed = changed;
     this.source = null;              // index of the texture
+    this.sources = 0;                // how many there have been
     this.made = null;                // what plays: the server's answer
     this.wanted = this.busy = false;
     this.kind = make('select', {id: 'shape-kind'}, ...[['texture', 'the texture'], ['grating', 'a grating (computed)'], ['noise', 'noise (computed)']].map(([value, text]) => new Option(text, value)));
@@ -100,6 +96,7 @@ export class Shape {
   /** The texture that is shaped from now on; its sliders are reset. */
   of(index) {
     this.source = index;
+    ++this.sources;
     this.made = null;
     this.kind.value = 'texture';
     this.reset();
@@ -138,7 +135,7 @@ export class Shape {
 
   /** Makes what the sliders ask for: one at a time, the newest next. */
   async apply() {
-    if (this.sliders.children.length > 0) this.read();
+    this.read();
     this.wanted = true;
     this.saved.textContent = '';
     if (this.busy) return this.show();
@@ -146,10 +143,11 @@ export class Shape {
     while (this.wanted) {
       this.wanted = false;
       this.show();
+      const source = this.sources;
       try {
         const made = await this.make();
-        await this.changed(made.index);
-        this.made = made;
+        if (source === this.sources) await this.changed(made.index);
+        if (source === this.sources) this.made = made;
       } catch (error) {
         this.saved.textContent = `Not changed: ${error.message}`;
       }
