@@ -244,7 +244,10 @@ void LiveJobs::end(Job& job, int status) {
   read_output(job);
   close(job.answer);
   close(job.messages);
-  const bool done = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  // A verb that has written its page has done its work, also if its exit code says that files are broken.
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+  const bool done = WIFEXITED(status) && (code == 0 || schema::is_file(job.output));
+  if (code != 0) job.said += fmt::format("exit code {}\n", code);
   job.state = done ? "done" : job.cancelled ? "cancelled" : "failed";
   if (WIFSIGNALED(status) && !job.cancelled)
     job.said += fmt::format("ended by signal {}\n", WTERMSIG(status));

@@ -129,7 +129,7 @@ def a_page_plays(server):
     assert wait_until(client, lambda status: True)["gain_times_default"] == 0.5
     shape = server.json(f"/shape/{oak}?stretch=1.5")
     changed = page.must("load", texture=shape["index"])  # while it plays
-    assert changed["changed"] and changed["gain_times_default"] == 0.5 and changed["file"].endswith("/oak-stretched.texture.json"), changed
+    assert changed["changed"] and page.must("status")["gain_times_default"] == 0.5 and changed["file"].endswith("/oak-stretched.texture.json"), changed
     page.event("status", lambda event: event.get("loaded") == changed["file"])
     assert server.ask("/loaded").status == 200
     assert page.ask("load", texture=oak, inverse="gain")["error"]["fault"] == 4  # another filter: not while it plays
