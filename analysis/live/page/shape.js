@@ -110,7 +110,7 @@ export class Shape {
       return make('label', {}, `${slider.words} `, make('span', {}, range, ' ', value));
     }));
     this.keep.checked = false;
-    this.keepRow.hidden = this.kind.value !== 'texture';
+    this.keep.disabled = this.keepRow.hidden = this.kind.value !== 'texture';
     this.values = kind.map(({start}) => start);
     this.show();
   }
