@@ -27,7 +27,10 @@ schema::Result<cli::Report> serve_live(const LiveOptions& options) {
 
 cli::Action declare_live(CLI::App& app) {
   auto options = std::make_shared<LiveOptions>();
-  app.add_option("folder", options->folder, "Folder with textures; sessions that you keep are written there");
+  app.add_option(
+      "folder", options->folder,
+      "Folder with textures and recordings; sessions and textures that you keep, and pages of jobs, are "
+      "written there");
   app.add_option("--transducer", options->transducer,
                  "A preset or NAME.transducer.json: the tray that is modelled")
       ->capture_default_str();

@@ -13,6 +13,7 @@
 #include "analysis/live/live_access.hpp"
 #include "analysis/live/live_daemon.hpp"
 #include "analysis/live/live_folder.hpp"
+#include "analysis/live/live_jobs.hpp"
 #include "analysis/live/live_session.hpp"
 #include "data-schema/base/module.hpp"
 #include "data-schema/control/control.hpp"
@@ -32,7 +33,8 @@ using schema::fail;
 using schema::Result;
 
 constexpr int kFirstPort = 7230, kPortsTried = 20;
-constexpr std::string_view kDaemonPath = "/daemon", kChangePath = "/change/", kExportPath = "/export/";
+constexpr std::string_view kDaemonPath = "/daemon", kJobsPath = "/jobs", kShapePath = "/shape/",
+                           kChangePath = "/change/", kExportPath = "/export/";
 constexpr std::size_t kLongestPath = 256;
 
 std::string_view type_of_asset(std::string_view name) {
@@ -134,17 +136,22 @@ class Page final : public WebConversation {
 class Site {
  public:
   Site(const LiveOptions& options, int port)
-      : access_(port), folder_(options.folder, options.transducer), daemon_(options.socket, folder_) {
+      : access_(port),
+        folder_(options.folder, options.transducer),
+        daemon_(options.socket, folder_),
+        jobs_(folder_) {
     folder_.refresh();
   }
   WebSite handlers() {
     return {[this](const WebRequest& request) { return answer(request); },
             [this](const WebRequest& request) -> std::unique_ptr<WebConversation> {
               if (request.path == kDaemonPath) return daemon_.converse();
+              if (request.path == kJobsPath) return jobs_.converse();
               return std::make_unique<Page>(folder_, kept_);
             }};
   }
   LiveDaemon& daemon() { return daemon_; }
+  LiveJobs& jobs() { return jobs_; }
   const LiveAccess& access() const { return access_; }
   std::size_t kept() const { return kept_; }
 
@@ -159,18 +166,22 @@ class Site {
   WebAnswer content(const WebRequest& request) {
     if (request.path.size() > kLongestPath) return too_long();
     if (request.upgrade)
-      return request.path == "/session" || request.path == kDaemonPath ? WebAnswer() : not_found();
+      return request.path == "/session" || request.path == kDaemonPath || request.path == kJobsPath
+                 ? WebAnswer()
+                 : not_found();
     if (request.path == "/loaded") return loaded();
     if (request.path == "/textures") {
       folder_.refresh();
       return json_answer(folder_.list_json());
     }
-    if (const auto index = number_after("/texture/", request.path)) return texture(*index);
+    if (const auto index = number_after("/texture/", request.path)) return texture(*index, request.query);
     if (const auto index = number_after("/thumbnail/", request.path)) {
       const auto picture = folder_.thumbnail(*index);
       return picture ? bytes_answer(*picture) : error_answer(picture.error());
     }
     if (const auto index = number_after("/spectrogram/", request.path)) return spectrogram(*index);
+    if (const auto job = number_after("/result/", request.path)) return result(*job);
+    if (request.path.starts_with(kShapePath)) return shape(request);
     if (request.path.starts_with(kExportPath))
       return exported(std::string_view(request.path).substr(kExportPath.size()), request.query);
     for (const std::string_view part : {"cells", "known"})
@@ -191,6 +202,22 @@ class Site {
     const auto number = folder_.make_spectrogram(index);
     return number ? json_answer(spectrogram_json(*number, **folder_.spectrogram(*number)))
                   : error_answer(number.error());
+  }
+  WebAnswer shape(const WebRequest& request) {
+    const auto made = folder_.shape(std::string_view(request.path).substr(kShapePath.size()), request.query);
+    return made ? json_answer(*made) : error_answer(made.error());
+  }
+  // A page that a verb has written: without scripts, and of an origin of its own.
+  WebAnswer result(std::size_t job) {
+    auto page = jobs_.page(job);
+    if (!page) return error_answer(page.error());
+    WebAnswer answer;
+    answer.type = "text/html; charset=utf-8";
+    answer.body = std::move(*page);
+    answer.headers.emplace_back("content-security-policy:",
+                                "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:; "
+                                "base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+    return answer;
   }
   WebAnswer cells_of(std::string_view part, std::size_t number) {
     const auto live = folder_.spectrogram(number);
@@ -259,8 +286,11 @@ class Site {
     std::size_t number = 0;
     return read_number(digits, number) && digits.empty() ? std::optional(number) : std::nullopt;
   }
-  WebAnswer texture(std::size_t index) {
-    const auto number = folder_.make(index);
+  WebAnswer texture(std::size_t index, const std::string& query) {
+    constexpr std::string_view kInverse = "inverse=";
+    const bool named = query.starts_with(kInverse);
+    const auto number =
+        folder_.make(index, named ? std::optional(query.substr(kInverse.size())) : std::nullopt);
     return number ? json_answer(figures_json(*number, **folder_.made(*number)))
                   : error_answer(number.error());
   }
@@ -286,6 +316,7 @@ class Site {
   LiveAccess access_;
   LiveFolder folder_;
   LiveDaemon daemon_;
+  LiveJobs jobs_;
   std::size_t kept_ = 0;
 };
 
@@ -341,6 +372,7 @@ Result<LiveSummary> run_live(const LiveOptions& options,
   });
   served->server->serve([&] {
     daemon.step();
+    served->site->jobs().step();
     return stop();
   });
   return LiveSummary{address, served->site->kept()};

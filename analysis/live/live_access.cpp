@@ -105,7 +105,10 @@ void add_safe_headers(WebAnswer& answer) {
       {"referrer-policy:", "no-referrer"},
       {"cache-control:", "no-store"},
   }};
-  for (const auto& [name, value] : kHeaders) answer.headers.emplace_back(name, value);
+  for (const auto& [name, value] : kHeaders)
+    if (std::ranges::find(answer.headers, name, &std::pair<std::string, std::string>::first) ==
+        answer.headers.end())
+      answer.headers.emplace_back(name, value);
 }
 
 }  // namespace tacto::analysis

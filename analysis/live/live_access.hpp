@@ -30,7 +30,7 @@ class LiveAccess {
 };
 
 /// The headers of every answer: nothing from elsewhere, nothing inline, no guesses of types, no other page
-/// around or beside this one.
+/// around or beside this one. What the answer has already stays.
 void add_safe_headers(WebAnswer& answer);
 
 }  // namespace tacto::analysis

@@ -239,9 +239,9 @@ void LiveDaemon::gone(const schema::Error& why) {
 
 // `stop` and `disarm` are for every page.
 Result<void> LiveDaemon::ask(Page& page, const schema::LiveRequest& request) {
-  if (request.verb == LiveVerb::begin || request.verb == LiveVerb::change || request.verb == LiveVerb::keep)
-    return fail(ErrorKind::usage, "this page has no device of its own", "request",
-                "use the page of textures");
+  if (request.verb < LiveVerb::steer || request.verb > LiveVerb::gain)
+    return fail(ErrorKind::usage, "this page steers the daemon and does nothing else", "request",
+                "use the page of textures or that of jobs");
   const bool stops = request.verb == LiveVerb::stop || request.verb == LiveVerb::disarm;
   if (request.verb == LiveVerb::steer || (steers_ == nullptr && !stops)) give_steering(&page);
   if (request.verb == LiveVerb::steer) return {};
@@ -272,6 +272,7 @@ Result<std::string> LiveDaemon::line_of(const schema::LiveRequest& request) cons
     auto file = folder_.file(*request.texture);
     TACTO_TRY(file);
     asked.file = std::move(*file);
+    asked.playback.inverse = request.inverse;
   }
   if (request.verb == LiveVerb::arm) {
     asked.while_connected = true;

@@ -47,7 +47,7 @@ tl::unexpected<schema::Error> odd_log(std::string what) {
 
 Result<std::unique_ptr<LiveSession>> LiveSession::begin(const LiveTexture& texture) {
   std::unique_ptr<LiveSession> session(new LiveSession);
-  session->path_ = playback::dated_session(schema::stem_of(texture.file, ".texture") + "-");
+  session->path_ = playback::dated_session(texture.session_stem + "-");
   const auto temporary = session->pending_.add(session->path_);
   TACTO_TRY(temporary);
   unlink(temporary->c_str());  // it is empty, and the recorder makes it

@@ -28,7 +28,7 @@ struct KeptSession {
 /// They become a session in a temporary file, which is removed with this object unless it is kept.
 class LiveSession {
  public:
-  /// The session will be named after the texture and the time, in its folder. Errors: cannot_write.
+  /// The session will be named after LiveTexture::session_stem and the time. Errors: cannot_write.
   static schema::Result<std::unique_ptr<LiveSession>> begin(const LiveTexture& texture);
   ~LiveSession();
 

@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 
+#include "analysis/live/live_query.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/report/report.hpp"
 #include "spatial/features/formants.hpp"
@@ -204,33 +204,25 @@ std::vector<float> known_limits(const schema::Spectrogram& spectrogram) {
 
 Result<SpectrogramPart> parse_spectrogram_part(const std::string& query) {
   SpectrogramPart part;
-  for (std::size_t at = 0; at < query.size();) {
-    const std::size_t end = std::min(query.find('&', at), query.size());
-    const std::string one = query.substr(at, end - at);
-    at = end + 1;
-    const std::size_t equals = std::min(one.find('='), one.size());
-    const std::string name = one.substr(0, equals);
-    double value = NAN;
-    const char* const last = one.data() + one.size();
-    const auto read = std::from_chars(one.data() + std::min(equals + 1, one.size()), last, value);
-    if (read.ec != std::errc() || read.ptr != last || !std::isfinite(value))
-      return fail(ErrorKind::usage, "is not NAME=NUMBER", one);
-    if (name == "from_m")
-      part.from_m = value;
-    else if (name == "to_m")
-      part.to_m = value;
-    else if (name == "low_per_m")
-      part.low_per_m = value;
-    else if (name == "high_per_m")
-      part.high_per_m = value;
-    else if (name == "range_db")
-      part.range_db = value;
-    else if (name == "formants")
-      part.formants = value != 0;
-    else
-      return fail(ErrorKind::usage, "is not known", name,
-                  "use from_m, to_m, low_per_m, high_per_m, range_db, formants");
-  }
+  const auto read = read_query(query, "from_m, to_m, low_per_m, high_per_m, range_db, formants",
+                               [&part](std::string_view name, double value) {
+                                 if (name == "from_m")
+                                   part.from_m = value;
+                                 else if (name == "to_m")
+                                   part.to_m = value;
+                                 else if (name == "low_per_m")
+                                   part.low_per_m = value;
+                                 else if (name == "high_per_m")
+                                   part.high_per_m = value;
+                                 else if (name == "range_db")
+                                   part.range_db = value;
+                                 else if (name == "formants")
+                                   part.formants = value != 0;
+                                 else
+                                   return false;
+                                 return true;
+                               });
+  TACTO_TRY(read);
   return part;
 }
 

@@ -125,11 +125,13 @@ std::vector<float> tray_response(const schema::Transducer& transducer) {
   return {impulse.begin(), impulse.begin() + kTrayTaps};
 }
 
-Result<LiveTexture> make_live_texture(const std::string& file, const std::string& transducer) {
+Result<LiveTexture> make_live_texture(const std::string& file, const std::string& transducer,
+                                      const std::optional<std::string>& inverse) {
   const auto texture = schema::read_texture(file);
   TACTO_TRY(texture);
   playback::ProgramRequest request;
   request.file = file;
+  request.choices.inverse = inverse;
   LiveTexture live;
   live.file = file;
   auto program = playback::make_program(request, transducer, page_options());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,14 +24,17 @@ struct LiveTexture {
   /// The tray's displacement, m, for a drive of 1 V in one tick, from that tick on: the transducer's linear
   /// model, with the converter's hold.
   std::vector<float> tray;
+  std::string session_stem = {};  ///< what the names of its sessions begin with
 };
 
 inline constexpr std::size_t kMapColumns = 2000;
 /// 32 ms: the response of the preset's tray (547 Hz, quality 5.2) has fallen by 92 dB then.
 inline constexpr std::size_t kTrayTaps = 512;
 
-/// Errors: as make_program and upload.
-schema::Result<LiveTexture> make_live_texture(const std::string& file, const std::string& transducer);
+/// `inverse` of the transducer: a word of PlaybackChoices, or the default. Errors: as make_program and
+/// upload.
+schema::Result<LiveTexture> make_live_texture(const std::string& file, const std::string& transducer,
+                                              const std::optional<std::string>& inverse = std::nullopt);
 
 /// Another texture that the page's board plays next.
 struct LiveChange {

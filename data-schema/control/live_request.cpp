@@ -14,15 +14,18 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 11> kLiveVerbs = {
-    "begin", "change", "keep", "steer", "status", "load", "arm", "play", "stop", "disarm", "gain"};
+constexpr std::array<std::string_view, 14> kLiveVerbs = {"begin", "change", "keep",   "steer", "status",
+                                                         "load",  "arm",    "play",   "stop",  "disarm",
+                                                         "gain",  "run",    "cancel", "save"};
 
 // The members that a request cannot do without.
 std::vector<std::string_view> needed_by(LiveVerb verb) {
   if (verb == LiveVerb::begin) return {"made"};
   if (verb == LiveVerb::change) return {"made", "playing", "times"};
-  if (verb == LiveVerb::load) return {"texture"};
+  if (verb == LiveVerb::load || verb == LiveVerb::save) return {"texture"};
   if (verb == LiveVerb::gain) return {"times_default"};
+  if (verb == LiveVerb::run) return {"verb", "files"};
+  if (verb == LiveVerb::cancel) return {"job"};
   return {};
 }
 
@@ -56,6 +59,10 @@ Result<LiveRequest> parse_live_request(std::string_view text) {
   request.id = value_in<std::int64_t>(*body, "id");
   request.texture = value_in<std::size_t>(*body, "texture");
   request.times_default = value_in<double>(*body, "times_default");
+  request.job_verb = text_or(*body, "verb");
+  request.files = body->value("files", request.files);
+  request.inverse = value_in<std::string>(*body, "inverse");
+  request.job = body->value("job", std::size_t{0});
   return request;
 }
 

@@ -248,6 +248,47 @@ def check_compare(chrome):
     assert pathlib.Path(keep(chrome, 0.29 * 16000)).name.startswith(ODD_NAME)
 
 
+def check_shape(chrome):
+    """The texture is stretched by keys while the finger moves, kept in a session, saved; and replaced by a computed one."""
+    choose_by_keys(chrome, "C")
+    assert chrome.value("document.getElementById('shape-save').disabled")
+    chrome.value("document.querySelector('#strokes button[data-speed=\"20\"]').click()")
+    chrome.wait("Number(document.getElementById('strip').ariaValueNow) > 2")
+    chrome.value("document.getElementById('shape-stretch').focus()")
+    for _ in range(20):
+        chrome.key("ArrowRight")
+    assert chrome.value("document.getElementById('shape-stretch').ariaValueText") == "1.15 ×"
+    chrome.wait("document.getElementById('shape-plays').textContent.startsWith('Plays: stretch 1.15') && !document.getElementById('shape-plays').textContent.includes('on its way')")
+    assert chrome.text("strip-title") == "C-stretched"
+    place = chrome.value("Number(document.getElementById('strip').ariaValueNow)")
+    chrome.wait(f"Number(document.getElementById('strip').ariaValueNow) > {min(place + 6, 34)}")
+    path = keep(chrome, 0.3 * 16000)
+    assert any(row["event"].startswith("texture changed to ") for row in run_json("session", path)["events"])
+    press(chrome, "shape-save")
+    chrome.wait("document.getElementById('shape-saved').textContent.startsWith('Saved: ')")
+    file = pathlib.Path(chrome.text("shape-saved").removeprefix("Saved: "))
+    assert json.loads(file.read_text())["transform"]["steps"][0]["factor"] == 1.15
+    for ending in (".json", ".wav"):
+        file.with_suffix(ending).unlink()
+    chrome.value("(() => { const k = document.getElementById('shape-kind'); k.value = 'noise'; k.dispatchEvent(new Event('input', {bubbles: true})); })()")
+    chrome.wait("document.getElementById('shape-plays').textContent.includes('octave') && document.getElementById('strip-title').textContent === 'noise'")
+
+
+def check_jobs(chrome, server):
+    chrome.ask("Page.navigate", url=server.address.split("?")[0] + "jobs.html")
+    chrome.wait("document.getElementById('first')?.options.length === 3 && document.getElementById('now').textContent !== ''")
+    chrome.value("document.getElementById('verb').value = 'compare'")
+    press(chrome, "run")
+    chrome.wait("document.querySelectorAll('#jobs li').length === 1 && document.querySelector('#jobs a').hidden === false")
+    assert chrome.value("document.querySelector('#jobs strong').textContent").endswith("done") and chrome.text("message") == ""
+    check_names(chrome)
+    check_looks(chrome)
+    page = server.ask("/" + chrome.value("document.querySelector('#jobs a').getAttribute('href')"))
+    assert page.status == 200 and page.headers["content-security-policy"].startswith("sandbox;")
+    chrome.ask("Page.navigate", url=server.address.split("?")[0] + "result/0")
+    chrome.wait("document.readyState === 'complete' && document.querySelectorAll('h1, h2').length > 0")
+
+
 def check_list(chrome):
     names = "[...document.querySelectorAll('#textures .texture')].map((b) => b.firstChild.textContent)"
     chrome.value("document.getElementById('search').focus()")
@@ -393,6 +434,11 @@ def check_device(chrome, server):
             chrome.key("ArrowLeft")
         chrome.wait("document.getElementById('gain-words').textContent.startsWith('asked 0.80, effective 0.80')")
         assert before == 1 and abs(client.must(request="status")["gain_times_default"] - 0.8) < 1e-9
+        chrome.value("document.getElementById('shape-stretch').focus()")
+        for _ in range(10):
+            chrome.key("ArrowRight")
+        chrome.wait("document.getElementById('shape-plays').textContent === 'Plays: stretch 1.07' && document.getElementById('loaded').textContent === 'oak-stretched'")
+        assert abs(client.must(request="status")["gain_times_default"] - 0.8) < 1e-9
         check_names(chrome)
         check_looks(chrome)
         press(chrome, "pause")
@@ -430,6 +476,8 @@ def make_textures():
     run("spatial", "rec", "-o", "folder/C", "--stroke", "1")
     for ending in (".texture.wav", ".texture.json"):
         shutil.copy(f"folder/C{ending}", f"folder/{ODD_NAME}{ending}")
+    for ending in (".wav", ".json"):
+        shutil.copy(f"rec{ending}", f"folder/rec{ending}")
 
 
 def live_in_chromium():
@@ -438,11 +486,13 @@ def live_in_chromium():
         assert chrome.value("location.search") == "", "the token stays out of the address"
         check_playing(chrome)
         check_compare(chrome)
+        check_shape(chrome)
         check_list(chrome)
         check_names(chrome)
         check_looks(chrome)
         check_without_sound(chrome)
         check_explorer(chrome, server)
+        check_jobs(chrome, server)
         assert chrome.console == [], chrome.console
     prepare_files()
     with live(".", "--socket", "control") as server, browser(server.address) as chrome:
@@ -468,6 +518,11 @@ def pictures(folder):
         chrome.ask("Page.navigate", url=server.address.split("?")[0] + "explorer.html#2")
         chrome.wait("document.getElementById('cell')?.textContent.startsWith('position')")
         take_pictures(chrome, folder, "live-explorer")
+        chrome.ask("Page.navigate", url=server.address.split("?")[0] + "jobs.html")
+        chrome.wait("document.getElementById('first')?.options.length > 2")
+        press(chrome, "run")
+        chrome.wait("document.querySelector('#jobs a')?.hidden === false")
+        take_pictures(chrome, folder, "live-jobs")
     prepare_files()
     on_host = {"loop": "host", "device": "sim:rate=2kHz", "most_late_percent": 100}
     with live(".", "--socket", "control") as server, browser(server.address) as chrome, device_page(chrome, server, STROKES, **on_host):

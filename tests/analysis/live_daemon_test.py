@@ -90,7 +90,7 @@ def who_may_use_it(server):
 def wrong_requests(server):
     page = Page(server)
     page.event("steering")
-    for text in ("", "[]", '{"request":"save"}', '{"request":"gain"}', '{"request":"load"}', '{"request":"load","texture":-1}', '{"request":"load","file":"/etc/passwd","texture":0}',
+    for text in ("", "[]", '{"request":"save"}', '{"request":"gain"}', '{"request":"load"}', '{"request":"load","texture":-1}', '{"request":"load","texture":0,"inverse":"best"}', '{"request":"run","verb":"report","files":["x"]}', '{"request":"load","file":"/etc/passwd","texture":0}',
                  '{"request":"gain","times_default":1e9}', '{"request":"arm","dead_man_s":3600}', '{"request":"play","id":"a"}'):
         page.socket.send(text)
         while "ok" not in (answer := page.socket.receive()):
@@ -127,6 +127,12 @@ def a_page_plays(server):
     gain = page.must("gain", times_default=0.5)
     assert gain["gain_times_default"] == 0.5 and abs(gain["gain_m_per_n"] - 0.5 * loaded["default_gain_m_per_n"]) < 1e-12, gain
     assert wait_until(client, lambda status: True)["gain_times_default"] == 0.5
+    shape = server.json(f"/shape/{oak}?stretch=1.5")
+    changed = page.must("load", texture=shape["index"])  # while it plays
+    assert changed["changed"] and page.must("status")["gain_times_default"] == 0.5 and changed["file"].endswith("/oak-stretched.texture.json"), changed
+    page.event("status", lambda event: event.get("loaded") == changed["file"])
+    assert server.ask("/loaded").status == 200
+    assert page.ask("load", texture=oak, inverse="gain")["error"]["fault"] == 4  # another filter: not while it plays
     refused = page.ask("gain", times_default=1000)["error"]
     assert refused["fault"] == 4 and refused["remedy"], refused
     return page, client

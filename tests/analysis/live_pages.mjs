@@ -6,7 +6,8 @@ import {readFileSync} from 'node:fs';
 import assert from 'node:assert';
 import {Axis, Cells, cellWords, exportQuery, frequencyMarks, marks, paint} from './cells.js';
 import {compareWords, fullScale, gainsOf, largestLevel} from './compare.js';
-import {arrange, countWords, withPrefix} from './library.js';
+import {arrange, countWords, recordingWords, withPrefix} from './library.js';
+import {effectiveWords, positionOf, queryOf, valueAt} from './shape.js';
 
 // The list: search, order, and those that can't be read at its end.
 const row = (name, length_m, rms, changed_s, surface) => ({name, length_m, rms, changed_s, unit: 'N', surface});
@@ -22,6 +23,19 @@ assert.deepEqual(names('.*', 'name'), []);  // text, no pattern
 assert.match(countWords(rows.slice(0, 1), rows), /^1 of 4 .*1 can't/);
 assert.deepEqual([withPrefix(0.0123, 'N'), withPrefix(1.5e-6, 'm'), withPrefix(0, 'N'), withPrefix(0.3, 'm/s'), withPrefix(2, '1')],
                  ['12.3 mN', '1.50 µm', '0.00 N', '0.300 m/s', '2.00']);
+
+assert.match(recordingWords({duration_s: 2, sample_rate_hz: 2000, channels: ['a', 'b'], strokes: 1, missing_frames: 3, surface: ''}), /^2\.00 s, 2 kHz, a, b, 1 stroke, 3 frames missing$/);
+
+// Sliders: positions and back, what is off or as it is does not enter the query.
+const stretch = {query: 'stretch', times: 1, low: 0.5, high: 2, start: 1, logarithmic: true};
+const low = {query: 'low_per_m', times: 1e-3, low: 0.05, high: 20, start: 0.05, logarithmic: true, off: 0.05};
+assert.deepEqual([0, 100, 200].map((position) => valueAt(stretch, position)), [0.5, 1, 2]);
+assert.equal(positionOf(stretch, 1), 100);
+assert.deepEqual([valueAt({low: 0, high: 200, digits: 0}, 7), valueAt({low: -24, high: 0}, 150)], [7, -6]);
+assert.equal(queryOf([stretch, low], [1, 0.05], true), '');
+assert.equal(queryOf([stretch, low], [1.3, 0.5], true), 'stretch=1.3&low_per_m=500&keep_slope=1');
+assert.equal(queryOf([stretch, low], [1, 0.5], true), 'low_per_m=500');
+assert.match(effectiveWords({factor: 1.3, period_m: 3e-3, low_per_m: 500, high_per_m: 5000, removed_share: 0}), /^stretch 1\.3, period 3 mm before, band from 0\.5 \/mm, to 5 \/mm$/);
 
 // A and B: the same RMS of displacement, and no tray beyond its limit.
 const side = (gain_m_per_n, rms, tray_peak_m) => ({figures: {name: 'x', gain_m_per_n, rms, tray_peak_m, displacement_limit_m: 100e-6}});

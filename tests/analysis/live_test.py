@@ -3,6 +3,7 @@
 """tactograph live, without a browser: who may use it, what it serves, bad input; and the page's device in node, whose
 sessions `tactograph replay` computes again natively, to the bit.
 """
+import contextlib
 import hashlib
 import json
 import pathlib
@@ -33,6 +34,9 @@ def make_textures():
     pathlib.Path(f"folder/{ODD_NAME}.texture.json").write_text(json.dumps(side))
     pathlib.Path("folder/broken.texture.json").write_text("{")
     pathlib.Path("folder/alone.texture.wav").write_bytes(b"RIFF")
+    for ending in (".wav", ".json"):
+        shutil.copy(f"rec{ending}", f"folder/rec{ending}")
+    pathlib.Path("folder/lonely.wav").write_bytes(b"RIFF")
     # A sine of 1 mm and 5 mN.
     wav = pathlib.Path("folder/sine.texture.wav")
     soundfile.write(wav, 0.005 * np.sin(2 * np.pi * np.arange(side["data"]["samples"]) / 1000), 1_000_000, subtype="FLOAT")
@@ -115,6 +119,173 @@ def check_list(server, rows):
     assert {row["name"]: row["index"] for row in server.json("/textures")["textures"]} == {name: row["index"] for name, row in rows.items()}
 
 
+def check_recordings(server):
+    rows = {row["name"]: row for row in server.json("/textures")["recordings"]}
+    assert set(rows) == {"rec", "lonely"} and "reason" in rows["lonely"], rows
+    info = run_json("info", "rec")
+    assert abs(rows["rec"]["duration_s"] - 2) < 0.01 and rows["rec"]["channels"] == [channel["name"] for channel in info["channels"]], (rows, info)
+    small = np.frombuffer(server.ask(f"/thumbnail/{rows['rec']['index']}").body, "<f4").reshape(-1, 2)
+    force = next(channel for channel in info["channels"] if channel["quantity"] == "tangential_force")
+    stored = soundfile.read("rec.wav", dtype="int32", always_2d=True)[0][:, rows["rec"]["channels"].index(force["name"])]
+    side = next(channel for channel in json.loads(pathlib.Path("rec.json").read_text())["channels"] if channel["name"] == force["name"])
+    values = stored * side["scale"] + side.get("offset", 0)
+    assert len(small) == 96 and np.allclose([small.min(), small.max()], [values.min(), values.max()], rtol=1e-5), small
+    assert server.ask(f"/thumbnail/{rows['lonely']['index']}").status == 404
+    assert server.ask(f"/texture/{rows['rec']['index']}").status == 422  # it is no texture
+    return rows["rec"]["index"]
+
+
+class Jobs:
+    def __init__(self, server):
+        self.socket, self.jobs = server.page("/jobs"), {}
+        assert self.socket.status == 101
+
+    def hear(self):
+        message = self.socket.receive()
+        if message.get("event") == "jobs":
+            self.jobs = {job["number"]: job for job in message["jobs"]}
+        return message
+
+    def ask(self, **request):
+        self.socket.send(json.dumps(request))
+        while "ok" not in (message := self.hear()):
+            pass
+        return message
+
+    def until(self, number, *states):
+        while self.jobs.get(number, {}).get("state") not in states:
+            self.hear()
+        return self.jobs[number]
+
+
+def check_jobs(server, rec):
+    for wrong, status in (({"Origin": None}, 403), ({"Origin": "http://evil.example"}, 403), ({"Cookie": None}, 401)):
+        assert server.page("/jobs", **wrong).status == status
+    assert server.ask("/jobs").status == 404 and server.ask("/result/0").status == 404 and server.ask("/result/0", cookie=False).status == 401
+    jobs = Jobs(server)
+    for wrong in ({"verb": "play", "files": []}, {"verb": "report", "files": ["/etc/passwd"]}, {"verb": "compare", "files": [0, 1, 2]}, {"verb": "report"}, {"files": []}):
+        assert jobs.ask(request="run", **wrong)["error"]["fault"] == 3, wrong
+    assert jobs.ask(request="run", verb="compare", files=[rec])["error"]["fault"] == 1
+    assert jobs.ask(request="run", verb="fidelity", files=[999])["error"]["fault"] == 2
+    assert jobs.ask(request="cancel", job=99)["error"]["fault"] == 2 and jobs.ask(request="keep")["error"]["fault"] == 1
+    indices = {row["name"]: row["index"] for row in server.json("/textures")["textures"]}
+    first = jobs.ask(request="run", verb="compare", files=[indices["C"], indices[ODD_NAME]])["job"]
+    done = jobs.until(first, "done", "failed", "cancelled")
+    page = pathlib.Path(f"folder/C-{ODD_NAME}-compare.html")
+    assert done["state"] == "done" and pathlib.Path(done["page"]) == page, done
+    run("compare", "folder/C.texture.json", f"folder/{ODD_NAME}.texture.json", "-o", "own.html")
+    assert page.read_text() == pathlib.Path("own.html").read_text()
+    own = run("compare", "folder/C.texture.json", f"folder/{ODD_NAME}.texture.json")[0]
+    assert done["printed"].startswith(own.splitlines()[0]) and done["command"].startswith("tactograph compare folder/C.texture.json "), (done, own)
+    shown = server.ask(f"/result/{first}")
+    policy = shown.headers["content-security-policy"]
+    assert shown.body == page.read_bytes() and policy.startswith("sandbox;") and "script-src" not in policy and "default-src 'none'" in policy, policy
+    # One at a time, in order; a cancelled one leaves nothing.
+    slow = jobs.ask(request="run", verb="trade", files=[indices["C"]])["job"]
+    waiting = [jobs.ask(request="run", verb="report", files=[])["job"] for _ in range(2)]
+    jobs.until(slow, "running")
+    jobs.until(waiting[1], "waiting")
+    assert [jobs.jobs[number]["state"] for number in waiting] == ["waiting", "waiting"], jobs.jobs
+    assert jobs.ask(request="cancel", job=waiting[0])["ok"] and jobs.until(waiting[0], "cancelled")
+    assert jobs.ask(request="cancel", job=slow)["ok"]
+    assert "page" not in jobs.until(slow, "cancelled", "done", "failed") and jobs.jobs[slow]["state"] == "cancelled"
+    report = jobs.until(waiting[1], "done", "failed")
+    assert report["state"] == "done" and report["page"].endswith("report-2.html"), report  # the cancelled one had the first name
+    failed = jobs.until(jobs.ask(request="run", verb="fidelity", files=[indices["broken"]])["job"], "done", "failed")
+    assert failed["state"] == "failed" and "broken" in failed["said"] and "page" not in failed, failed
+    left = sorted(path.name for path in pathlib.Path("folder").iterdir() if path.suffix == ".html" or path.name.startswith(".") and not path.name.startswith(".tactograph-live-"))
+    assert left == sorted([page.name, "report-2.html"]), left
+    # It ends with the server: the test's end looks for it.
+    last = jobs.ask(request="run", verb="trade", files=[rec])["job"]
+    jobs.until(last, "running")
+
+
+def processes_with(text):
+    found = []
+    for path in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+        with contextlib.suppress(OSError):
+            if text.encode() in path.read_bytes():
+                found.append(path)
+    return found
+
+
+def shaped(server, source, **numbers):
+    query = "&".join(f"{name}={value!r}" for name, value in numbers.items())
+    answer = server.ask(f"/shape/{source}?{query}")
+    assert answer.status == 200, answer.body
+    return json.loads(answer.body)
+
+
+def saved(server, shape):
+    jobs = Jobs(server)
+    answer = jobs.ask(request="save", texture=shape["index"])
+    assert answer["ok"], answer
+    side = pathlib.Path(answer["saved"])
+    run("validate", side)
+    return json.loads(side.read_text()), soundfile.read(str(side).replace(".json", ".wav"), dtype="float32")[0]
+
+
+def check_shapes(server, made):
+    """Stretched and filtered textures are the verb's; computed ones are a closed form, or within their depth."""
+    c = next(row["index"] for row in server.json("/textures")["textures"] if row["name"] == "C")
+    for path, status, fault in ((f"{c}?x=1", 422, 1), (f"{c}?stretch=abc", 422, 1), (f"{c}?stretch=100", 422, 1), (f"{c}?low_per_m=900&high_per_m=100", 422, 4),
+                                ("grating?duty=0", 422, 1), ("99?stretch=1.3", 404, 2), ("wood", 404, 2), ("../folder/C", 404, 2), ("", 404, 2)):
+        refused = server.ask(f"/shape/{path}")
+        assert refused.status == status and (status == 404 or json.loads(refused.body)["error"]["fault"] == fault), (path, refused.status, refused.body)
+    assert not [path for path in pathlib.Path("folder").iterdir() if path.name.startswith(".tactograph")]  # nothing until it is needed
+    shape = shaped(server, c, stretch=1.3, keep_slope=1, low_per_m=500, high_per_m=5000)
+    assert shape["factor"] == 1.3 and shape["low_per_m"] == 500 and shape["name"] == "C-band-stretched", shape
+    side, values = saved(server, shape)
+    run("transform", "folder/C", "-o", "own", "--band", "0.5/mm..5/mm", "--stretch", "1.3x", "--keep-slope")
+    own = json.loads(pathlib.Path("own.texture.json").read_text())
+    assert side["transform"] == own["transform"] and side["data"]["sha256"] == own["data"]["sha256"], (side["transform"], own["transform"])
+    assert server.ask(f"/shape/{shape['index']}?stretch=1.1").status == 404  # of a shape: its sidecar would name a file that is not kept
+    again, _ = saved(server, shape)
+    assert again["data"]["file"] == "C-band-stretched-2.texture.wav"
+    names = {row["name"] for row in server.json("/textures")["textures"]}
+    assert {"C-band-stretched", "C-band-stretched-2"} <= names and len(names) == 7, names  # the shape itself is not listed
+    # Under the pointer: prepared, changed to while another one plays, kept beside the others.
+    number = server.json(f"/texture/{shape['index']}")["made"]
+    for _ in range(10):  # what is in use stays
+        server.json(f"/texture/{c}")
+        assert server.ask(f"/change/{number}/{made}/1").status == 200
+    log = device_log(server, made, 5, 3, "change", [(number, 1), (made, 1), (number, 0.7)])
+    answer = kept(server, made, log, json.loads(pathlib.Path("log.changes").read_text()))
+    assert run_json("replay", answer["kept"])["same_to_the_bit"]
+    own_log = device_log(server, number, 6, 2)
+    answer = kept(server, number, own_log)
+    assert pathlib.Path(answer["kept"]).parent == pathlib.Path("folder").resolve() and pathlib.Path(answer["kept"]).name.startswith("C-band-stretched-"), answer
+    assert run_json("replay", answer["kept"])["same_to_the_bit"]
+    filtered = server.json(f"/texture/{c}?inverse=gain")["made"]  # another filter is another device: not while it plays
+    assert server.ask(f"/upload/{filtered}").body != server.ask(f"/upload/{made}").body and server.ask(f"/change/{filtered}/{made}/1").status == 422
+    assert server.ask(f"/texture/{c}?inverse=best").status == 422
+    check_computed(server)
+    last = [shaped(server, "noise", seed=i) for i in range(9)]
+    assert server.ask(f"/texture/{last[0]['index']}").status == 404 and server.ask(f"/texture/{last[1]['index']}").status == 200
+
+
+def check_computed(server):
+    for duty in (0.5, 0.2):
+        shape = shaped(server, "grating", period_m=3e-3, depth_m=20e-6, duty=duty, smooth_m=1e-4)
+        side, values = saved(server, shape)
+        x = side["pitch_m"] * np.arange(len(values))
+        bells = [np.exp(-((x - 3e-3 * (k + way * duty / 2)) / 1e-4) ** 2 / 2) * -way for k in range(-1, 16) for way in (-1, 1)]
+        exact = 0.5 * 20e-6 * sum(bells) / (np.sqrt(2 * np.pi) * 1e-4)
+        # Harmonics below 1e-6 of the first are left out; their slopes are n times as large, n up to 26. Single precision: 2e-7 of
+        # the sum of n amplitude, some 10 peaks.
+        assert np.max(np.abs(values - exact)) < 1e-4 * np.max(exact) and side["surface"] and "20" in side["notes"], (duty, np.max(np.abs(values - exact)), np.max(exact))
+    heights = {}
+    for slope, seed in ((-6, 1), (-6, 2), (-20, 1)):
+        side, values = saved(server, shaped(server, "noise", period_m=4e-3, depth_m=50e-6, slope_db=slope, seed=seed))
+        heights[slope, seed] = np.cumsum(values.astype(float)) * side["pitch_m"] / 0.5
+        assert 5e-6 < np.ptp(heights[slope, seed]) < 50e-6
+    assert np.array_equal(saved(server, shaped(server, "noise", period_m=4e-3, depth_m=50e-6, slope_db=-6, seed=1))[1], saved(server, shaped(server, "noise", period_m=4e-3, depth_m=50e-6, slope_db=-6, seed=1))[1])
+    def fine(h):  # share of periods below 1 mm
+        power = np.abs(np.fft.rfft((h - h.mean()) * np.hanning(len(h)))) ** 2
+        return power[40:].sum() / power.sum()
+    assert np.corrcoef(heights[-6, 1], heights[-6, 2])[0, 1] < 0.7 and fine(heights[-6, 1]) > 10 * fine(heights[-20, 1])
+
+
 def check_changes(server, made, odd_made):
     assert server.ask(f"/change/{odd_made}/{made}/1").body != server.ask(f"/change/{odd_made}/{made}/0.5").body
     for path in (f"{made}/{made}", f"{made}/{made}/1/", f"{made}/{made}/nan", f"{made}/{made}/1e9", f"{made}/-1/1", f"999/{made}/1", f"{made}/999/1", "", "x"):
@@ -171,7 +342,7 @@ def check_protocol(server, made):
 def fetch_page(server):
     """The modules that the page runs, for node."""
     pathlib.Path("page").mkdir(exist_ok=True)
-    for name in ("cells.js", "compare.js", "core.js", "engine.js", "finger.js", "library.js", "strip.js", "core.wasm"):
+    for name in ("answers.js", "cells.js", "compare.js", "core.js", "engine.js", "finger.js", "library.js", "shape.js", "strip.js", "core.wasm"):
         pathlib.Path("page", name).write_bytes(server.ask("/" + name).body)
     pathlib.Path("page/package.json").write_text('{"type": "module"}')
     for script in ("live_device.mjs", "live_pages.mjs"):
@@ -367,6 +538,10 @@ def live_page():
         check_spectrogram(server)
         check_bits(server, made, odd_made)
         check_sound(server)
+        rec = check_recordings(server)
+        check_shapes(server, server.json(f"/texture/{next(row['index'] for row in server.json('/textures')['textures'] if row['name'] == 'C')}")["made"])
+        check_jobs(server, rec)
+    assert not processes_with("rec-trade.html"), "a job goes on"
     assert not [path for path in pathlib.Path("folder").iterdir() if path.name.startswith(".")], "temporary files stay"
 
 

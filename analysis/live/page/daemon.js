@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page of the device: shows what tactographd does, and steers it.
 
+import {errorText, get} from './answers.js';
+import {Shape} from './shape.js';
 import {css, drawFinger, drawMap, sized, Trace} from './strip.js';
 import {CELL_S, Cells, contactWords, decodeTicks, gainWords, lateRows, limitWords, placeWords, roundUp, Spectrum, SPECTRUM_LENGTH, Speeds, stateOf} from './ticks.js';
 
@@ -10,6 +12,7 @@ const LONGEST_SHOWN_S = 10;
 const CALM_MS = 250;             // between figures; with prefers-reduced-motion also between pictures
 const SPECTRUM_DB = 60;          // of the picture
 const SETTLES_MS = 500;
+const SETTLED_MS = 100;          // after a fade, until the daemon accepts another one
 
 const at = (id) => document.getElementById(id);
 const calm = matchMedia('(prefers-reduced-motion: reduce)');
@@ -27,7 +30,6 @@ let heard_ms = 0, beat_ms = 0, worded_ms = 0, mapDrawn = false, paused = false;
 let numbers = 0, waiting = new Map();  // requests without an answer, by id
 
 const mm = (metres, digits = 2) => `${(1e3 * metres).toFixed(digits)} mm`;
-const errorText = ({what, where, remedy}) => `${where ? where + ': ' : ''}${what}${remedy ? ` (${remedy})` : ''}`;
 function put(id, text) { if (at(id).textContent !== text) at(id).textContent = text; }
 
 // Server and daemon.
@@ -134,10 +136,10 @@ async function fetchMap() {
   mapDrawn = false;
   put('map-hint', '');
   if (wanted === '') return;
-  const answer = await fetch('loaded').catch(() => null);
-  if (wanted !== mapOf || answer === null) return;
-  if (answer.ok) map = new Float32Array(await answer.arrayBuffer());
-  else put('map-hint', `No picture: ${errorText((await answer.json()).error)}`);
+  const found = await get('loaded').then((answer) => answer.arrayBuffer()).catch((error) => error);
+  if (wanted !== mapOf) return;
+  if (found instanceof Error) put('map-hint', `No picture: ${found.message}`);
+  else map = new Float32Array(found);
   mapDrawn = false;
 }
 
@@ -180,6 +182,13 @@ async function adjust() {
   showGain();
 }
 
+/** Gives the device the texture of this index; while it plays, the next one has to wait for the end of the fade. */
+async function loadTexture(index) {
+  const answer = await ask('load', {texture: index, ...(shape.filter === '' ? {} : {inverse: shape.filter})});
+  if (answer.changed) await new Promise((done) => setTimeout(done, 1e3 * answer.fade_s + SETTLED_MS));
+}
+const shape = new Shape(at('shape'), loadTexture);
+
 // Words.
 const withForces = () => status.x_m !== undefined;  // then the pictures show the magnitude of the force
 
@@ -203,6 +212,7 @@ function show() {
   put('spectrum-title', force ? 'Spectrum of the force on the hand' : 'Spectrum of the drive under the finger');
   put('steers', !here ? 'Nothing can be steered.' : steering.taken ? 'Another page steers; this one watches, and can stop.' : 'This page steers the daemon.');
   at('steer').hidden = !steering.taken;
+  at('shape').disabled = !here || steering.taken || state === 'fault';
   const may = {steer: steering.taken, load: at('texture').value !== '' && state !== 'fault', arm: state === 'idle' && loaded,
                play: state === 'armed', disarm: state === 'armed' || state === 'playing' || state === 'fault', gain: status.gain_times_default !== undefined};
   for (const [id, allowed] of Object.entries(may))
@@ -309,14 +319,20 @@ function draw(now_ms) {
 }
 
 async function listTextures() {
-  const {textures} = await (await fetch('textures')).json();
+  const {textures} = await (await get('textures')).json();
   const options = textures.filter(({reason}) => reason === undefined).map(({index, name}) => new Option(name, index));
   at('texture').replaceChildren(...options);
+  if (options.length > 0) shape.of(Number(at('texture').value));
   if (options.length === 0) at('texture').append(new Option('this folder has none', ''));
   show();
 }
 
-at('load').addEventListener('click', () => request('load', {texture: Number(at('texture').value)}));
+at('load').addEventListener('click', () => {
+  say('');
+  shape.of(Number(at('texture').value));
+  loadTexture(shape.source).catch(complain);
+});
+at('texture').addEventListener('input', () => shape.of(Number(at('texture').value)));
 for (const id of ['arm', 'play', 'disarm']) at(id).addEventListener('click', () => request(id));
 at('steer').addEventListener('click', () => { if (server) socket.send(JSON.stringify({request: 'steer'})); });
 at('stop').addEventListener('click', stop);

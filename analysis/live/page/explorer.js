@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page of a spectrogram: its cells under a cross-hair, zoom, formants, files.
 
+import {get} from './answers.js';
 import {Axis, Cells, cellWords, exportQuery, frequencyMarks, marks, paint} from './cells.js';
 import {css, palette, sized} from './strip.js';
 
@@ -17,18 +18,8 @@ let cross = null;               // the cell under the cross-hair
 let dragged = null;             // {from, to}: places on the plot
 let heatDrawn = false, overDrawn = false, choices = 0;
 
-const errorText = ({what, where, remedy}) => `${where ? where + ': ' : ''}${what}${remedy ? ` (${remedy})` : ''}`;
 function put(id, text) { if (at(id).textContent !== text) at(id).textContent = text; }
 function say(text) { put('message', text); }
-
-async function get(path) {
-  const answer = await fetch(path);
-  if (answer.ok) return answer;
-  const body = await answer.text();
-  let text = body;
-  try { text = errorText(JSON.parse(body).error); } catch { /* no JSON: the text itself */ }
-  throw new Error(text);
-}
 
 // The spectrogram.
 async function choose(index) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: chooses a texture, moves the finger, shows what the device does, keeps sessions.
 
+import {errorText, get} from './answers.js';
 import {compareWords, fullScale, gainsOf, largestLevel} from './compare.js';
 import {startDevice} from './device.js';
 import {Library} from './library.js';
+import {Shape} from './shape.js';
 import {drawFinger, drawMap, Trace} from './strip.js';
 
 const IDLE_S = 30;              // without motion: then the drive falls and the session ends
@@ -36,7 +38,6 @@ let waiting = [];               // for the device: {when, done}
 
 // Words.
 function say(text) { at('message').textContent = text; }
-const errorText = ({what, where, remedy}) => `${where ? where + ': ' : ''}${what}${remedy ? ` (${remedy})` : ''}`;
 const mm = (metres, digits = 2) => `${(1e3 * metres).toFixed(digits)} mm`;
 
 function showState() {
@@ -77,24 +78,17 @@ function hear(message) {
   showState();
 }
 
-async function get(path) {
-  const answer = await fetch(path);
-  if (answer.ok) return answer;
-  const body = await answer.text();
-  let text = body;
-  try { text = errorText(JSON.parse(body).error); } catch { /* no JSON: the text itself */ }
-  throw new Error(text);
-}
-
 // Textures.
 const library = new Library({
-  list: at('textures'), search: at('search'), order: at('order'), count: at('count'), colours: at('colours'), get,
+  list: at('textures'), recordings: at('recordings'), search: at('search'), order: at('order'), count: at('count'), colours: at('colours'), get,
   choose: (row) => choose('A', row).catch((error) => say(error.message)),
   chooseB: (row) => choose('B', row).catch((error) => say(error.message)),
 });
+const shape = new Shape(at('shape'), reshape);
+let filter = '';                // of the transducer, of both sides
 
 async function load(index) {
-  const figures = await (await get(`texture/${index}`)).json();
+  const figures = await (await get(`texture/${index}${filter === '' ? '' : `?inverse=${filter}`}`)).json();
   const parts = ['map', 'tray', 'upload'].map(async (part) => (await get(`${part}/${figures.made}`)).arrayBuffer());
   const [map, tray, upload] = await Promise.all(parts);
   return {figures, map: new Float32Array(map), tray: new Float32Array(tray), upload: new Uint8Array(upload)};
@@ -121,6 +115,7 @@ async function choose(name, row) {
     heard = 'A';
     brought.clear();
     library.mark({...library.chosen, [side]: loaded && row.index});
+    if (side === 'A' && row.name !== undefined) shape.of(row.index);
     last.what = '';
     loadHeard();
     await until(() => last.what === 'loaded');
@@ -159,6 +154,29 @@ async function hearSide(name) {
   if (!playing) return;
   const message = await broughtFor(name).catch((error) => say(error.message));
   if (message && playing && heard === name) device.send(message);
+}
+
+/** Another texture as A: at once with a cross-fade while it plays. */
+async function reshape(index) {
+  if (filter !== shape.filter) {  // it can't be faded: the device stops and begins with one texture
+    filter = shape.filter;
+    sides = {A: null, B: null};
+    library.mark({...library.chosen, B: null});
+  }
+  if (sides.A === null || chosen === null) return choose('A', {index});
+  const mine = choices, loaded = await load(index), before = {sides, gains};
+  if (mine !== choices) return;  // another texture has been chosen since
+  sides = {...sides, A: loaded};
+  gains = gainsOf(sides, at('equal').checked);
+  try {
+    if (playing) await broughtFor('A');
+  } catch (error) {
+    if (mine === choices) ({sides, gains} = before);
+    throw error;
+  }
+  for (const path of [...brought.keys()]) if (path.startsWith(`change/${before.sides.A.figures.made}/`)) brought.delete(path);
+  await hearSide('A');
+  setLevel();
 }
 
 function showTexture() {

@@ -19,7 +19,8 @@ constexpr double kStepCurvature = 0.242;  // 1 / sqrt(2 pi e): of a step of 1 sm
 constexpr double kLongestPeriodInFilters = 76;
 
 // Fourier series of profiles from -1 to 1 with their highest place at 0.
-double amplitude_of(GrooveProfile profile, unsigned n) {
+double amplitude_of(GrooveProfile profile, unsigned n, double duty) {
+  if (profile == GrooveProfile::square && duty != 0.5) return 4 / (kPi * n) * std::sin(kPi * n * duty);
   if (n % 2 == 0) return 0;
   switch (profile) {
     case GrooveProfile::sine:
@@ -34,11 +35,11 @@ double amplitude_of(GrooveProfile profile, unsigned n) {
 
 }  // namespace
 
-std::vector<double> groove_amplitudes(GrooveProfile profile, double filter_periods) {
+std::vector<double> groove_amplitudes(GrooveProfile profile, double filter_periods, double duty) {
   const double turn = 2 * kPi * filter_periods;
   std::vector<double> amplitudes;
   for (unsigned n = 1; n <= core::kMostHarmonics; ++n)
-    amplitudes.push_back(amplitude_of(profile, n) / 2 * std::exp(-turn * turn * n * n / 2));
+    amplitudes.push_back(amplitude_of(profile, n, duty) / 2 * std::exp(-turn * turn * n * n / 2));
   const double least = kLeastPart * std::abs(amplitudes.front());
   while (std::abs(amplitudes.back()) <= least && amplitudes.size() > 1) amplitudes.pop_back();
   return amplitudes;

@@ -11,7 +11,9 @@ namespace tacto::playback {
 /// Amplitudes of the harmonics, from the first on, of a profile of depth 1 (from its lowest to its highest
 /// place), after a Gaussian filter of `filter_periods` (its standard deviation in periods; 0 for none). Up to
 /// core::kMostHarmonics, or up to the last one above 1e-6 of the first. The highest place is at phase 0.
-std::vector<double> groove_amplitudes(schema::GrooveProfile profile, double filter_periods);
+/// `duty`: the share of a period in which a square is high.
+std::vector<double> groove_amplitudes(schema::GrooveProfile profile, double filter_periods,
+                                      double duty = 0.5);
 
 /// The largest curvature of such a profile, per squared period.
 double largest_curvature(const std::vector<double>& amplitudes);
