@@ -13,6 +13,7 @@
 #include "analysis/live/live_access.hpp"
 #include "analysis/live/live_daemon.hpp"
 #include "analysis/live/live_folder.hpp"
+#include "analysis/live/live_recorder.hpp"
 #include "analysis/live/live_scene.hpp"
 #include "analysis/live/live_session.hpp"
 #include "data-schema/base/module.hpp"
@@ -34,7 +35,8 @@ using schema::Result;
 
 constexpr int kFirstPort = 7230, kPortsTried = 20;
 constexpr std::string_view kDaemonPath = "/daemon", kChangePath = "/change/", kExportPath = "/export/",
-                           kScenePath = "/scene-session", kSectionPath = "/section/";
+                           kScenePath = "/scene-session", kRecorderPath = "/recorder",
+                           kSectionPath = "/section/";
 constexpr std::size_t kLongestPath = 256;
 
 std::string_view type_of_asset(std::string_view name) {
@@ -151,17 +153,20 @@ class Site {
       : access_(port),
         folder_(options.folder, options.transducer),
         scenes_(options.folder),
-        daemon_(options.socket, folder_) {
+        daemon_(options.socket, folder_),
+        recorder_(options.folder, options.device) {
     folder_.refresh();
   }
   WebSite handlers() {
     return {[this](const WebRequest& request) { return answer(request); },
             [this](const WebRequest& request) -> std::unique_ptr<WebConversation> {
               if (request.path == kDaemonPath) return daemon_.converse();
+              if (request.path == kRecorderPath) return recorder_.converse();
               return std::make_unique<Page>(folder_, request.path == kScenePath ? &scenes_ : nullptr, kept_);
             }};
   }
   LiveDaemon& daemon() { return daemon_; }
+  LiveRecorder& recorder() { return recorder_; }
   const LiveAccess& access() const { return access_; }
   std::size_t kept() const { return kept_; }
 
@@ -176,7 +181,8 @@ class Site {
   WebAnswer content(const WebRequest& request) {
     if (request.path.size() > kLongestPath) return too_long();
     if (request.upgrade)
-      return request.path == "/session" || request.path == kScenePath || request.path == kDaemonPath
+      return request.path == "/session" || request.path == kScenePath || request.path == kDaemonPath ||
+                     request.path == kRecorderPath
                  ? WebAnswer()
                  : not_found();
     if (auto answer = scene_content(request.path)) return std::move(*answer);
@@ -337,6 +343,7 @@ class Site {
   LiveFolder folder_;
   LiveScenes scenes_;
   LiveDaemon daemon_;
+  LiveRecorder recorder_;
   std::size_t kept_ = 0;
 };
 
@@ -392,6 +399,7 @@ Result<LiveSummary> run_live(const LiveOptions& options,
   });
   served->server->serve([&] {
     daemon.step();
+    served->site->recorder().step();
     return stop();
   });
   return LiveSummary{address, served->site->kept()};

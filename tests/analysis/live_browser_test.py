@@ -414,6 +414,20 @@ def check_device(chrome, server):
         state(chrome, "idle")  # without a reload
 
 
+def check_recorder(chrome):
+    """By keyboard; the sensor is silent."""
+    chrome.value("document.getElementById('record-name').value = 'oak'")
+    press(chrome, "record-begin")
+    chrome.wait("document.getElementById('record-problem').textContent.includes('has not changed')")
+    press(chrome, "record-mark")
+    chrome.wait("document.getElementById('record-said').textContent.startsWith('mark')")
+    check_names(chrome)
+    check_looks(chrome)
+    press(chrome, "record-end")
+    chrome.wait("document.getElementById('record-said').textContent.startsWith('Recorded: ')")
+    run("validate", chrome.text("record-said").split(": ")[1].split(".wav")[0])
+
+
 def check_fault(chrome, server):
     with device_page(chrome, server, JUMP):
         play_on_device(chrome)
@@ -503,8 +517,9 @@ def live_in_chromium():
         check_scenes(chrome, server)
         assert chrome.console == [], chrome.console
     prepare_files()
-    with live(".", "--socket", "control") as server, browser(server.address) as chrome:
+    with live(".", "--socket", "control", "-d", "sim:noise=off,finger=up,paced=1") as server, browser(server.address) as chrome:
         check_device(chrome, server)
+        check_recorder(chrome)
         check_fault(chrome, server)
         assert chrome.console == [], chrome.console
 

@@ -164,8 +164,8 @@ MAY_INCLUDE = {
         "analysis/{identify/fit identify/measure} data-schema/{base report results} firmware-host/sim/physics "
         "spatial/{picture picture/draw}",
     "analysis/live":
-        "analysis/{live/server scene} data-schema/{base control files report spectrogram texture} firmware-host/{core/firmware core/wire "
-        "link sim/planar} playback/{control model player prepare wasm} spatial/{dsp/fourier features picture picture/draw spectrogram}",
+        "analysis/{live/server scene} capture/{record table} data-schema/{base control files report spectrogram texture} firmware-host "
+        "firmware-host/{core/firmware core/wire link sim/planar} playback/{control model player prepare wasm} spatial/{dsp/fourier features picture picture/draw spectrogram}",
     "analysis/live/server": "",
     "analysis/page": "data-schema/{base results} spatial/picture",
     "analysis/psychometrics": "data-schema/base",
