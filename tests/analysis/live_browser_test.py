@@ -439,12 +439,12 @@ def check_fault(chrome, server):
         assert chrome.text("fault") == ""
 
 
-def write_scenes():
+def write_scenes(folder):
     spring = {"type": "spring", "stiffness_n_per_m": {"value": 100, "slider": {"from": 0, "to": 200}}, "centre_x_m": 0, "centre_y_m": 0}
     bench = {"name": "bench", "x_m": 0, "y_m": 0, "width_m": 0.19, "height_m": 0.19, "layers": [spring]}
     ball = {"name": "ball", "shape": "sphere", "place": {"x_m": 0, "y_m": 0, "z_m": 0}, "radius_m": 0.03, "stiffness_n_per_m": 600}
     for name, members in (("bench", {"patches": [bench]}), ("ball", {"pieces": [ball]})):
-        pathlib.Path(f"folder/{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", **members}))
+        pathlib.Path(f"{folder}/{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", **members}))
 
 
 def open_scene(chrome, server, name):
@@ -458,6 +458,16 @@ def open_scene(chrome, server, name):
 def force(chrome):
     """Newtons along each axis, as the page shows them."""
     return [float(part.split()[1]) for part in chrome.text("force").split(": ")[1].split(" N;")[0].split(", ")]
+
+
+def into_the_ball(chrome):
+    """From above, in the section from the front; the pointer stays pressed. Returns the box of the picture."""
+    box = chrome.value("(() => { const v = document.getElementById('view'); v.scrollIntoView({block: 'center'}); const r = v.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()")
+    chrome.mouse("mousePressed", box[0] + 0.5 * box[2], box[1] + 0.1 * box[3])
+    for i in range(30):
+        chrome.mouse("mouseMoved", box[0] + 0.5 * box[2], box[1] + (0.1 + 0.01 * i) * box[3])
+    chrome.wait("/[1-9][0-9.]* mm from the hand/.test(document.getElementById('ghost').textContent)")
+    return box
 
 
 def check_scenes(chrome, server):
@@ -479,11 +489,7 @@ def check_scenes(chrome, server):
     check_looks(chrome)
     keep(chrome, 0.2 * 4000)  # 10 mm at 50 mm/s
     open_scene(chrome, server, "ball")
-    box = chrome.value("(() => { const v = document.getElementById('view'); v.scrollIntoView({block: 'center'}); const r = v.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()")
-    chrome.mouse("mousePressed", box[0] + 0.5 * box[2], box[1] + 0.1 * box[3])
-    for i in range(40):
-        chrome.mouse("mouseMoved", box[0] + 0.5 * box[2], box[1] + (0.1 + 0.01 * i) * box[3])
-    chrome.wait("/[1-9][0-9.]* mm from the hand/.test(document.getElementById('ghost').textContent)")
+    box = into_the_ball(chrome)
     assert chrome.text("state-word") == "playing" and force(chrome)[2] > 0, chrome.text("force")
     chrome.mouse("mouseReleased", box[0] + 0.5 * box[2], box[1] + 0.5 * box[3])
     chrome.value("document.getElementById('view').focus()")
@@ -504,7 +510,7 @@ def make_textures():
 
 def live_in_chromium():
     make_textures()
-    write_scenes()
+    write_scenes("folder")
     with live("folder") as server, browser(server.address) as chrome:
         assert chrome.value("location.search") == "", "the token stays out of the address"
         check_playing(chrome)
@@ -532,6 +538,7 @@ def take_pictures(chrome, folder, name):
 
 def pictures(folder):
     run("demo", "-o", "demo")
+    write_scenes("demo")
     with live("demo") as server, browser(server.address) as chrome:
         choose_by_keys(chrome, "C")
         stroke_by_mouse(chrome)
@@ -541,6 +548,9 @@ def pictures(folder):
         chrome.ask("Page.navigate", url=server.address.split("?")[0] + "explorer.html#2")
         chrome.wait("document.getElementById('cell')?.textContent.startsWith('position')")
         take_pictures(chrome, folder, "live-explorer")
+        open_scene(chrome, server, "ball")
+        into_the_ball(chrome)
+        take_pictures(chrome, folder, "live-scene")
     prepare_files()
     on_host = {"loop": "host", "device": "sim:rate=2kHz", "most_late_percent": 100}
     with live(".", "--socket", "control") as server, browser(server.address) as chrome, device_page(chrome, server, STROKES, **on_host):
