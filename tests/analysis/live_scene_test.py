@@ -177,10 +177,11 @@ def live_scenes():
         # At rest only the spring: -100 N/m x (10, -5) mm.
         met = check_bits(server, plane, (1, 2), [[-0.02, -0.005]])
         assert np.allclose(met["force_n"], [-1, 0.5], rtol=0, atol=2e-6) and met["values"] == [100, 1] and met["ghost_m"] is None, met
-        # The ball from above: the ghost is on the sphere of both radii, the hand 2 mm deep: 1.2 N.
-        met = check_bits(server, room, (1, 2), [[None, None, 0.08], [0, 0, None], [None, None, RADIUS_M + POINT_M - 0.002]])
-        assert np.allclose(met["force_n"], [0, 0, 0.002 * STIFFNESS], rtol=0, atol=1e-4), met
-        assert np.allclose(met["ghost_m"], [0, 0, RADIUS_M + POINT_M], rtol=0, atol=1e-6), met
+        # Out of all pieces, then the ball from above: the ghost is on the sphere of both radii, the hand 2 mm deep: 1.2 N.
+        # The ghost is at most 1 um inside of a piece (ghost_point.hpp).
+        met = check_bits(server, room, (1, 2), [[-0.08, None, None], [None, None, 0.08], [0, 0, None], [None, None, RADIUS_M + POINT_M - 0.002]])
+        assert np.allclose(met["ghost_m"], [0, 0, RADIUS_M + POINT_M], rtol=0, atol=1.1e-6), met
+        assert np.allclose(met["force_n"], [0, 0, 0.002 * STIFFNESS], rtol=0, atol=1.1e-6 * STIFFNESS), met
 
 
 if __name__ == "__main__":
