@@ -441,7 +441,7 @@ def check_fault(chrome, server):
 
 def write_scenes(folder):
     spring = {"type": "spring", "stiffness_n_per_m": {"value": 100, "slider": {"from": 0, "to": 200}}, "centre_x_m": 0, "centre_y_m": 0}
-    bench = {"name": "bench", "x_m": 0, "y_m": 0, "width_m": 0.19, "height_m": 0.19, "layers": [spring]}
+    bench = {"name": "bench", "place": {"x_m": 0, "y_m": 0}, "size": {"width_m": 0.19, "height_m": 0.19}, "layers": [spring]}
     ball = {"name": "ball", "shape": "sphere", "place": {"x_m": 0, "y_m": 0, "z_m": 0}, "radius_m": 0.03, "stiffness_n_per_m": 600}
     for name, members in (("bench", {"patches": [bench]}), ("ball", {"pieces": [ball]})):
         pathlib.Path(f"{folder}/{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", **members}))

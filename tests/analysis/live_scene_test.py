@@ -27,7 +27,7 @@ def write_scene(name, **members):
 
 
 def patch(name, x_m, y_m, *layers, **members):
-    return {"name": name, "x_m": x_m, "y_m": y_m, "width_m": 0.06, "height_m": 0.05, "layers": list(layers), **members}
+    return {"name": name, "place": {"x_m": x_m, "y_m": y_m}, "size": {"width_m": 0.06, "height_m": 0.05}, "layers": list(layers), **members}
 
 
 def make_scenes():

@@ -112,15 +112,15 @@ function showScene() {
   if (notes.length > 0) say(notes[0] + (notes.length > 1 ? ` (and ${notes.length - 1} more below, in “How exact this is”)` : ''));
   at('section').replaceChildren(...sections.map(({right, up}, i) => make('option', {value: i}, `${NAMES[right]} ${NAMES[up]}`)));
   at('section').value = space ? 1 : 0;
-  at('section-controls').hidden = at('across-keys').hidden = !space;
+  at('section-controls').hidden = at('across-keys').hidden = at('section').disabled = at('across').disabled = !space;
   at('ghost').hidden = !scene.ghost;
   showSliders();
   showSection();
 }
 
 function showSliders() {
-  const rows = scene.sliders.map((slider) => {
-    const input = make('input', {type: 'range', min: slider.from, max: slider.to, step: (slider.to - slider.from) / 200 || 1, value: slider.value});
+  const rows = scene.sliders.map((slider, i) => {
+    const input = make('input', {id: `slider-${i}`, type: 'range', min: slider.from, max: slider.to, step: (slider.to - slider.from) / 200 || 1, value: slider.value});
     input.value = slider.value;
     input.addEventListener('input', () => {
       hand.set(slider, Number(input.value));
