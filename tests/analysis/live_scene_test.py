@@ -15,7 +15,7 @@ from live_client import live
 from tacto import COMMAND, in_folder, run, run_json
 
 HERE = pathlib.Path(__file__).resolve().parent
-STIFFNESS, RADIUS_M, POINT_M = 600.0, 0.03, 0.004
+STIFFNESS, RADIUS_M = 600.0, 0.03
 
 
 def number(value, low, high):
@@ -44,7 +44,7 @@ def make_scenes():
     pathlib.Path("part.stl").write_bytes(bytes(80) + struct.pack("<I", len(faces)) + rows)
     run("import", "part.stl", "--unit", "mm", "-o", "folder/part")
     part = {"name": "part", "shape": "mesh", "mesh": "part", "place": {"x_m": 0.06, "y_m": 0, "z_m": 0}, "stiffness_n_per_m": STIFFNESS}
-    write_scene("room", pieces=[ball, floor, part], radius_m=POINT_M)
+    write_scene("room", pieces=[ball, floor, part])
     pathlib.Path("folder/broken.scene.json").write_text("{")
     write_scene("tray", layers=[{"type": "texture", "texture": "none", "at_m": 0}])
     write_scene("<img src=x onerror=alert(1)>", patches=[patch("bench", 0, 0, spring)])
@@ -79,7 +79,7 @@ def check_sections(server, room):
     """Each pixel is solid or not as its place says; the plane through the offset."""
     colours = {piece["name"]: int(piece["colour"][1:], 16) for piece in room["pieces"]}
     for i, section in enumerate(room["sections"]):
-        for through_m in (0, 0.02, -0.05):
+        for through_m in (0.0013, 0.02, -0.05):
             image = pixels(server.ask(f"/section/{room['made']}/{i}/{through_m}")).reshape(section["rows"], section["columns"])
             place = np.zeros((3, *image.shape))
             place[section["right"]] = section["left_m"] + (np.arange(image.shape[1]) + 0.5)[None, :] * section["pixel_m"]
@@ -87,7 +87,7 @@ def check_sections(server, room):
             place[section["across"]] = through_m
             ball, floor = np.linalg.norm(place, axis=0) < RADIUS_M, place[2] < -0.06
             part = (place[0] > 0.06) & (place[1] > 0) & (place[2] > 0) & (place[0] - 0.06 + place[1] + place[2] < 0.03)
-            assert np.array_equal(image != 0xFFFFFF, ball | floor | part), (i, through_m)
+            assert np.array_equal(image != 0xFFFFFF, ball | floor | part), (i, through_m, np.argwhere((image != 0xFFFFFF) != (ball | floor | part))[:5])
             assert not ball.any() or colours["ball"] in image[ball]  # its border
     for path in (f"{room['made']}/3/0", f"{room['made']}/0/nan", f"{room['made']}/0/inf", f"{room['made']}/0", f"{room['made']}/0/0/", f"{room['made']}/-1/0"):
         assert server.ask(f"/section/{path}").status == 404, path
@@ -170,17 +170,17 @@ def live_scenes():
         assert [slider["name"] for slider in plane["sliders"]] == ["bench.spring.stiffness_n_per_m", "bench.damper.damping_n_s_per_m"], plane
         assert {slider["name"] for slider in room["sliders"]} == {"ball.stiffness_n_per_m", "floor.static_friction"}, room
         start_m = np.array([axis["start_m"] for axis in room["axes"]])
-        assert np.linalg.norm(start_m) > RADIUS_M + POINT_M and start_m[2] > -0.06, start_m
+        assert np.linalg.norm(start_m) > RADIUS_M and start_m[2] > -0.06, start_m
         check_sections(server, room)
         check_protocol(server, room)
         fetch_page(server)
         # At rest only the spring: -100 N/m x (10, -5) mm.
         met = check_bits(server, plane, (1, 2), [[-0.02, -0.005]])
         assert np.allclose(met["force_n"], [-1, 0.5], rtol=0, atol=2e-6) and met["values"] == [100, 1] and met["ghost_m"] is None, met
-        # Out of all pieces, then the ball from above: the ghost is on the sphere of both radii, the hand 2 mm deep: 1.2 N.
+        # Out of all pieces, then the ball from above: the ghost is on the sphere, the hand 2 mm deep: 1.2 N.
         # The ghost is at most 1 um inside of a piece (ghost_point.hpp).
-        met = check_bits(server, room, (1, 2), [[-0.08, None, None], [None, None, 0.08], [0, 0, None], [None, None, RADIUS_M + POINT_M - 0.002]])
-        assert np.allclose(met["ghost_m"], [0, 0, RADIUS_M + POINT_M], rtol=0, atol=1.1e-6), met
+        met = check_bits(server, room, (1, 2), [[-0.08, None, None], [None, None, 0.08], [0, 0, None], [None, None, RADIUS_M - 0.002]])
+        assert np.allclose(met["ghost_m"], [0, 0, RADIUS_M], rtol=0, atol=1.1e-6), met
         assert np.allclose(met["force_n"], [0, 0, 0.002 * STIFFNESS], rtol=0, atol=1.1e-6 * STIFFNESS), met
 
 
