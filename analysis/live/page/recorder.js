@@ -73,6 +73,7 @@ function showChannels(channels, late_s) {
 // The first channel with a force, if there is one.
 function showForce(channels) {
   const force = channels.find(({quantity}) => quantity.includes('force'));
+  at('record-trace').hidden = at('record-force').hidden = force === undefined;
   if (force === undefined) return;
   if (channel !== force.name) trace.clear(1e-9);
   channel = force.name;

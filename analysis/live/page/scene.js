@@ -29,6 +29,7 @@ let outputs = [];                       // of the sliders
 
 const say = (text) => { at('message').textContent = text; };
 const mm = (metres, digits = 2) => `${(1e3 * metres).toFixed(digits)} mm`;
+const fixed = (value, digits) => value.toFixed(digits).replace(/^-(0\.?0*)$/, '$1');  // no negative zero
 const three = (value) => Number(value.toPrecision(4)).toString();
 
 function showState() {
@@ -183,7 +184,6 @@ function drawPicture() {
   const canvas = sized(at('picture')), {ink, width, height, ratio} = canvas;
   ink.clearRect(0, 0, width, height);
   if (picture === null || scene === null) return;
-  ink.imageSmoothingEnabled = false;
   ink.drawImage(picture, 0, 0, width, height);
   ink.lineWidth = ratio;
   ink.font = `${12 * ratio}px system-ui, "DejaVu Sans", sans-serif`;
@@ -204,6 +204,19 @@ function drawPicture() {
     ink.fillStyle = '#000';
     ink.fillText(name, x - size.width / 2, y + 4 * ratio);
   }
+  drawScale(canvas);
+}
+
+// A bar of a fifth of the width or less, with its length and the names of the axes.
+function drawScale({ink, width, height, ratio}) {
+  const most_mm = 200 * section.columns * section.pixel_m, power = 10 ** Math.floor(Math.log10(most_mm));
+  const long_mm = power * [5, 2, 1].find((times) => times * power <= most_mm), long = long_mm / (5 * most_mm) * width;
+  const text = `${three(long_mm)} mm; right ${NAMES[section.right]}, up ${NAMES[section.up]}`, x = 8 * ratio, y = height - 10 * ratio;
+  ink.fillStyle = 'rgba(255, 255, 255, .85)';
+  ink.fillRect(0, height - 32 * ratio, Math.max(long, ink.measureText(text).width) + 16 * ratio, 32 * ratio);
+  ink.fillStyle = '#000';
+  ink.fillRect(x, y, long, 3 * ratio);
+  ink.fillText(text, x, y - 6 * ratio);
 }
 
 // The hand (ring), the ghost (diamond), and the force from the hand on (arrow). White below black: seen on any picture.
@@ -372,7 +385,7 @@ addEventListener('hashchange', choose);
 new ResizeObserver(drawPicture).observe(view);
 
 // Pictures and figures, and the place of a pointer that rests.
-const components = (values, digits, factor) => scene.axes.map(({name}, i) => `${name} ${(factor * values[i]).toFixed(digits)}`).join(', ');
+const components = (values, digits, factor) => scene.axes.map(({name}, i) => `${name} ${fixed(factor * values[i], digits)}`).join(', ');
 const forceWords = () => `force on the hand ${Math.hypot(...last.force_n).toFixed(3)} N: ${components(last.force_n, 3, 1)} N`;
 const placeWords = () => `hand at ${components(last.place_m, 2, 1e3)} mm, ${(1e3 * last.speed_mps).toFixed(0)} mm/s`;
 
