@@ -20,16 +20,16 @@ using schema::fail;
 using schema::Result;
 using std::chrono::steady_clock;
 
-constexpr auto kTellEvery = std::chrono::milliseconds(100);
-constexpr std::size_t kLongestWords = 200;  // bytes of a name or label
-constexpr std::size_t kMostToSay = 100;     // to a page that does not read
+constexpr auto kViewEvery = std::chrono::milliseconds(100);
+constexpr std::size_t kLongestLine = 200;  // bytes of a name or label
+constexpr std::size_t kMostUnread = 100;   // to a page that does not read
 
-Result<void> check_words(std::string_view words) {
-  if (!words.empty() && words.size() <= kLongestWords && capture::is_utf8(words) &&
+Result<void> check_line(std::string_view words) {
+  if (!words.empty() && words.size() <= kLongestLine && capture::is_utf8(words) &&
       std::ranges::none_of(words, [](unsigned char c) { return c < 0x20 || c == 0x7F; }))
     return {};
   return fail(ErrorKind::malformed, "is no name or label", "request",
-              fmt::format("write one line of 1 to {} bytes", kLongestWords));
+              fmt::format("write one line of 1 to {} bytes", kLongestLine));
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ Result<void> LiveRecorder::obey(std::string_view line) {
   const std::string_view verb = line.substr(0, line.find(' '));
   const std::string_view words = line.substr(std::min(verb.size() + 1, line.size()));
   if (verb == "record") {
-    TACTO_TRY(check_words(words));
+    TACTO_TRY(check_line(words));
     if (words.front() == '.')
       return fail(ErrorKind::malformed, "a name does not begin with a dot", "request", "leave it out");
     return begin(words);
@@ -77,7 +77,7 @@ Result<void> LiveRecorder::obey(std::string_view line) {
   if (over_ && (verb == "mark" || line == "stop"))
     return fail(ErrorKind::unsuitable, "there is no recording", "request", "begin one");
   if (verb == "mark") {
-    TACTO_TRY(check_words(words));
+    TACTO_TRY(check_line(words));
     const std::lock_guard lock(mutex_);
     labels_.emplace_back(words);
     return {};
@@ -189,11 +189,11 @@ void LiveRecorder::step() {
   }
   const auto now = steady_clock::now();
   if (!events.empty() || (!over_ && now >= next_)) {
-    next_ = now + kTellEvery;
+    next_ = now + kViewEvery;
     events.push_back(state_event());
   }
   for (Page* const page : pages_)
-    if (page->to_say.size() < kMostToSay)
+    if (page->to_say.size() < kMostUnread)
       for (const std::string& event : events) page->to_say.push_back(event);
 }
 
