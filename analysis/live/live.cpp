@@ -74,7 +74,7 @@ WebAnswer bytes_answer(const std::vector<Value>& values) {
 // One page: it plays one texture at a time, or with `scenes` one scene, and may keep what it played.
 class Page final : public WebConversation {
  public:
-  Page(LiveFolder& folder, const LiveScenes* scenes, std::size_t& kept)
+  Page(LiveFolder& folder, LiveScenes* scenes, std::size_t& kept)
       : folder_(folder), scenes_(scenes), kept_(kept) {}
 
   std::string receive_text(std::string_view text) override {
@@ -142,7 +142,7 @@ class Page final : public WebConversation {
   }
 
   LiveFolder& folder_;
-  const LiveScenes* scenes_;  // null: textures
+  LiveScenes* scenes_;  // null: textures
   std::size_t& kept_;
   std::unique_ptr<LiveSession> session_;
 };

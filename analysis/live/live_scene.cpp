@@ -298,7 +298,7 @@ Result<std::size_t> LiveScenes::make(std::size_t index) {
   return made_.add(std::move(*scene));
 }
 
-Result<std::shared_ptr<const LiveScene>> LiveScenes::made(std::size_t number) const {
+Result<std::shared_ptr<const LiveScene>> LiveScenes::made(std::size_t number) {
   if (auto found = made_.find(number)) return found;
   return fail(ErrorKind::not_found, "this scene is not prepared any more", std::to_string(number),
               "choose it again");

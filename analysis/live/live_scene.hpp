@@ -64,7 +64,7 @@ class LiveScenes {
   /// make_live_scene.
   schema::Result<std::size_t> make(std::size_t index);
   /// One of the last kMostMade that were made. Errors: not_found.
-  schema::Result<std::shared_ptr<const LiveScene>> made(std::size_t number) const;
+  schema::Result<std::shared_ptr<const LiveScene>> made(std::size_t number);
 
  private:
   static constexpr std::size_t kMostMade = 4;
