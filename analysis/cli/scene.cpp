@@ -139,27 +139,18 @@ Result<Report> run_pieces(const SceneVerbOptions& o, schema::Scene scene) {
   if (!o.hand.empty() || !o.session.empty())
     return schema::fail(schema::ErrorKind::unsuitable, "sections of pieces show neither a hand nor a session",
                         o.session.empty() ? "--hand" : "--session", "leave it out");
-  PiecePicture picture{scene.name.empty() ? o.scene : scene.name, std::move(scene), {}, {}, {}};
-  for (const schema::Piece& piece : picture.scene.pieces) {
-    if (piece.shape != schema::PieceShape::mesh || picture.meshes.contains(piece.mesh)) continue;
-    auto mesh = schema::read_mesh(schema::texture_in_scene(schema::scene_path(o.scene), piece.mesh));
-    TACTO_TRY(mesh);
-    picture.meshes[piece.mesh] = std::move(*mesh);
-  }
-  if (!o.device.empty()) {
-    auto device = schema::read_device(o.device);
-    TACTO_TRY(device);
-    picture.device = std::move(*device);
-  }
+  if (scene.name.empty()) scene.name = o.scene;
+  auto picture = read_piece_picture(std::move(scene), schema::scene_path(o.scene), o.device);
+  TACTO_TRY(picture);
   if (!o.through.empty()) {
     const auto through_m = place_in_space(o.through);
     TACTO_TRY(through_m);
-    picture.through_m = *through_m;
+    picture->through_m = *through_m;
   }
   Report report;
-  report.add("scene", schema::scene_path(o.scene)).add("pieces", picture.scene.pieces.size());
-  if (picture.device) report.add("device", picture.device->name);
-  const PieceFigure figure(std::move(picture));
+  report.add("scene", schema::scene_path(o.scene)).add("pieces", picture->scene.pieces.size());
+  if (picture->device) report.add("device", picture->device->name);
+  const PieceFigure figure(std::move(*picture));
   for (std::size_t i = 0; i < 3; ++i)
     report.add(fmt::format("through_{}_m", "xyz"[i]), figure.through_m().at(i));
   schema::PendingFiles files;

@@ -14,6 +14,8 @@
 #include "analysis/live/live_daemon.hpp"
 #include "analysis/live/live_folder.hpp"
 #include "analysis/live/live_jobs.hpp"
+#include "analysis/live/live_recorder.hpp"
+#include "analysis/live/live_scene.hpp"
 #include "analysis/live/live_session.hpp"
 #include "data-schema/base/module.hpp"
 #include "data-schema/control/control.hpp"
@@ -34,7 +36,8 @@ using schema::Result;
 
 constexpr int kFirstPort = 7230, kPortsTried = 20;
 constexpr std::string_view kDaemonPath = "/daemon", kJobsPath = "/jobs", kShapePath = "/shape/",
-                           kChangePath = "/change/", kExportPath = "/export/";
+                           kChangePath = "/change/", kExportPath = "/export/", kScenePath = "/scene-session",
+                           kRecorderPath = "/recorder", kSectionPath = "/section/";
 constexpr std::size_t kLongestPath = 256;
 
 std::string_view type_of_asset(std::string_view name) {
@@ -69,10 +72,11 @@ WebAnswer bytes_answer(const std::vector<Value>& values) {
   return answer;
 }
 
-// One page: it plays one texture at a time, and may keep what it played.
+// One page: it plays one texture at a time, or with `scenes` one scene, and may keep what it played.
 class Page final : public WebConversation {
  public:
-  Page(LiveFolder& folder, std::size_t& kept) : folder_(folder), kept_(kept) {}
+  Page(LiveFolder& folder, LiveScenes* scenes, std::size_t& kept)
+      : folder_(folder), scenes_(scenes), kept_(kept) {}
 
   std::string receive_text(std::string_view text) override {
     auto done = obey(text);
@@ -100,14 +104,24 @@ class Page final : public WebConversation {
   }
   Result<schema::ControlFields> begin(std::size_t made) {
     session_.reset();
-    const auto texture = folder_.made(made);
-    TACTO_TRY(texture);
-    auto session = LiveSession::begin(**texture);
+    auto session = session_of(made);
     TACTO_TRY(session);
     session_ = std::move(*session);
     return schema::ControlFields{{"begun", static_cast<std::int64_t>(made)}};
   }
+  Result<std::unique_ptr<LiveSession>> session_of(std::size_t made) {
+    if (scenes_ != nullptr) {
+      const auto scene = scenes_->made(made);
+      TACTO_TRY(scene);
+      return LiveSession::begin(**scene);
+    }
+    const auto texture = folder_.made(made);
+    TACTO_TRY(texture);
+    return LiveSession::begin(**texture);
+  }
   Result<schema::ControlFields> change(const schema::LiveRequest& request) {
+    if (scenes_ != nullptr)
+      return fail(ErrorKind::usage, "a scene changes by its numbers", "request", "move its sliders");
     const auto change = folder_.change(request.playing, request.made, request.times);
     TACTO_TRY(change);
     if (session_ == nullptr) return nothing_played();
@@ -129,6 +143,7 @@ class Page final : public WebConversation {
   }
 
   LiveFolder& folder_;
+  LiveScenes* scenes_;  // null: textures
   std::size_t& kept_;
   std::unique_ptr<LiveSession> session_;
 };
@@ -138,8 +153,10 @@ class Site {
   Site(const LiveOptions& options, int port)
       : access_(port),
         folder_(options.folder, options.transducer),
+        scenes_(options.folder),
         daemon_(options.socket, folder_),
-        jobs_(folder_) {
+        jobs_(folder_),
+        recorder_(options.folder, options.device) {
     folder_.refresh();
   }
   WebSite handlers() {
@@ -147,11 +164,13 @@ class Site {
             [this](const WebRequest& request) -> std::unique_ptr<WebConversation> {
               if (request.path == kDaemonPath) return daemon_.converse();
               if (request.path == kJobsPath) return jobs_.converse();
-              return std::make_unique<Page>(folder_, kept_);
+              if (request.path == kRecorderPath) return recorder_.converse();
+              return std::make_unique<Page>(folder_, request.path == kScenePath ? &scenes_ : nullptr, kept_);
             }};
   }
   LiveDaemon& daemon() { return daemon_; }
   LiveJobs& jobs() { return jobs_; }
+  LiveRecorder& recorder() { return recorder_; }
   const LiveAccess& access() const { return access_; }
   std::size_t kept() const { return kept_; }
 
@@ -166,9 +185,11 @@ class Site {
   WebAnswer content(const WebRequest& request) {
     if (request.path.size() > kLongestPath) return too_long();
     if (request.upgrade)
-      return request.path == "/session" || request.path == kDaemonPath || request.path == kJobsPath
+      return request.path == "/session" || request.path == kScenePath || request.path == kDaemonPath ||
+                     request.path == kJobsPath || request.path == kRecorderPath
                  ? WebAnswer()
                  : not_found();
+    if (auto answer = scene_content(request.path)) return std::move(*answer);
     if (request.path == "/loaded") return loaded();
     if (request.path == "/textures") {
       folder_.refresh();
@@ -197,6 +218,36 @@ class Site {
     for (const schema::EmbeddedFile& asset : live_assets())
       if (asset.name == name) return asset_answer(asset);
     return not_found();
+  }
+  std::optional<WebAnswer> scene_content(std::string_view path) {
+    if (path == "/scenes") return json_answer(scenes_.list_json());
+    if (const auto index = number_after("/scene/", path)) {
+      const auto number = scenes_.make(*index);
+      return number ? json_answer(scene_json(*number, **scenes_.made(*number)))
+                    : error_answer(number.error());
+    }
+    if (const auto index = number_after("/scene-thumbnail/", path)) {
+      const auto picture = scenes_.thumbnail(*index);
+      return picture ? bytes_answer(*picture) : error_answer(picture.error());
+    }
+    if (const auto number = number_after("/scene-upload/", path)) {
+      const auto scene = scenes_.made(*number);
+      return scene ? bytes_answer(joined((*scene)->upload)) : error_answer(scene.error());
+    }
+    if (path.starts_with(kSectionPath)) return section(path.substr(kSectionPath.size()));
+    return std::nullopt;
+  }
+  // "NUMBER/SECTION/PLACE_M"
+  WebAnswer section(std::string_view numbers) {
+    std::size_t number = 0, which = 0;
+    double through_m = 0;
+    if (!read_number(numbers, number) || !read_number(numbers, which) || !read_number(numbers, through_m) ||
+        !numbers.empty() || !std::isfinite(through_m))
+      return not_found();
+    const auto scene = scenes_.made(number);
+    if (!scene) return error_answer(scene.error());
+    if (which >= ((*scene)->plane ? 1 : std::size(kPieceSections))) return not_found();
+    return bytes_answer(scene_pixels(**scene, which, through_m).rgb);
   }
   WebAnswer spectrogram(std::size_t index) {
     const auto number = folder_.make_spectrogram(index);
@@ -315,8 +366,10 @@ class Site {
 
   LiveAccess access_;
   LiveFolder folder_;
+  LiveScenes scenes_;
   LiveDaemon daemon_;
   LiveJobs jobs_;
+  LiveRecorder recorder_;
   std::size_t kept_ = 0;
 };
 
@@ -373,6 +426,7 @@ Result<LiveSummary> run_live(const LiveOptions& options,
   served->server->serve([&] {
     daemon.step();
     served->site->jobs().step();
+    served->site->recorder().step();
     return stop();
   });
   return LiveSummary{address, served->site->kept()};

@@ -16,6 +16,7 @@ struct LiveOptions {
   std::string transducer = "wiertlewski2011";
   std::optional<int> port;                             ///< default: the first free one of twenty
   std::string socket = playback::kUsualControlSocket;  ///< of the daemon
+  std::string device = "usb:";                         ///< that the page of the device records from
 };
 
 struct LiveSummary {

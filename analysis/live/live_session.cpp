@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 
+#include "playback/player/player.hpp"
 #include "playback/player/session_name.hpp"
 
 namespace tacto::analysis {
@@ -16,17 +18,15 @@ using schema::fail;
 using schema::Result;
 
 constexpr std::string_view kWhere = "the page's log";
-constexpr std::int64_t kPeriodNs = 1'000'000'000 / browser::kRateHz;
 
 std::int64_t steady_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
-schema::SessionHeader header_of(const playback::Program& program) {
+schema::SessionHeader in_browser(schema::SessionHeader header) {
   const wire::Channel channel = browser::encoder_channel();
   const wire::Welcome about = browser::board(channel, nullptr).about;
-  schema::SessionHeader header = program.session;
-  header.clock_hz = about.clock_hz;
+  header.clock_hz = static_cast<std::uint32_t>(std::lround(header.rate_hz)) * browser::kClocksPerTick;
   header.device_uri = "browser:";
   header.device_name = about.name;
   header.device_firmware = about.firmware;
@@ -46,16 +46,30 @@ tl::unexpected<schema::Error> odd_log(std::string what) {
 }  // namespace
 
 Result<std::unique_ptr<LiveSession>> LiveSession::begin(const LiveTexture& texture) {
+  return begin(texture.session_stem, texture.program.session, texture.upload);
+}
+
+// The first frame describes the page's device: it is no command.
+Result<std::unique_ptr<LiveSession>> LiveSession::begin(const LiveScene& scene) {
+  return begin(schema::stem_of(scene.file, ".scene"), scene.program.session,
+               std::span(scene.upload).subspan(1));
+}
+
+Result<std::unique_ptr<LiveSession>> LiveSession::begin(const std::string& name_before,
+                                                        schema::SessionHeader header,
+                                                        std::span<const Frame> upload) {
   std::unique_ptr<LiveSession> session(new LiveSession);
-  session->path_ = playback::dated_session(texture.session_stem + "-");
+  session->period_ns_ = std::llround(1e9 / header.rate_hz);
+  session->most_ticks_ = static_cast<std::uint64_t>(std::llround(header.rate_hz)) * kLongestS;
+  session->path_ = playback::dated_session(name_before + "-");
   const auto temporary = session->pending_.add(session->path_);
   TACTO_TRY(temporary);
   unlink(temporary->c_str());  // it is empty, and the recorder makes it
   auto recorder =
-      playback::FlightRecorder::begin(*temporary, header_of(texture.program), playback::FullQueue::wait);
+      playback::FlightRecorder::begin(*temporary, in_browser(std::move(header)), playback::FullQueue::wait);
   TACTO_TRY(recorder);
   session->recorder_ = std::move(*recorder);
-  for (const auto& frame : texture.upload) session->recorder_->command({0, steady_ns(), frame});
+  for (const Frame& frame : upload) session->recorder_->command({0, steady_ns(), frame});
   TACTO_TRY(session->recorder_->start());
   return session;
 }
@@ -96,7 +110,11 @@ Result<void> LiveSession::take(const wire::Frame& frame, std::span<const std::ui
   wire::Ticks ticks;
   if (type == wire::MessageType::ticks &&
       wire::parse(frame.payload, frame.header.length, ticks) == wire::Parse::ok)
-    return take(ticks);
+    return take_ticks(ticks);
+  wire::AxisTicks axis_ticks;
+  if (type == wire::MessageType::axis_ticks &&
+      wire::parse(frame.payload, frame.header.length, axis_ticks) == wire::Parse::ok)
+    return take_ticks(axis_ticks);
   wire::Fault fault;
   if (type == wire::MessageType::fault &&
       wire::parse(frame.payload, frame.header.length, fault) == wire::Parse::ok) {
@@ -107,20 +125,23 @@ Result<void> LiveSession::take(const wire::Frame& frame, std::span<const std::ui
   return odd_log(fmt::format("contains a frame of type {:#x}, which is no part of it", frame.header.type));
 }
 
-Result<void> LiveSession::take(const wire::Ticks& message) {
+template <class Message>
+Result<void> LiveSession::take_ticks(const Message& message) {
   if (message.first_tick < ticks_) return odd_log("contains ticks twice");
-  if (message.first_tick > kMostTicks - wire::kMaxBlockTicks)
+  if (message.first_tick > most_ticks_ - wire::kMaxBlockTicks)
     return fail(ErrorKind::unsuitable, "a session has at most ten minutes", std::string(kWhere),
                 "keep this part, and begin again");
   if (const std::uint64_t lost = message.first_tick - ticks_; lost > 0) {
     recorder_->loss({ticks_, lost, schema::SessionLoss::Why::link});
     missing_ += lost;
   }
-  const auto first_ns = static_cast<std::int64_t>(message.device_ticks / browser::kClocksPerTick) * kPeriodNs;
+  const auto first_ns =
+      static_cast<std::int64_t>(message.device_ticks / browser::kClocksPerTick) * period_ns_;
   for (std::uint8_t i = 0; i < message.count; ++i) {
-    const wire::Tick& tick = message.ticks[i];
-    recorder_->tick({message.first_tick + i, first_ns + i * kPeriodNs, tick.encoder, tick.drive_v, tick.flags,
-                     schema::SessionTick::kLatenessUnknown});
+    schema::SessionTick row = playback::session_tick(message, i);
+    row.tick = message.first_tick + i;
+    row.time_ns = first_ns + i * period_ns_;
+    recorder_->tick(row);
   }
   ticks_ = message.first_tick + message.count;
   return {};

@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <complex>
-#include <functional>
 #include <memory>
 #include <numeric>
 
 #include "data-schema/base/statistics.hpp"
 #include "data-schema/texture/texture.hpp"
 #include "firmware-host/core/firmware/firmware.hpp"
-#include "firmware-host/link/client.hpp"
 #include "firmware-host/link/hosted_board.hpp"
 #include "playback/model/chain.hpp"
 #include "playback/prepare/texture_change.hpp"
@@ -26,7 +24,11 @@ using schema::Result;
 // The page's board in this process, at rest: it checks the upload and accepts it as the page's does.
 class RestingBoard final : public firmware_host::Transport {
  public:
-  RestingBoard() : firmware_(std::make_unique<core::Firmware>(board(), hal())) {}
+  RestingBoard(const wire::Axes* axes, std::uint32_t rate_hz)
+      : firmware_(std::make_unique<core::Firmware>(
+            axes == nullptr ? browser::board(channel_, profile_.data())
+                            : browser::board(channel_, profile_.data(), axes, rate_hz),
+            hal())) {}
 
   Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override {
     firmware_->poll();
@@ -41,13 +43,14 @@ class RestingBoard final : public firmware_host::Transport {
   double now_s() override { return now_s_; }
 
  private:
-  core::Board board() { return browser::board(channel_, profile_.data()); }
   core::Hal hal() {
     core::Hal hal;
     hal.board = this;
     hal.read_encoder = [](void*) noexcept { return std::int32_t{0}; };
     hal.read_channels = [](void*, std::int32_t*) noexcept { return true; };
     hal.write_drive = [](void*, float) noexcept {};
+    hal.read_axes = [](void*, std::int32_t*) noexcept {};
+    hal.write_forces = [](void*, const float*) noexcept {};
     hal.enable_closed = [](void*) noexcept { return true; };
     hal.clock = [](void*) noexcept { return std::uint64_t{0}; };
     hal.set_rate = [](void*, std::uint32_t) noexcept {};
@@ -64,10 +67,20 @@ class RestingBoard final : public firmware_host::Transport {
 };
 static_assert(browser::kProfileSamples == firmware_host::HostedProfile::kSamples);
 
-// The frames that `send` sends to the board, each as it was accepted. `name`: for errors.
+playback::PrepareOptions page_options() {
+  playback::PrepareOptions options;
+  options.rate_hz = browser::kRateHz;
+  options.metres_per_count = browser::kMetresPerCount;
+  options.most_samples = browser::kProfileSamples;
+  return options;
+}
+
+}  // namespace
+
 Result<std::vector<Frame>> frames_of(const std::string& name,
-                                     const std::function<Result<void>(firmware_host::Client&)>& send) {
-  auto client = firmware_host::Client::connect(std::make_unique<RestingBoard>(), "the page");
+                                     const std::function<Result<void>(firmware_host::Client&)>& send,
+                                     const wire::Axes* axes, std::uint32_t rate_hz) {
+  auto client = firmware_host::Client::connect(std::make_unique<RestingBoard>(axes, rate_hz), "the page");
   TACTO_TRY(client);
   std::vector<Frame> frames;
   (*client)->listen(
@@ -79,16 +92,6 @@ Result<std::vector<Frame>> frames_of(const std::string& name,
   }
   return frames;
 }
-
-playback::PrepareOptions page_options() {
-  playback::PrepareOptions options;
-  options.rate_hz = browser::kRateHz;
-  options.metres_per_count = browser::kMetresPerCount;
-  options.most_samples = browser::kProfileSamples;
-  return options;
-}
-
-}  // namespace
 
 std::vector<float> texture_map(const std::vector<double>& values, std::size_t columns) {
   std::vector<float> map;

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "firmware-host/link/client.hpp"
 #include "playback/player/program.hpp"
 
 namespace tacto::analysis {
@@ -30,6 +32,12 @@ struct LiveTexture {
 inline constexpr std::size_t kMapColumns = 2000;
 /// 32 ms: the response of the preset's tray (547 Hz, quality 5.2) has fallen by 92 dB then.
 inline constexpr std::size_t kTrayTaps = 512;
+
+/// The frames that `send` sends to the page's board, each as it was accepted. The board has a tray, or with
+/// `axes` these axes at this rate. `name`: for errors. Errors: those of `send`, at `name`.
+schema::Result<std::vector<Frame>> frames_of(
+    const std::string& name, const std::function<schema::Result<void>(firmware_host::Client&)>& send,
+    const wire::Axes* axes = nullptr, std::uint32_t rate_hz = 0);
 
 /// `inverse` of the transducer: a word of PlaybackChoices, or the default. Errors: as make_program and
 /// upload.

@@ -31,14 +31,6 @@ constexpr double kListLine = 13, kSwatch = 10, kListIndent = 18;
 const spatial::TextStyle kSectionTitle{.size = 9.5, .bold = true}, kPieceWords{.size = 9};
 const char* const kAxes[] = {"x", "y", "z"};
 
-// Right and up on the page, and across it.
-struct Section {
-  std::size_t right, up, across;
-  const char* from;
-};
-constexpr Section kSections[] = {
-    {0, 1, 2, "from above"}, {0, 2, 1, "from the front"}, {1, 2, 0, "from the side"}};
-
 double inner(const Place& a, const Place& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -75,8 +67,8 @@ const schema::Mesh* mesh_of(const Piece& piece, const PieceMeshes& meshes) {
 }
 
 // Where a line to the right at height `up`, within the section, passes through the mesh, in order.
-std::vector<double> crossings(const Piece& piece, const schema::Mesh& mesh, const Section& section, double up,
-                              double across) {
+std::vector<double> crossings(const Piece& piece, const schema::Mesh& mesh, const PieceSection& section,
+                              double up, double across) {
   std::vector<double> found;
   const Place at = place_of(piece);
   for (const schema::MeshTriangle& triangle : mesh.triangles) {
@@ -116,7 +108,7 @@ Place middle_of(const PiecePicture& picture) {
   return sum;
 }
 
-PlaneRange range_of(const PiecePicture& picture, const Section& section) {
+PlaneRange range_of(const PiecePicture& picture, const PieceSection& section) {
   constexpr double kAround_m = 0.02;
   PlaneRange range;
   Place low = {}, high = {};
@@ -159,27 +151,6 @@ std::uint32_t pixel_of(const Colour& colour) {
   return byte(colour.red) << 16 | byte(colour.green) << 8 | byte(colour.blue);
 }
 
-// Solid pieces in a light colour; pixels at their borders in the full one.
-spatial::Pixels pixels_of(const std::vector<int>& solid, const PixelGrid& grid) {
-  spatial::Pixels pixels{grid.columns, grid.rows, {}};
-  pixels.rgb.reserve(solid.size());
-  const auto at = [&](int column, int row) {
-    return solid[static_cast<std::size_t>(std::clamp(row, 0, grid.rows - 1)) *
-                     static_cast<std::size_t>(grid.columns) +
-                 static_cast<std::size_t>(std::clamp(column, 0, grid.columns - 1))];
-  };
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column) {
-      const int here = at(column, row);
-      const bool border = at(column - 1, row) != here || at(column + 1, row) != here ||
-                          at(column, row - 1) != here || at(column, row + 1) != here;
-      const Colour colour =
-          here < 0 ? Colour{1, 1, 1} : spatial::series_colour(static_cast<std::size_t>(here));
-      pixels.rgb.push_back(pixel_of(here < 0 || border ? colour : inside(colour)));
-    }
-  return pixels;
-}
-
 std::string words_of(const Piece& piece) {
   std::string words = fmt::format("{}: {}", piece.name, to_string(piece.shape));
   const auto add = [&](const std::string& key, double value) {
@@ -204,9 +175,45 @@ std::string words_of(const Piece& piece) {
 
 }  // namespace
 
+schema::Result<PiecePicture> read_piece_picture(schema::Scene scene, const std::string& where,
+                                                const std::string& device) {
+  PiecePicture picture{scene.name.empty() ? where : scene.name, std::move(scene), {}, {}, {}};
+  for (const Piece& piece : picture.scene.pieces) {
+    if (piece.shape != PieceShape::mesh || picture.meshes.contains(piece.mesh)) continue;
+    auto mesh = schema::read_mesh(schema::texture_in_scene(where, piece.mesh));
+    TACTO_TRY(mesh);
+    picture.meshes[piece.mesh] = std::move(*mesh);
+  }
+  if (device.empty()) return picture;
+  auto read = schema::read_device(device);
+  TACTO_TRY(read);
+  picture.device = std::move(*read);
+  return picture;
+}
+
+spatial::Pixels section_pixels(const std::vector<int>& solid, const PixelGrid& grid) {
+  spatial::Pixels pixels{grid.columns, grid.rows, {}};
+  pixels.rgb.reserve(solid.size());
+  const auto at = [&](int column, int row) {
+    return solid[static_cast<std::size_t>(std::clamp(row, 0, grid.rows - 1)) *
+                     static_cast<std::size_t>(grid.columns) +
+                 static_cast<std::size_t>(std::clamp(column, 0, grid.columns - 1))];
+  };
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const int here = at(column, row);
+      const bool border = at(column - 1, row) != here || at(column + 1, row) != here ||
+                          at(column, row - 1) != here || at(column, row + 1) != here;
+      const Colour colour =
+          here < 0 ? Colour{1, 1, 1} : spatial::series_colour(static_cast<std::size_t>(here));
+      pixels.rgb.push_back(pixel_of(here < 0 || border ? colour : inside(colour)));
+    }
+  return pixels;
+}
+
 std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
                                   const Place& through_m, const PieceMeshes& meshes) {
-  const Section& section = *std::ranges::find(kSections, across, &Section::across);
+  const PieceSection& section = *std::ranges::find(kPieceSections, across, &PieceSection::across);
   const double beside_m = 1e-6 * grid.pixel_m;  // of the section, so that it meets no vertex
   std::vector<int> solid;
   for (int row = 0; row < grid.rows; ++row) {
@@ -237,7 +244,7 @@ PieceFigure::PieceFigure(PiecePicture picture)
                                  kSectionsWidth - 2 * kSectionsMargin);
   double top = kSectionsMargin + heading_.height() + kListLine;
   for (std::size_t i = 0; i < maps_.size(); ++i) {
-    maps_[i] = scene_map(range_of(picture_, kSections[i]), {kSectionLeft, top},
+    maps_[i] = scene_map(range_of(picture_, kPieceSections[i]), {kSectionLeft, top},
                          {kSectionsWidth - kSectionLeft - kSectionsMargin, kSectionHeight});
     top = maps_[i].box.bottom() + kBelowSection;
   }
@@ -267,15 +274,15 @@ spatial::Size PieceFigure::page() const {
 schema::Result<void> PieceFigure::draw(Canvas& canvas) const {
   draw_heading(canvas, {kSectionsMargin, kSectionsMargin}, heading_);
   for (std::size_t i = 0; i < maps_.size(); ++i) {
-    const Section& section = kSections[i];
+    const PieceSection& section = kPieceSections[i];
     const SceneMap& map = maps_[i];
     canvas.text({map.box.x, map.box.y - kListLine / 2},
                 fmt::format("{}, through {} = {}", section.from, kAxes[section.across],
                             spatial::typeset(schema::length_for_people(through_m_[section.across]))),
                 kSectionTitle);
-    canvas.image(map.box, pixels_of(solid_in_section(picture_.scene, map.grid, section.across, through_m_,
-                                                     picture_.meshes),
-                                    map.grid));
+    canvas.image(map.box, section_pixels(solid_in_section(picture_.scene, map.grid, section.across,
+                                                          through_m_, picture_.meshes),
+                                         map.grid));
     const auto count = [](double length) { return std::max(2, static_cast<int>(length / 45)); };
     canvas.frame(map.box, {});
     draw_axis(canvas, map.box, spatial::Side::bottom, map.x, ticks_of(map.x, count(map.box.width)));

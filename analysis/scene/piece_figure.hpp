@@ -29,11 +29,27 @@ struct PiecePicture {
   PieceMeshes meshes = {};
 };
 
+/// Axes, 0 to 2, to the right and up on the page, and across it.
+struct PieceSection {
+  std::size_t right, up, across;
+  const char* from;
+};
+inline constexpr PieceSection kPieceSections[] = {
+    {0, 1, 2, "from above"}, {0, 2, 1, "from the front"}, {1, 2, 0, "from the side"}};
+
+/// Adds the meshes, which are found beside the scene's file `where`, and the device, if it has a name.
+/// Errors: as read_mesh and read_device.
+schema::Result<PiecePicture> read_piece_picture(schema::Scene scene, const std::string& where,
+                                                const std::string& device);
+
 /// In a section across axis `across`, 0 to 2: which piece is solid in each pixel, from 0 on, or -1. Where
 /// several are, it is the last one. Pieces are drawn as they are, without the radius of the point. A mesh
 /// with holes is not everywhere drawn as the solid that it is for the hand.
 std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
                                   const std::array<double, 3>& through_m, const PieceMeshes& meshes = {});
+
+/// Solid pieces in a light colour, as solid_in_section() gives them; pixels at their borders in the full one.
+spatial::Pixels section_pixels(const std::vector<int>& solid, const PixelGrid& grid);
 
 class PieceFigure : public spatial::Figure {
  public:

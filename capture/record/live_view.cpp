@@ -55,6 +55,8 @@ LiveFigures::LiveFigures(const schema::RecordingHeader& header)
       normal_(channel_of(header, "normal_force")),
       statistics_(header.channels.size()),
       recent_(header.channels.size()),
+      last_codes_(header.channels.size()),
+      unchanged_(header.channels.size()),
       counter_(header.sample_rate_hz) {}
 
 double LiveFigures::physical(std::span<const std::int32_t> codes, std::size_t frame,
@@ -70,6 +72,9 @@ void LiveFigures::add(std::span<const std::int32_t> codes) {
       const double value = physical(codes, frame, channel);
       statistics_[channel].add(value);
       recent_[channel].add(value);
+      const std::int32_t code = codes[frame * channels + channel];
+      const bool same = code == std::exchange(last_codes_[channel], code);
+      unchanged_[channel] = same ? unchanged_[channel] + 1 : 0;
     }
   add_motion(codes);
 }
@@ -99,7 +104,8 @@ void LiveFigures::add_motion(std::span<const std::int32_t> codes) {
 LiveView LiveFigures::take_view() {
   LiveView view;
   for (std::size_t i = 0; i < recent_.size(); ++i)
-    view.levels.push_back({recent_[i].min(), recent_[i].max(), at_an_end(header_.channels[i], recent_[i])});
+    view.levels.push_back({recent_[i].min(), recent_[i].max(), at_an_end(header_.channels[i], recent_[i]),
+                           static_cast<double>(unchanged_[i]) / header_.sample_rate_hz});
   const auto frames = static_cast<double>(recent_frames_);
   if (position_ && frames > 0) view.speed_mps = std::abs(moved_m_) / frames * header_.sample_rate_hz;
   if (normal_ && frames > 0) view.normal_n = load_sum_n_ / frames;

@@ -18,6 +18,7 @@ namespace tacto::capture {
 struct ChannelLevel {
   double smallest = 0, largest = 0;  ///< in the channel's unit
   bool clipped = false;              ///< a sample is at an end of its converter's range
+  double unchanged_s = 0;            ///< since its code last changed, lost frames not counted
 };
 
 struct LiveView {
@@ -78,6 +79,8 @@ class LiveFigures {
   const schema::RecordingHeader& header_;
   std::optional<std::size_t> position_, normal_;
   std::vector<schema::Statistics> statistics_, recent_;
+  std::vector<std::int32_t> last_codes_;
+  std::vector<std::uint64_t> unchanged_;  // frames
   StrokeCounter counter_;
   std::uint64_t recent_frames_ = 0;
   std::int32_t last_code_ = 0;

@@ -55,25 +55,6 @@ Result<double> encoder_step(const firmware_host::Description& about, const std::
               "it has no channel of the quantity position");
 }
 
-schema::SessionTick row_of(const wire::Ticks& message, std::uint8_t i) {
-  schema::SessionTick row;
-  row.encoder = message.ticks[i].encoder;
-  row.drive_v = message.ticks[i].drive_v;
-  row.flags = message.ticks[i].flags;
-  return row;
-}
-
-schema::SessionTick row_of(const wire::AxisTicks& message, std::uint8_t i) {
-  const wire::AxisTick& tick = message.ticks[i];
-  schema::SessionTick row;
-  row.encoder = tick.counts[0];
-  row.flags = tick.flags;
-  row.axes = message.axes;
-  std::copy_n(tick.counts, message.axes, row.counts.begin());
-  std::copy_n(tick.force_n, message.axes, row.force_n.begin());
-  return row;
-}
-
 // A device reports no file names, so they are added here.
 schema::Error naming(schema::Error error, const Program& program) {
   error.where = fmt::format("{}, on {}", program.name(), error.where);
@@ -90,6 +71,25 @@ Result<void> within_reach(const Program& program, double peak_m, double factor) 
 }
 
 }  // namespace
+
+schema::SessionTick session_tick(const wire::Ticks& message, std::uint8_t i) {
+  schema::SessionTick row;
+  row.encoder = message.ticks[i].encoder;
+  row.drive_v = message.ticks[i].drive_v;
+  row.flags = message.ticks[i].flags;
+  return row;
+}
+
+schema::SessionTick session_tick(const wire::AxisTicks& message, std::uint8_t i) {
+  const wire::AxisTick& tick = message.ticks[i];
+  schema::SessionTick row;
+  row.encoder = tick.counts[0];
+  row.flags = tick.flags;
+  row.axes = message.axes;
+  std::copy_n(tick.counts, message.axes, row.counts.begin());
+  std::copy_n(tick.force_n, message.axes, row.force_n.begin());
+  return row;
+}
 
 std::string_view to_string(PlayerState state) {
   constexpr std::string_view kWords[] = {"idle", "armed", "playing", "fault", "lost"};
@@ -428,7 +428,7 @@ void Player::take(const Message& message) {
   LoopView* const loop = options_.loop;
   for (std::uint8_t i = 0; i < message.count; ++i) {
     const std::uint64_t number = message.first_tick + i;
-    schema::SessionTick row = row_of(message, i);
+    schema::SessionTick row = session_tick(message, i);
     row.tick = number;
     row.time_ns = loop != nullptr ? loop->due_ns(number) : time_ns + std::llround(i * period_ns);
     if (loop != nullptr) row.lateness_ns = loop->lateness_ns(number);

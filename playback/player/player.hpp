@@ -27,6 +27,10 @@ namespace tacto::playback {
 enum class PlayerState { idle, armed, playing, fault, lost };
 std::string_view to_string(PlayerState state);
 
+/// Tick `i` of a message as a session stores it, without its number, time and lateness.
+schema::SessionTick session_tick(const wire::Ticks& message, std::uint8_t i);
+schema::SessionTick session_tick(const wire::AxisTicks& message, std::uint8_t i);
+
 struct PlayerOptions {
   FullQueue full_queue = FullQueue::lose;
   double heartbeat_s = 0.025;

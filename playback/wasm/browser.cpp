@@ -28,20 +28,29 @@ struct Device {
   bool logs = false;
   size_t logged = 0;
   bool touches = false;
-  int32_t count = 0;
+  int32_t counts[wire::kMaxAxes] = {};  // a tray has one
   float drive_v = 0;
+  float force_n[wire::kMaxAxes] = {};
   uint64_t clock = 0;
+  uint32_t rate_hz = kRateHz;
   core::Firmware* firmware = nullptr;
 };
 
 constinit Device device;
 constinit wire::Ticks last_ticks;
+constinit wire::AxisTicks last_axis_ticks;
+constinit wire::Axes axes;  // none: a tray
 alignas(core::Firmware) uint8_t firmware_memory[sizeof(core::Firmware)];
 alignas(16) float profile[kProfileSamples];
 uint8_t input_bytes[kInputBytes];
 uint8_t log_bytes[kLogBytes];
-int32_t count_block[kBlockTicks];
-float drive_block[kBlockTicks];
+int32_t count_block[kBlockTicks * wire::kMaxAxes];
+float drive_block[kBlockTicks * wire::kMaxAxes];
+
+// Of the blocks: a tray's count and drive, or counts and forces of all axes.
+uint32_t values_per_tick() noexcept {
+  return axes.count > 0 ? axes.count : 1;
+}
 
 bool append_to_log(const uint8_t* bytes, size_t size) noexcept {
   if (size > kLogBytes - device.logged) return false;
@@ -58,7 +67,11 @@ size_t send(void*, const uint8_t* bytes, size_t size) noexcept {
   if (type == wire::MessageType::answer) (void)wire::parse(payload, length, device.answer);
   if (type == wire::MessageType::ticks && wire::parse(payload, length, last_ticks) == wire::Parse::ok)
     for (uint8_t i = 0; i < last_ticks.count; ++i) device.flags |= last_ticks.ticks[i].flags;
-  const bool data = type == wire::MessageType::ticks || type == wire::MessageType::fault;
+  if (type == wire::MessageType::axis_ticks &&
+      wire::parse(payload, length, last_axis_ticks) == wire::Parse::ok)
+    for (uint8_t i = 0; i < last_axis_ticks.count; ++i) device.flags |= last_axis_ticks.ticks[i].flags;
+  const bool data = type == wire::MessageType::ticks || type == wire::MessageType::axis_ticks ||
+                    type == wire::MessageType::fault;
   if (device.logs && data && !append_to_log(bytes, size)) return 0;
   return size;
 }
@@ -72,13 +85,19 @@ size_t receive(void*, uint8_t* bytes, size_t capacity) noexcept {
 
 core::Hal hal() noexcept {
   core::Hal hal;
-  hal.read_encoder = [](void*) noexcept { return device.count; };
+  hal.read_encoder = [](void*) noexcept { return device.counts[0]; };
   hal.encoder_unseen = [](void*) noexcept { return device.touches ? 0U : UINT32_MAX; };
   hal.read_channels = [](void*, int32_t* codes) noexcept {
-    codes[0] = device.count;
+    codes[0] = device.counts[0];
     return true;
   };
   hal.write_drive = [](void*, float drive_v) noexcept { device.drive_v = drive_v; };
+  hal.read_axes = [](void*, int32_t* counts) noexcept {
+    for (uint32_t i = 0; i < axes.count; ++i) counts[i] = device.counts[i];
+  };
+  hal.write_forces = [](void*, const float* force_n) noexcept {
+    for (uint32_t i = 0; i < axes.count; ++i) device.force_n[i] = force_n[i];
+  };
   hal.enable_closed = [](void*) noexcept { return true; };
   hal.clock = [](void*) noexcept { return device.clock; };
   hal.set_rate = [](void*, uint32_t) noexcept {};
@@ -110,7 +129,8 @@ bool say(const Message& message) noexcept {
 bool steer(Steering steering, float value) noexcept {
   switch (steering) {
     case Steering::arm:
-      return say(wire::Arm{wire::DriveSource::profile, 1000 * kRateHz});
+      return say(wire::Arm{axes.count > 0 ? wire::DriveSource::scene : wire::DriveSource::profile,
+                           1000 * device.rate_hz});
     case Steering::play:
       return say(wire::Play{});
     case Steering::stop:
@@ -129,12 +149,24 @@ bool steer(Steering steering, float value) noexcept {
 
 extern "C" {
 
-/// Starts as after power-on. Call it first.
-[[clang::export_name("begin")]] void begin() {
+/// Starts as after power-on. Call it first. If the first `size` bytes of the input are a frame of axes, it is
+/// a force device with these axes and rate; with a size of 0 a tray, at kRateHz. False for other bytes.
+[[clang::export_name("begin")]] bool begin(uint32_t size, uint32_t rate_hz) {
   device = {};
+  axes = {};
+  wire::FrameHeader header;
+  if (size > 0 &&
+      (size > kInputBytes || !wire::read_header(input_bytes, header) ||
+       header.type != static_cast<uint8_t>(wire::MessageType::axes) ||
+       size != wire::kHeaderSize + header.length + wire::kCheckSize ||
+       wire::parse(input_bytes + wire::kHeaderSize, header.length, axes) != wire::Parse::ok || rate_hz == 0))
+    return false;
+  if (size > 0) device.rate_hz = rate_hz;
   device.channel = encoder_channel();
-  device.firmware = new (firmware_memory) core::Firmware(board(device.channel, profile), hal());
+  const core::Board own = board(device.channel, profile, size > 0 ? &axes : nullptr, device.rate_hz);
+  device.firmware = new (firmware_memory) core::Firmware(own, hal());
   say(wire::Hello{});
+  return true;
 }
 
 [[clang::export_name("input")]] uint8_t* input() {
@@ -153,9 +185,9 @@ extern "C" {
   return kBlockTicks;
 }
 
-/// Gives the whole frames in the first `size` bytes of the input to the device: a texture, or while it plays
-/// the next one. They are not in the log, because the server has made them. Returns the bytes of the frames
-/// that it accepted: fewer than `size` if one was refused or the last one is not whole.
+/// Gives the whole frames in the first `size` bytes of the input to the device: a texture or a scene, or
+/// while it plays the next texture. They are not in the log, because the server has made them. Returns the
+/// bytes of the frames that it accepted: fewer than `size` if one was refused or the last one is not whole.
 [[clang::export_name("upload")]] uint32_t upload(uint32_t size) {
   if (device.firmware->drive_state() == wire::DriveState::idle) device.logs = false;
   uint32_t used = 0;
@@ -177,23 +209,39 @@ extern "C" {
   return steer(static_cast<Steering>(steering), value);
 }
 
-/// Whether the finger touches. Otherwise the encoder is not read: after 10 ms the drive falls, and at rest
-/// the next count is used, however far away it is.
+/// Sets a number of a layer of the scene that plays (wire::Set); its ramp in seconds. True if accepted.
+[[clang::export_name("set")]] bool set(uint32_t layer, uint32_t number, float value, float ramp_s) {
+  return say(wire::Set{static_cast<uint16_t>(layer), static_cast<uint16_t>(number), value, ramp_s});
+}
+/// That number as the last tick used it. Only after arming a scene that has it.
+[[clang::export_name("number")]] float number(uint32_t layer, uint32_t number) {
+  return device.firmware->scene().number(layer, number);
+}
+/// The ghost's place along x, y or z (0 to 2), in m. Only after arming a scene of pieces.
+[[clang::export_name("ghost")]] float ghost(uint32_t along) {
+  return device.firmware->scene().ghost_m(along);
+}
+
+/// Of a tray: whether the finger touches. Otherwise the encoder is not read: after 10 ms the drive falls, and
+/// at rest the next count is used, however far away it is.
 [[clang::export_name("touch")]] void touch(bool touches) {
   device.touches = touches;
 }
 
-/// Ticks at the first `ticks` counts; the drives are in drives(). The host is alive as long as it calls this.
+/// Ticks at the first `ticks` counts; the drives are in drives(). Of a force device: at the counts of all its
+/// axes for each tick, and drives() has their forces. The host is alive as long as it calls this.
 [[clang::export_name("run")]] void run(uint32_t ticks) {
   device.frame_size =
       wire::encode_frame(wire::Heartbeat{}, device.sequence++, device.frame, sizeof device.frame);
   device.frame_used = 0;
+  const uint32_t width = values_per_tick();
   for (uint32_t i = 0; i < ticks && i < kBlockTicks; ++i) {
-    device.count = count_block[i];
+    for (uint32_t k = 0; k < width; ++k) device.counts[k] = count_block[i * width + k];
     device.clock += kClocksPerTick;
     device.firmware->poll();
     device.firmware->tick();
-    drive_block[i] = device.drive_v;
+    for (uint32_t k = 0; k < width; ++k)
+      drive_block[i * width + k] = axes.count > 0 ? device.force_n[k] : device.drive_v;
   }
   device.firmware->poll();
 }

@@ -8,7 +8,7 @@
 namespace tacto::browser {
 
 inline constexpr uint32_t kRateHz =
-    16000;  ///< of the ticks: a third of 48 kHz, so that sound needs no resampling
+    16000;  ///< of a tray's ticks: a third of 48 kHz, so that sound needs no resampling
 inline constexpr uint32_t kClocksPerTick = 1000;
 inline constexpr double kMetresPerCount = 1e-6;  ///< of its encoder
 inline constexpr uint32_t kProfileSamples =
@@ -28,20 +28,23 @@ inline wire::Channel encoder_channel() noexcept {
   return channel;
 }
 
-/// `channel` (encoder_channel()) and `profile` (kProfileSamples) must outlive the firmware.
-inline core::Board board(const wire::Channel& channel, float* profile) noexcept {
+/// A tray, or with `axes` a force device. `channel` (encoder_channel()), `profile` (kProfileSamples) and
+/// `axes` must outlive the firmware.
+inline core::Board board(const wire::Channel& channel, float* profile, const wire::Axes* axes = nullptr,
+                         uint32_t rate_hz = kRateHz) noexcept {
   core::Board board;
   board.channels = &channel;
   board.channel_count = 1;
   board.profile_memory = profile;
   board.profile_samples = kProfileSamples;
+  board.axes = axes;
   wire::Welcome& about = board.about;
   constexpr char kName[] = "browser", kFirmware[] = "core";
   for (size_t i = 0; i < sizeof kName; ++i) about.name[i] = kName[i];
   for (size_t i = 0; i < sizeof kFirmware; ++i) about.firmware[i] = kFirmware[i];
-  about.features = wire::kFeatureSimulated | wire::kFeatureDrive;
-  about.clock_hz = kClocksPerTick * kRateHz;
-  about.default_rate_millihertz = about.least_rate_millihertz = about.most_rate_millihertz = 1000 * kRateHz;
+  about.features = wire::kFeatureSimulated | (axes == nullptr ? wire::kFeatureDrive : 0U);
+  about.clock_hz = kClocksPerTick * rate_hz;
+  about.default_rate_millihertz = about.least_rate_millihertz = about.most_rate_millihertz = 1000 * rate_hz;
   about.drive_limit_v = kDriveLimitV;
   about.slew_limit_v_per_s = kSlewLimitVPerS;
   return board;

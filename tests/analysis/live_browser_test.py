@@ -88,7 +88,7 @@ class Browser:
 
     def key(self, key, kinds=("rawKeyDown", "keyUp")):
         codes = {"ArrowRight": 39, "ArrowLeft": 37, "Home": 36, "End": 35, "Tab": 9, "Enter": 13, "Escape": 27, " ": 32, "ArrowUp": 38, "ArrowDown": 40,
-                 "a": 65, "b": 66, "+": 187, "0": 48}
+                 "a": 65, "b": 66, "+": 187, "0": 48, "PageUp": 33, "PageDown": 34}
         for kind in kinds:
             text = {"Enter": "\r", " ": " "}.get(key) if kind == "rawKeyDown" else None
             self.ask("Input.dispatchKeyEvent", type="keyDown" if text else kind, key=key, windowsVirtualKeyCode=codes[key],
@@ -460,6 +460,20 @@ def check_device(chrome, server):
         state(chrome, "idle")  # without a reload
 
 
+def check_recorder(chrome):
+    """By keyboard; the sensor is silent."""
+    chrome.value("document.getElementById('record-name').value = 'oak'")
+    press(chrome, "record-begin")
+    chrome.wait("document.getElementById('record-problem').textContent.includes('has not changed')")
+    press(chrome, "record-mark")
+    chrome.wait("document.getElementById('record-said').textContent.startsWith('mark')")
+    check_names(chrome)
+    check_looks(chrome)
+    press(chrome, "record-end")
+    chrome.wait("document.getElementById('record-said').textContent.startsWith('Recorded: ')")
+    run("validate", chrome.text("record-said").split(": ")[1].split(".wav")[0])
+
+
 def check_fault(chrome, server):
     with device_page(chrome, server, JUMP):
         play_on_device(chrome)
@@ -469,6 +483,68 @@ def check_fault(chrome, server):
         press(chrome, "disarm")
         state(chrome, "idle")
         assert chrome.text("fault") == ""
+
+
+def write_scenes(folder):
+    spring = {"type": "spring", "stiffness_n_per_m": {"value": 100, "slider": {"from": 0, "to": 200}}, "centre_x_m": 0, "centre_y_m": 0}
+    bench = {"name": "bench", "place": {"x_m": 0, "y_m": 0}, "size": {"width_m": 0.19, "height_m": 0.19}, "layers": [spring]}
+    ball = {"name": "ball", "shape": "sphere", "place": {"x_m": 0, "y_m": 0, "z_m": 0}, "radius_m": 0.03, "stiffness_n_per_m": 600}
+    for name, members in (("bench", {"patches": [bench]}), ("ball", {"pieces": [ball]})):
+        pathlib.Path(f"{folder}/{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", **members}))
+
+
+def open_scene(chrome, server, name):
+    chrome.ask("Page.navigate", url=server.address.split("?")[0] + "scene.html")
+    chrome.wait("document.querySelectorAll('#scenes a canvas').length === 2")  # with their pictures
+    chrome.value(f"[...document.querySelectorAll('#scenes a')].find((a) => a.firstChild.textContent === '{name}').focus()")
+    chrome.key("Enter")
+    chrome.wait(f"document.getElementById('scene-title').textContent === '{name}' && document.getElementById('picture').width > 100")
+
+
+def force(chrome):
+    """Newtons along each axis, as the page shows them."""
+    return [float(part.split()[1]) for part in chrome.text("force").split(": ")[1].split(" N;")[0].split(", ")]
+
+
+def into_the_ball(chrome):
+    """From above, in the section from the front; the pointer stays pressed. Returns the box of the picture."""
+    box = chrome.value("(() => { const v = document.getElementById('view'); v.scrollIntoView({block: 'center'}); const r = v.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()")
+    chrome.mouse("mousePressed", box[0] + 0.5 * box[2], box[1] + 0.1 * box[3])
+    for i in range(30):
+        chrome.mouse("mouseMoved", box[0] + 0.5 * box[2], box[1] + (0.1 + 0.01 * i) * box[3])
+    chrome.wait("/ z [1-9]/.test(document.getElementById('force').textContent)")  # N, upwards
+    return box
+
+
+def check_scenes(chrome, server):
+    """By keys, a spring whose slider has moved; by mouse into a ball, outside of which the ghost stays."""
+    open_scene(chrome, server, "bench")
+    chrome.value("document.getElementById('view').focus()")
+    chrome.key("ArrowRight", ["rawKeyDown"])
+    chrome.wait("/hand at x [1-9][0-9]/.test(document.getElementById('place').textContent)")  # 10 mm
+    chrome.key("ArrowRight", ["keyUp"])
+    chrome.value("document.querySelector('#sliders input').focus()")
+    for _ in range(5):
+        chrome.key("ArrowLeft")
+    chrome.wait("document.querySelector('#sliders output').textContent === '95, in effect'")
+    chrome.wait("document.getElementById('place').textContent.endsWith(', 0 mm/s')")
+    time.sleep(0.6)  # the figures are those of the slider and of the rest
+    x_m = 1e-3 * float(chrome.text("place").split("x ")[1].split(",")[0])
+    assert abs(force(chrome)[0] + 95 * x_m) < 95 * 1e-5 + 1e-3 and force(chrome)[1] == 0, (chrome.text("force"), x_m)
+    check_names(chrome)
+    check_looks(chrome)
+    keep(chrome, 0.2 * 4000)  # 10 mm at 50 mm/s
+    open_scene(chrome, server, "ball")
+    box = into_the_ball(chrome)
+    assert chrome.text("state-word") == "playing" and "0.000 from the hand" not in chrome.text("ghost"), chrome.text("ghost")
+    chrome.mouse("mouseReleased", box[0] + 0.5 * box[2], box[1] + 0.5 * box[3])
+    chrome.value("document.getElementById('view').focus()")
+    chrome.key("PageUp")  # across the section
+    check_names(chrome)
+    check_looks(chrome)
+    chrome.key("Escape")
+    chrome.wait("document.getElementById('state-word').textContent === 'stopped'")
+    keep(chrome, 100)
 
 
 def make_textures():
@@ -482,6 +558,7 @@ def make_textures():
 
 def live_in_chromium():
     make_textures()
+    write_scenes("folder")
     with live("folder") as server, browser(server.address) as chrome:
         assert chrome.value("location.search") == "", "the token stays out of the address"
         check_playing(chrome)
@@ -493,10 +570,12 @@ def live_in_chromium():
         check_without_sound(chrome)
         check_explorer(chrome, server)
         check_jobs(chrome, server)
+        check_scenes(chrome, server)
         assert chrome.console == [], chrome.console
     prepare_files()
-    with live(".", "--socket", "control") as server, browser(server.address) as chrome:
+    with live(".", "--socket", "control", "-d", "sim:noise=off,finger=up,paced=1") as server, browser(server.address) as chrome:
         check_device(chrome, server)
+        check_recorder(chrome)
         check_fault(chrome, server)
         assert chrome.console == [], chrome.console
 
@@ -509,6 +588,7 @@ def take_pictures(chrome, folder, name):
 
 def pictures(folder):
     run("demo", "-o", "demo")
+    write_scenes("demo")
     with live("demo") as server, browser(server.address) as chrome:
         choose_by_keys(chrome, "C")
         stroke_by_mouse(chrome)
@@ -523,6 +603,9 @@ def pictures(folder):
         press(chrome, "run")
         chrome.wait("document.querySelector('#jobs a')?.hidden === false")
         take_pictures(chrome, folder, "live-jobs")
+        open_scene(chrome, server, "ball")
+        into_the_ball(chrome)
+        take_pictures(chrome, folder, "live-scene")
     prepare_files()
     on_host = {"loop": "host", "device": "sim:rate=2kHz", "most_late_percent": 100}
     with live(".", "--socket", "control") as server, browser(server.address) as chrome, device_page(chrome, server, STROKES, **on_host):

@@ -164,8 +164,9 @@ MAY_INCLUDE = {
         "analysis/{identify/fit identify/measure} data-schema/{base report results} firmware-host/sim/physics "
         "spatial/{picture picture/draw}",
     "analysis/live":
-        "analysis/live/server data-schema/{base control files recording report spectrogram texture} firmware-host/{core/firmware core/scene core/wire "
-        "link} playback/{control model player prepare prepare/relief wasm} spatial/{dsp/fourier features picture spectrogram transform}",
+        "analysis/{live/server scene} capture/{record table} data-schema/{base control files recording report spectrogram texture} firmware-host "
+        "firmware-host/{core/firmware core/scene core/wire link sim/planar} playback/{control model player prepare prepare/relief wasm} "
+        "spatial/{dsp/fourier features picture picture/draw spectrogram transform}",
     "analysis/live/server": "",
     "analysis/page": "data-schema/{base results} spatial/picture",
     "analysis/psychometrics": "data-schema/base",

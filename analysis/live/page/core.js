@@ -7,14 +7,19 @@ const STEERING = {arm: 0, play: 1, stop: 2, disarm: 3, gain: 4, change: 5};
 export const STATES = ['idle', 'armed', 'playing', 'fault'];
 
 export class Core {
-  /** @param {WebAssembly.Module} module */
-  constructor(module) {
+  /** A tray, or a force device.
+   * @param {WebAssembly.Module} module
+   * @param {{frame: Uint8Array, count: number, rate_hz: number}} [axes] a frame of the wire with its axes */
+  constructor(module, axes) {
     this.device = new WebAssembly.Instance(module, {}).exports;
-    this.device.begin();
     const memory = this.device.memory.buffer;  // it does not grow
     this.input = new Uint8Array(memory, this.device.input(), this.device.input_size());
-    this.counts = new Int32Array(memory, this.device.counts(), this.device.block_ticks());
-    this.drives = new Float32Array(memory, this.device.drives(), this.device.block_ticks());
+    if (axes) this.input.set(axes.frame);
+    if (!this.device.begin(axes ? axes.frame.length : 0, axes ? axes.rate_hz : RATE_HZ)) throw new Error('the device in this page refused its axes');
+    // Of a force device: those of all axes for each tick; the drives are forces in N.
+    const values = this.device.block_ticks() * (axes ? axes.count : 1);
+    this.counts = new Int32Array(memory, this.device.counts(), values);
+    this.drives = new Float32Array(memory, this.device.drives(), values);
     this.memory = memory;
   }
 
@@ -43,6 +48,13 @@ export class Core {
   steer(what, value = 0) {
     return this.device.steer(STEERING[what], value) !== 0;
   }
+
+  /** Sets a number of the scene that plays; it changes over `ramp_s`. False if the device refuses it. */
+  set({layer, number}, value, ramp_s) { return this.device.set(layer, number, value, ramp_s) !== 0; }
+  /** That number as it is in effect. */
+  number({layer, number}) { return this.device.number(layer, number); }
+  /** The ghost's place, m. */
+  ghost() { return [0, 1, 2].map((along) => this.device.ghost(along)); }
 
   /** Ticks at the first `ticks` counts; then `drives` has the drive of each, in volts. */
   run(ticks, touches) {

@@ -10,13 +10,14 @@ import {RATE_HZ} from './core.js';
 export const FOLLOWER_HZ = 40;
 export const FASTEST_MPS = 1;       // the follower's limit; the encoder's is 2 m/s
 const OMEGA = 2 * Math.PI * FOLLOWER_HZ;
-const PERIOD_S = 1 / RATE_HZ;
 const FIRST_LAG_S = 0.02;           // 1.2 periods of 60 Hz
 const SPARE_S = 0.002;              // reports that are there earlier than this before their use: the lag shrinks
 const HURRY = 1.02;                 // by this
 
 export class Finger {
-  constructor() {
+  /** @param {number} [rate_hz] of the ticks */
+  constructor(rate_hz = RATE_HZ) {
+    this.period_s = 1 / rate_hz;
     this.touches = false;
     this.lands = false;             // it touches a place to which it did not slide; set back by the engine
     this.place_m = 0;
@@ -33,7 +34,13 @@ export class Finger {
   /** The pointer touches: from here on its reports are followed. */
   down(time_s, place_m) {
     this.land(place_m);
+    this.approach(time_s, place_m);
+  }
+
+  /** The same for a hand that is somewhere else: it goes there from where it is. */
+  approach(time_s, place_m) {
     this.mode = 'pointer';
+    this.reports = [];
     this.from = {time_s, place_m};
     this.cursor_s = time_s - FIRST_LAG_S;
     this.spare_s = FIRST_LAG_S;
@@ -88,7 +95,7 @@ export class Finger {
   }
 
   step() {
-    const next_m = this.place_m + this.velocity_mps * PERIOD_S;
+    const next_m = this.place_m + this.velocity_mps * this.period_s;
     const arrives = this.velocity_mps !== 0 && (this.end_m - next_m) * this.velocity_mps <= 0;
     this.place_m = arrives ? this.end_m : next_m;
     this.speed_mps = arrives ? 0 : this.velocity_mps;
@@ -101,14 +108,14 @@ export class Finger {
   follow() {
     const last_s = this.reports.length > 0 ? this.reports.at(-1).time_s : this.from.time_s;
     const early_s = last_s - this.cursor_s;
-    this.spare_s = Math.min(early_s, this.spare_s + PERIOD_S / 20);
-    this.cursor_s = Math.min(last_s, this.cursor_s + PERIOD_S * (this.spare_s > SPARE_S ? HURRY : 1));
+    this.spare_s = Math.min(early_s, this.spare_s + this.period_s / 20);
+    this.cursor_s = Math.min(last_s, this.cursor_s + this.period_s * (this.spare_s > SPARE_S ? HURRY : 1));
     while (this.reports.length > 0 && this.reports[0].time_s <= this.cursor_s) this.from = this.reports.shift();
     const target_m = this.interpolated();
     const push = OMEGA * OMEGA * (target_m - this.place_m) - 2 * OMEGA * this.speed_mps;
-    const speed = this.speed_mps + push * PERIOD_S;
+    const speed = this.speed_mps + push * this.period_s;
     this.speed_mps = Math.max(-FASTEST_MPS, Math.min(FASTEST_MPS, speed));
-    this.place_m += this.speed_mps * PERIOD_S;
+    this.place_m += this.speed_mps * this.period_s;
   }
 
   interpolated() {

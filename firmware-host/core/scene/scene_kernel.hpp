@@ -64,6 +64,15 @@ class SceneKernel {
   /// Whether a body or lasso is this layer and acted in the last tick; then sets its place in the plane, in
   /// m.
   bool body_place(uint32_t patch, uint32_t layer, PlaneVector& place_m) const noexcept;
+  /// A number of a layer as the last tick used it. Precondition: number_fits() for some value.
+  float number(uint32_t layer, uint32_t number) const noexcept {
+    return live_[scene_.layers[layer].first_number + number];
+  }
+  /// In a scene of pieces whose contact is the ghost: where it is along x, y or z, in m.
+  float ghost_m(uint32_t along) const noexcept {
+    const float rest_m[] = {ghost_.place().rest_m.x, ghost_.place().rest_m.y, ghost_.place().rest_m.z};
+    return step_m_[along] * static_cast<float>(ghost_.place().counts[along]) + rest_m[along];
+  }
   float rate_hz() const noexcept { return setup_.rate_hz; }
   bool at_rest() const noexcept { return envelope_.at_rest() && limiter_.at_rest(); }
 

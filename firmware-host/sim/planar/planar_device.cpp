@@ -18,7 +18,9 @@ namespace {
 
 constexpr std::uint32_t kPlanarClockHz = 1'000'000;
 
-wire::Axes axes_of(const schema::Device& device) {
+}  // namespace
+
+wire::Axes axes_on_wire(const schema::Device& device) {
   wire::Axes axes;
   axes.count = static_cast<std::uint8_t>(device.axes.size());
   axes.peak_n = not_above(device.peak_force_n);
@@ -36,12 +38,10 @@ wire::Axes axes_of(const schema::Device& device) {
   return axes;
 }
 
-}  // namespace
-
 PlanarBoard::PlanarBoard(schema::Device device, std::optional<schema::Hand> hand)
     : device_(std::move(device)),
       hand_(std::move(hand)),
-      axes_(axes_of(device_)),
+      axes_(axes_on_wire(device_)),
       force_n_(device_.axes.size()) {
   notes_ = {note_of(wire::NoteKind::simulated_by, fmt::format("tactograph sim:planar, device {}, hand {}",
                                                               device_.name, hand_ ? hand_->name : "none"))};

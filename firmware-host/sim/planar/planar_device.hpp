@@ -24,6 +24,9 @@ using PlaneScript = std::function<std::vector<double>(double time_s)>;
 /// Memory for a scene: 64 MB. A height map of 1024 x 1024 with all levels needs half of it.
 inline constexpr std::uint32_t kPlanarWords = 1U << 24;
 
+/// The axes of a force device as it describes them.
+wire::Axes axes_on_wire(const schema::Device& device);
+
 class PlanarBoard final : public EmulatedBoard {
  public:
   /// Without a hand the axes move along the script.
