@@ -230,6 +230,16 @@ def growth_per_tick(stiffness, damping, integral=0, delay_ticks=0, hand=(0, 0, 0
     return np.abs(np.linalg.eigvals(motion)).max()
 
 
+def growth_of_slide(stiffness, damping, mass, viscous):
+    """A mass whose place follows its new speed, coupled to the arm; states: distance, speed of the arm, its last step, speed of the mass."""
+    tick = 1 / RATE_HZ
+    arm = expm(tick * np.array([[0, 1, 0], [0, -0.5 / 0.15, 1 / 0.15], [0, 0, 0]]))
+    force = np.array([stiffness, 0, damping / tick, -damping])
+    step = arm[0, 1] * np.eye(4)[1] - arm[0, 2] * force
+    speed = (np.eye(4)[3] + tick / mass * force) / (1 + viscous * tick / mass)
+    return np.abs(np.linalg.eigvals([np.eye(4)[0] + step - tick * speed, arm[1, 1] * np.eye(4)[1] - arm[1, 2] * force, step, speed])).max()
+
+
 def growth_along(viscous):
     """Of a damper alone: of the speed and the last step, because no force depends on the place."""
     mass, tick = 0.15, 1 / RATE_HZ
@@ -646,10 +656,13 @@ def a_slide_is_that_of_its_differential_equation():
     assert row["slide_to_m"] == 0.03 and abs(row["slide_stiffest_n_per_m"] / stiffest - 1) < 1e-9, row
     assert run_json("info", "block.scene.json")["pieces"][0]["slide_mass_kg"] == mass
     run("scene", "block.scene.json", "-o", "block.png")
-    # design: at the stop a wall on the arm's 0.15 kg; free, with the block's mass m beside it, one on 0.15 m / (0.15 + m).
-    for damping, light, code in ((4, 0.1, 0), (4, 0.004, UNSTABLE)):
-        write_scene("judged", block | {"damping_n_s_per_m": damping, "slide": slide | {"mass_kg": light, "detent_n": 0.1}})
-        assert run_json("design", "judged.scene.json", "--device", "arm", code=code)["pieces"][0]["verdict"] == ("unstable" if code else "stable"), (damping, light)
+    # design: the wall at a stop, and the free mass that it couples to the arm, without its friction.
+    for damping, of_slide, code in ((4, {}, 0), (4, {"viscous_n_s_per_m": 0}, 0), (0.2, {"viscous_n_s_per_m": 0}, UNSTABLE)):
+        write_scene("judged", block | {"damping_n_s_per_m": damping, "slide": slide | of_slide})
+        row = run_json("design", "judged.scene.json", "--device", "arm", code=code)["pieces"][0]
+        growth = max(growth_per_tick(STIFFNESS, damping), growth_of_slide(STIFFNESS, damping, mass, of_slide.get("viscous_n_s_per_m", viscous)))
+        assert row["verdict"] == ("unstable" if code else "stable") and (growth > 1) == bool(code), (row, growth)
+        assert abs(row["growth_time_s" if code else "decay_time_s"] * RATE_HZ * abs(np.log(growth)) - 1) < 1e-6, (row, growth)
     for wrong, where in (({"mass_kg": 4e-4}, "/slide/mass_kg"), ({"from_m": 0, "to_m": 0}, "/slide/to_m"), ({"detent_n": 0}, "/slide/detent_m"), ({"direction": [0, 0, 0]}, "/slide/direction")):
         write_scene("wrong", block | {"slide": slide | wrong})
         assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces/0" + where), wrong

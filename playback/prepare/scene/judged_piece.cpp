@@ -214,7 +214,7 @@ double wall_growth(const Piece& piece, const schema::Device& device, double rate
     loads.push_back({0,
                      0,
                      {{piece.slide->mass_kg, piece.slide->viscous_n_s_per_m, piece.stiffness_n_per_m,
-                       piece.damping_n_s_per_m}}});
+                       piece.damping_n_s_per_m, false, true}}});
   double most = 0;
   for (const schema::DeviceAxis& axis : device.axes)
     for (const SampledLoad& load : loads)
