@@ -134,6 +134,7 @@ struct SlidesOnArm {
   core::ForceSetup setup;
   PreparedScene scene;
   std::vector<float> live;
+  core::SceneView view;
   core::SceneKernel kernel;
   core::GhostPoint ghost;
   std::optional<ExactScene> exact;
@@ -154,7 +155,8 @@ struct SlidesOnArm {
     EXPECT_TRUE(prepared) << schema::message(prepared.error());
     scene = std::move(*prepared);
     live.resize(scene.view().live_words());
-    kernel.set(scene.view(), setup, live.data());
+    view = scene.view();
+    kernel.set(view, setup, live.data());
     exact.emplace(scene, device, 1 / kSlideTick_s);
   }
   std::vector<std::int32_t> counts_of(const SlidePlace& place_m) const {
@@ -172,43 +174,37 @@ struct SlidesOnArm {
     const auto counts = counts_of(place_m);
     const auto single = static_cast<float>(count_m);
     const float steps[3] = {single, single, single};
-    ghost.force(scene.view(), live.data(), {{counts[0], counts[1], counts[2]}, {}}, steps, setup);
+    ghost.force(view, live.data(), {{counts[0], counts[1], counts[2]}, {}}, steps, setup);
     const core::SpacePlace& at = ghost.place();
     return {at.counts[0] * count_m + double{at.rest_m.x}, at.counts[1] * count_m + double{at.rest_m.y},
             at.counts[2] * count_m + double{at.rest_m.z}};
   }
 };
 
-// Slips, stops and detents happen in another tick where rounding decides, so their places differ for a while:
-// most ticks are as near as single precision.
+// No slip, stop or detent of these paths is so near that rounding decides its tick.
 TEST(PieceSlideTest, TheKernelIsTheReference) {
   Piece detents = knob_on_slide(), rough = knob_on_slide();
   detents.slide->detent_n = 0.5, detents.slide->detent_m = 4e-3;
   rough.static_friction = rough.kinetic_friction = 0.5;
   for (const Piece& piece : {knob_on_slide(), detents, rough, cube_on_slide()}) {
     SlidesOnArm on({piece, still_plane("floor", {0, 0, -0.004}, {0, 0, 1})});
-    std::vector<double> errors_n;
-    double largest_n = 0, farthest_m = 0;
+    double largest_n = 0, largest_error_n = 0, farthest_m = 0;
     for (int i = 0; i < 6000; ++i) {
       const double t = 1e-3 * i;
       const auto counts =
           on.counts_of({0.015 * std::sin(1.1 * t - 1.5), 2e-3 * std::sin(t), 2e-3 * std::cos(2 * t)});
       const core::ForceOutput output = on.kernel.tick(counts.data(), true);
       const auto reference = on.exact->tick(counts).unlimited_n;
-      double error_n = 0;
       for (std::size_t j = 0; j < 3; ++j) {
-        error_n = std::max(error_n, std::abs(double{output.unlimited_n[j]} - reference[j]));
+        largest_error_n = std::max(largest_error_n, std::abs(double{output.unlimited_n[j]} - reference[j]));
         largest_n = std::max(largest_n, std::abs(reference[j]));
       }
-      errors_n.push_back(error_n);
       farthest_m = std::max(farthest_m, std::abs(on.slid_m()));
     }
-    std::ranges::sort(errors_n);
-    std::printf("[ measured ] %s: 95 %% within %.2g, all within %.2g of %.2g N, slid %.3g mm\n",
-                piece.name.c_str(), errors_n[errors_n.size() * 95 / 100], errors_n.back(), largest_n,
-                1e3 * farthest_m);
+    std::printf("[ measured ] %s: %.2g of %.2g N, slid %.3g mm\n", piece.name.c_str(), largest_error_n,
+                largest_n, 1e3 * farthest_m);
     EXPECT_GT(farthest_m, 3e-3);
-    EXPECT_LT(errors_n[errors_n.size() * 95 / 100], 2e-4 * largest_n);
+    EXPECT_LT(largest_error_n, 1e-4 * largest_n);
   }
 }
 

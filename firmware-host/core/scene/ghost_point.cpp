@@ -366,7 +366,7 @@ void GhostPoint::move(SpaceVector way, const float (&step_m)[3]) noexcept {
                     before = surface_at(kind, table, at).normal, pull = nearest - to, way = nearest - at;
   if (!slides && !(dot(normal, before) >= kSameSide)) return false;
   if (!(dot(pull, normal) > 0)) return false;
-  if (!(length(pull) <= length(at - to) + kTouch_m)) return false;
+  if (!(length(pull) <= length(at - to) + (slides ? kTouch_m + kInRelief_m : kTouch_m))) return false;
   for (uint32_t i = 0; i < scene.layer_count; ++i) {
     if (i == piece) continue;
     const PieceTable& other = piece_of(scene, i);

@@ -73,7 +73,7 @@ PieceSurface relief_surface_at(const ReliefPieceTable& table, SpaceVector place)
 // of c + b s - bend s^2 / 2.
 float relief_entry(const ReliefPieceTable& table, SpaceVector place, SpaceVector way,
                    float under_m) noexcept {
-  constexpr float kNoEntry = 2;
+  constexpr float kFree = 2;
   const MapFrame frame(table);
   const float u_m = dot(frame.u, way), v_m = dot(frame.v, way),
               bend = table.bend_per_m * (u_m * u_m + v_m * v_m);
@@ -81,11 +81,11 @@ float relief_entry(const ReliefPieceTable& table, SpaceVector place, SpaceVector
   for (int i = 0; i < kReliefEntrySteps && part <= 1; ++i) {
     const HeightAbove at = height_above(table, place + part * way);
     const float c = at.height_m + under_m, b = dot(at.slope, way);
-    if (i == 0 && c < 0) return under_m > 0 ? kNoEntry : 0;
+    if (i == 0 && c < 0) return under_m > 0 ? kFree : 0;
     if (i > 0 && c <= kMet_m) return part;
     const float root = __builtin_sqrtf(b * b + 2 * bend * c), below = b > 0 ? bend : root - b,
                 above = b > 0 ? root + b : 2 * c;
-    if (!(above < kNoEntry * below)) return kNoEntry;
+    if (!(above < kFree * below)) return kFree;
     part += above / below;
   }
   return part;
