@@ -73,6 +73,12 @@ class SceneKernel {
     const float rest_m[] = {ghost_.place().rest_m.x, ghost_.place().rest_m.y, ghost_.place().rest_m.z};
     return step_m_[along] * static_cast<float>(ghost_.place().counts[along]) + rest_m[along];
   }
+  /// Of a layer that is a piece with a SlideTable: its place along its axis.
+  float slid_m(uint32_t layer) const noexcept {
+    const auto kind = static_cast<SceneLayerKind>(scene_.layers[layer].kind);
+    const float* const number = live_ + scene_.layers[layer].first_number;
+    return reinterpret_cast<const WallState*>(number + changeable_numbers_of(kind))->slid_m;
+  }
   float rate_hz() const noexcept { return setup_.rate_hz; }
   bool at_rest() const noexcept { return envelope_.at_rest() && limiter_.at_rest(); }
 

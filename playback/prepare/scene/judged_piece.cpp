@@ -60,6 +60,7 @@ Meeting meeting_of_planes(const Piece& a, const Piece& b, double radius_m) {
 }
 
 Meeting meeting_of(const Piece& a, const Piece& b, double radius_m) {
+  if (schema::is_raised(a) || schema::is_raised(b)) return Meeting::other;
   if (a.shape == PieceShape::plane && b.shape == PieceShape::plane) return meeting_of_planes(a, b, radius_m);
   if (b.shape == PieceShape::plane) return meeting_of(b, a, radius_m);
   if (b.shape != PieceShape::sphere) return Meeting::other;
@@ -194,21 +195,34 @@ double texture_stiffness_n_per_m(const Piece& piece, const schema::Device& devic
          (piece.texture->steepest + (round ? piece.texture->largest / piece.radius_m : 0));
 }
 
+double most_energy_j(const Piece& piece, const schema::Device& device) {
+  if (!piece.texture || piece.texture->type != schema::PieceTextureType::normals) return 0;
+  const double most_n = device.peak_force_n, held = 1 - 1 / std::hypot(1, piece.texture->largest);
+  const double stored_j = most_n * most_n / (2 * piece.stiffness_n_per_m);
+  return most_n * piece.relief->range_m + (piece.stiffness_n_per_m > 0 ? held * stored_j : 0);
+}
+
 double wall_growth(const Piece& piece, const schema::Device& device, double rate_hz,
                    const std::optional<schema::Hand>& hand) {
   const schema::Hand held = hand.value_or(schema::Hand());
+  std::vector<SampledLoad> loads = {{piece.stiffness_n_per_m,
+                                     piece.damping_n_s_per_m,
+                                     {},
+                                     piece.integral_n_per_m_s,
+                                     piece.integral_leak_per_s}};
+  if (piece.slide)
+    loads.push_back({0,
+                     0,
+                     {{piece.slide->mass_kg, piece.slide->viscous_n_s_per_m, piece.stiffness_n_per_m,
+                       piece.damping_n_s_per_m, false, true}}});
   double most = 0;
   for (const schema::DeviceAxis& axis : device.axes)
-    if (axis.mass_kg > 0)
-      most = std::max(
-          most, growth_per_tick({axis.mass_kg + held.mass_kg, axis.viscous_n_s_per_m + held.damping_n_s_per_m,
-                                 held.stiffness_n_per_m},
-                                {1 / rate_hz, device.delay_s * rate_hz},
-                                {piece.stiffness_n_per_m,
-                                 piece.damping_n_s_per_m,
-                                 {},
-                                 piece.integral_n_per_m_s,
-                                 piece.integral_leak_per_s}));
+    for (const SampledLoad& load : loads)
+      if (axis.mass_kg > 0)
+        most = std::max(
+            most, growth_per_tick({axis.mass_kg + held.mass_kg,
+                                   axis.viscous_n_s_per_m + held.damping_n_s_per_m, held.stiffness_n_per_m},
+                                  {1 / rate_hz, device.delay_s * rate_hz}, load));
   return most;
 }
 

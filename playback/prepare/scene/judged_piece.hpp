@@ -28,7 +28,9 @@ struct JudgedPiece {
 
 /// growth_per_tick() of this wall on an axis of the device, above 1 it is unstable: with spring, integral and
 /// a damper that acts on the difference of two places. A hand adds its mass, damping and stiffness. Coulomb
-/// friction is left out, and the force limit. Of all axes the largest; 0 if the device states no mass.
+/// friction is left out, and the force limit. A piece that slides is judged at a stop, and as a mass that its
+/// wall couples to the hand, without detents, dry friction and integral. Of all axes the largest; 0 if the
+/// device states no mass.
 double wall_growth(const schema::Piece& piece, const schema::Device& device, double rate_hz,
                    const std::optional<schema::Hand>& hand);
 
@@ -40,6 +42,12 @@ schema::Piece steepest_wall(const schema::Piece& piece);
 /// the normal, its curvature, and on a sphere and a cylinder also its slope by their radius. The curvature of
 /// quadrics and meshes is left out. `piece`: of read_reliefs().
 double texture_stiffness_n_per_m(const schema::Piece& piece, const schema::Device& device);
+
+/// Interpolated normals: the most energy that one way down the relief with the peak force of the device and
+/// back up without one can give the hand: force x range of the heights, and what of the energy in the spring
+/// a hand that goes in on the steepest slope and out on a flat place gains. 0 of other pieces. `piece`: of
+/// read_reliefs().
+double most_energy_j(const schema::Piece& piece, const schema::Device& device);
 
 /// A piece with all that may act at the same place, at the worst of the ends of all sliders (slider_ends()).
 /// `contact: add`: planes of the same direction add up, from the highest one down to the depth at which they
