@@ -4,7 +4,6 @@
 
 #include <string>
 
-#include "data-schema/base/error.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
 
