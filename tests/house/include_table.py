@@ -8,23 +8,23 @@ MAY_INCLUDE = {
     "data-schema/calibration": "data-schema/{base files json}",
     "data-schema/check":
         "data-schema/{base corpus device experiment files height json kinds mesh recording results scene session spectrogram texture transducer "
-        "wav wiring}",
+        "volume wav wiring}",
     "data-schema/cli":
         "data-schema/{base calibration check command corpus device exchange experiment files height kinds mesh recording report results scene session spectrogram "
-        "texture transducer wiring}",
+        "texture transducer volume wiring}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
     "data-schema/corpus": "data-schema/{base json}",
     "data-schema/device": "data-schema/{base json}",
     "data-schema/experiment": "data-schema/{base files json}",
-    "data-schema/exchange": "data-schema/{base exchange/assimp exchange/matio exchange/zip files mesh texture}",
+    "data-schema/exchange": "data-schema/{base exchange/assimp exchange/matio exchange/zip files mesh texture volume}",
     "data-schema/exchange/assimp": "",
     "data-schema/exchange/matio": "",
     "data-schema/exchange/zip": "",
     "data-schema/files": "data-schema/base",
     "data-schema/height": "data-schema/{base files spectrogram}",
     "data-schema/json": "data-schema/{base files}",
-    "data-schema/kinds": "data-schema/{base files height json mesh session}",
+    "data-schema/kinds": "data-schema/{base files height json mesh session volume}",
     "data-schema/mesh": "data-schema/{base files spectrogram}",
     "data-schema/netcdf": "",
     "data-schema/recording": "data-schema/{base files json transducer wav}",
@@ -35,6 +35,7 @@ MAY_INCLUDE = {
     "data-schema/spectrogram": "data-schema/{base files netcdf}",
     "data-schema/texture": "data-schema/{base files json kinds wav}",
     "data-schema/transducer": "data-schema/{base json}",
+    "data-schema/volume": "data-schema/{base files spectrogram}",
     "data-schema/wav": "data-schema/{base files}",
     "data-schema/wiring": "data-schema/{base files json recording transducer}",
     "firmware-host": "data-schema/base firmware-host/{comedi link replay sim/device sim/physics sim/planar tty usb}",
@@ -67,7 +68,7 @@ MAY_INCLUDE = {
         "capture/{calibrate doctor import record table} data-schema/{base cli command files height kinds recording report wiring} "
         "firmware-host/{. sim/device}",
     "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. core/wire link}",
-    "capture/import": "capture/{calibrate record table} data-schema/{base calibration exchange files height mesh recording texture}",
+    "capture/import": "capture/{calibrate record table} data-schema/{base calibration exchange files height mesh recording texture volume}",
     "capture/record":
         "capture/table data-schema/{base calibration files recording} firmware-host/link spatial/strokes",
     "capture/table": "data-schema/{base exchange files recording wav}",
@@ -171,7 +172,7 @@ MAY_INCLUDE = {
     "analysis/psychometrics": "data-schema/base",
     "analysis/report":
         "analysis/{identify/measure page} data-schema/{base calibration check corpus device experiment files height kinds mesh recording results "
-        "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
+        "scene session spectrogram texture transducer volume} playback/session spatial/{picture picture/draw spectrogram "
         "texture}",
     "analysis/scene":
         "data-schema/{base device mesh report scene} firmware-host/core/scene playback/{prepare/scene render/reference session} "
