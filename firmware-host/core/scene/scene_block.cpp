@@ -5,6 +5,7 @@
 
 #include "firmware-host/core/kernel/finite.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
+#include "firmware-host/core/scene/volume.hpp"
 #include "firmware-host/core/wire/crc32c.hpp"
 
 namespace tacto::core {
@@ -31,6 +32,7 @@ constexpr float kMostTransient_n_s_per_m = 1e6F;
 constexpr float kLeastLoss = 1e-6F;  // of a transient from tick to tick
 constexpr float kMostPasses_per_m = 1e6F;
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
+constexpr float kMostVoxels_per_m = 1e7F, kMost_m_per_value = 0.1F, kMostIso = 1e6F;
 constexpr float kThinnestSkin_m = 1e-12F, kThickestSkin_m = 1e-3F;
 
 bool is_direction(float cosine, float sine) noexcept {
@@ -76,6 +78,7 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
     case SceneLayerKind::cylinder:
     case SceneLayerKind::quadric:
     case SceneLayerKind::mesh:
+    case SceneLayerKind::volume:
       return within(number[kPieceStiffness], 0, kStiffest_n_per_m) &&
              within(number[kPieceDamping], 0, kMostDamping_n_s_per_m) &&
              within(number[kPieceArrestMass], 0, kMostPiece_kg) &&
@@ -316,6 +319,31 @@ SceneFault check_mesh(const SceneView& view, const SceneLayer& layer, uint32_t r
   return fault == SceneFault::none ? check_texture(view, layer, room, words) : fault;
 }
 
+bool sound(const VolumeAxis& axis) noexcept {
+  return axis.samples >= 2 && axis.samples <= kMostVolumeSamples && within(axis.per_m, 0, kMostVoxels_per_m);
+}
+
+// Without a travel and a texture.
+SceneFault check_volume(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                        uint32_t& words) noexcept {
+  constexpr uint32_t kHead = sizeof(VolumeTable) / sizeof(uint32_t);
+  if (room < kHead) return SceneFault::structure;
+  const auto& table = table_of<VolumeTable>(view, layer);
+  if (table.piece.travel != 0 || table.piece.texture != 0) return SceneFault::structure;
+  uint64_t values = 1;
+  for (const VolumeAxis& axis : table.along) {
+    if (!sound(axis)) return SceneFault::value;
+    values *= axis.samples;
+  }
+  const uint64_t all = kHead + (values + 1) / 2;
+  if (all > room) return SceneFault::structure;
+  words = static_cast<uint32_t>(all);
+  return sound(table.piece, SceneLayerKind::volume) && within(table.iso, -kMostIso, kMostIso) &&
+                 within(table.m_per_value, 0, kMost_m_per_value)
+             ? SceneFault::none
+             : SceneFault::value;
+}
+
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,
                        uint32_t& words) noexcept {
   switch (static_cast<SceneLayerKind>(layer.kind)) {
@@ -341,6 +369,8 @@ SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t 
       return check_piece(view, layer, room, words);
     case SceneLayerKind::mesh:
       return check_mesh(view, layer, room, words);
+    case SceneLayerKind::volume:
+      return check_volume(view, layer, room, words);
     case SceneLayerKind::spring:
     case SceneLayerKind::damper:
     case SceneLayerKind::tick_damper:

@@ -36,12 +36,13 @@ enum class SceneLayerKind : uint16_t {
   sphere = 17,
   cylinder = 18,
   quadric = 19,
-  mesh = 20
+  mesh = 20,
+  volume = 24
 };
 
 /// Whether a layer is a piece: a solid in space. In a block either all layers are pieces or none is.
 constexpr bool is_piece(SceneLayerKind kind) noexcept {
-  return kind >= SceneLayerKind::plane && kind <= SceneLayerKind::mesh;
+  return (kind >= SceneLayerKind::plane && kind <= SceneLayerKind::mesh) || kind == SceneLayerKind::volume;
 }
 
 constexpr bool is_known(SceneLayerKind kind) noexcept {
@@ -103,6 +104,7 @@ constexpr uint32_t changeable_numbers_of(SceneLayerKind kind) noexcept {
     case SceneLayerKind::cylinder:
     case SceneLayerKind::quadric:
     case SceneLayerKind::mesh:
+    case SceneLayerKind::volume:
       return kPieceNumbers;
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:

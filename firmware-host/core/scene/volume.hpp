@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// A point in a volume of voxels: the depth below the surface of one value, and its gradient, of one
+// interpolant (Massie 1996).
+#pragma once
+
+#include "firmware-host/core/scene/piece.hpp"
+
+namespace tacto::core {
+
+inline constexpr uint32_t kMostVolumeSamples = 4096;  ///< along an axis
+
+/// An axis of a volume: samples against counts of the encoder, from the origin of the piece on.
+struct VolumeAxis {
+  int32_t whole = 0;  ///< of the place of the origin, in samples: whole + part 2^-32
+  uint32_t part = 0;
+  int32_t whole_per_count = 0;
+  uint32_t part_per_count = 0;
+  float per_m = 0;       ///< samples per metre
+  uint32_t samples = 0;  ///< at least 2
+};
+static_assert(sizeof(VolumeAxis) == 24);
+
+/// This, then the values: i16, those along x next to each other, then along y, then along z; two in a word.
+struct VolumeTable {
+  PieceTable piece;  ///< its form is not used: a unit vector and the half extent
+  VolumeAxis along[3];
+  float iso = 0;          ///< the value of the surface
+  float m_per_value = 0;  ///< of the depth
+};
+static_assert(sizeof(VolumeTable) == 176);
+
+inline const int16_t* values_of(const VolumeTable& table) noexcept {
+  return reinterpret_cast<const int16_t*>(&table + 1);
+}
+
+/// A place in samples, each 2^-32 of one.
+struct VolumePlace {
+  int64_t along[3] = {};
+};
+
+/// Of a hand that is within kFarthestInSpace_m of the origin. Exact but for 2^-33 samples per count. Safe in
+/// the tick.
+VolumePlace place_in(const VolumeTable& table, const int32_t (&counts)[3]) noexcept;
+
+/// The depth at a place and minus its gradient along x, y and z, which leads outwards.
+struct VolumeDepth {
+  float depth_m = -1e30F;  ///< (value - iso) x m_per_value
+  SpaceVector outwards;    ///< in m per m
+};
+
+/// The trilinear interpolant of the eight values around a place, and its exact gradient; beyond the outermost
+/// samples, far outside. Safe in the tick.
+VolumeDepth depth_at(const VolumeTable& table, const int16_t* values, const VolumePlace& place) noexcept;
+
+struct VolumeTouch {
+  SpaceVector push_m;       ///< depth x its gradient, outwards; 0 outside
+  float outside_m = 1e30F;  ///< minus the depth
+};
+
+/// With the stiffness K the force is K x push_m, the gradient of the potential K depth^2 / 2 of the depths
+/// above 0: so a closed path gains no energy. Safe in the tick: one step.
+VolumeTouch touch_volume(const VolumeTable& table, const int32_t (&counts)[3]) noexcept;
+
+}  // namespace tacto::core
