@@ -141,6 +141,11 @@ Result<Report> run_pieces(const SceneVerbOptions& o, schema::Scene scene) {
                         o.session.empty() ? "--hand" : "--session", "leave it out");
   PiecePicture picture{scene.name.empty() ? o.scene : scene.name, std::move(scene), {}, {}, {}};
   for (const schema::Piece& piece : picture.scene.pieces) {
+    if (piece.shape == schema::PieceShape::volume && !picture.volumes.contains(piece.volume)) {
+      auto volume = schema::read_volume(schema::texture_in_scene(schema::scene_path(o.scene), piece.volume));
+      TACTO_TRY(volume);
+      picture.volumes[piece.volume] = std::move(*volume);
+    }
     if (piece.shape != schema::PieceShape::mesh || picture.meshes.contains(piece.mesh)) continue;
     auto mesh = schema::read_mesh(schema::texture_in_scene(schema::scene_path(o.scene), piece.mesh));
     TACTO_TRY(mesh);

@@ -43,7 +43,7 @@ double inner(const Place& a, const Place& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-bool is_solid(const Piece& piece, const Place& place_m) {
+bool is_solid(const Piece& piece, const Place& place_m, const PieceVolumes& volumes) {
   const Place p = {place_m[0] - piece.x_m, place_m[1] - piece.y_m, place_m[2] - piece.z_m};
   const double along = inner(piece.direction, p) / std::sqrt(inner(piece.direction, piece.direction));
   switch (piece.shape) {
@@ -56,7 +56,12 @@ bool is_solid(const Piece& piece, const Place& place_m) {
     case PieceShape::quadric:
       break;
     case PieceShape::mesh:
-      return false;  // add_mesh()
+      return false;  // crossings()
+    case PieceShape::volume: {
+      schema::VolumeValue at;
+      const auto found = volumes.find(piece.volume);
+      return found != volumes.end() && value_at(found->second, p, at) && at.value > piece.iso;
+    }
   }
   const auto& c = piece.coefficients;
   const auto [x, y, z] = p;
@@ -141,9 +146,12 @@ PlaneRange range_of(const PiecePicture& picture, const Section& section) {
                    at[section.up] + end_m[section.up] + around_m});
       continue;
     }
-    const double around_m = piece.radius_m + kAround_m;
-    range.add({at[section.right] - around_m, at[section.up] - around_m});
-    range.add({at[section.right] + around_m, at[section.up] + around_m});
+    Place half_m = {piece.radius_m, piece.radius_m, piece.radius_m};
+    if (const auto volume = picture.volumes.find(piece.volume); volume != picture.volumes.end())
+      half_m = volume->second.half_size_m();
+    for (const double side : {-1.0, 1.0})
+      range.add({at[section.right] + side * (half_m[section.right] + kAround_m),
+                 at[section.up] + side * (half_m[section.up] + kAround_m)});
   }
   return range;
 }
@@ -194,6 +202,7 @@ std::string words_of(const Piece& piece) {
     add(each.name, number.value);
     if (number.slider) words += fmt::format(" (slider {:g} to {:g})", number.slider->from, number.slider->to);
   }
+  if (piece.shape == PieceShape::volume) words += fmt::format(", {} above {:g}", piece.volume, piece.iso);
   if (piece.transient || piece.hand_surface) words += ", contact transient";
   if (!piece.travel.empty()) words += fmt::format(", travel of {} points", piece.travel.size());
   if (piece.texture)
@@ -205,7 +214,8 @@ std::string words_of(const Piece& piece) {
 }  // namespace
 
 std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
-                                  const Place& through_m, const PieceMeshes& meshes) {
+                                  const Place& through_m, const PieceMeshes& meshes,
+                                  const PieceVolumes& volumes) {
   const Section& section = *std::ranges::find(kSections, across, &Section::across);
   const double beside_m = 1e-6 * grid.pixel_m;  // of the section, so that it meets no vertex
   std::vector<int> solid;
@@ -221,7 +231,7 @@ std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& g
       place_m[section.right] = at.x, place_m[section.up] = at.y;
       int last = -1;
       for (std::size_t i = 0; i < scene.pieces.size(); ++i)
-        if (is_solid(scene.pieces[i], place_m)) last = static_cast<int>(i);
+        if (is_solid(scene.pieces[i], place_m, volumes)) last = static_cast<int>(i);
       for (const auto& [i, at_m] : of_meshes)
         if ((std::ranges::lower_bound(at_m, at.x) - at_m.begin()) % 2 != 0)
           last = std::max(last, static_cast<int>(i));
@@ -274,7 +284,7 @@ schema::Result<void> PieceFigure::draw(Canvas& canvas) const {
                             spatial::typeset(schema::length_for_people(through_m_[section.across]))),
                 kSectionTitle);
     canvas.image(map.box, pixels_of(solid_in_section(picture_.scene, map.grid, section.across, through_m_,
-                                                     picture_.meshes),
+                                                     picture_.meshes, picture_.volumes),
                                     map.grid));
     const auto count = [](double length) { return std::max(2, static_cast<int>(length / 45)); };
     canvas.frame(map.box, {});

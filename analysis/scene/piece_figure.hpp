@@ -12,6 +12,7 @@
 #include "data-schema/device/device.hpp"
 #include "data-schema/mesh/mesh.hpp"
 #include "data-schema/scene/scene.hpp"
+#include "data-schema/volume/volume.hpp"
 #include "spatial/picture/draw/heading.hpp"
 #include "spatial/picture/figure.hpp"
 
@@ -19,6 +20,8 @@ namespace tacto::analysis {
 
 /// By the member `mesh` of the pieces.
 using PieceMeshes = std::map<std::string, schema::Mesh>;
+/// By the member `volume`.
+using PieceVolumes = std::map<std::string, schema::Volume>;
 
 /// A scene of pieces; without a device the sections show 20 mm around all pieces.
 struct PiecePicture {
@@ -27,13 +30,15 @@ struct PiecePicture {
   std::optional<schema::Device> device;            ///< whose travel is shown
   std::optional<std::array<double, 3>> through_m;  ///< default: the middle of the balls, pipes and quadrics
   PieceMeshes meshes = {};
+  PieceVolumes volumes = {};
 };
 
 /// In a section across axis `across`, 0 to 2: which piece is solid in each pixel, from 0 on, or -1. Where
 /// several are, it is the last one. Pieces are drawn as they are, without the radius of the point. A mesh
 /// with holes is not everywhere drawn as the solid that it is for the hand.
 std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
-                                  const std::array<double, 3>& through_m, const PieceMeshes& meshes = {});
+                                  const std::array<double, 3>& through_m, const PieceMeshes& meshes = {},
+                                  const PieceVolumes& volumes = {});
 
 class PieceFigure : public spatial::Figure {
  public:

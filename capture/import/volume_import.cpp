@@ -7,6 +7,7 @@
 
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/version.hpp"
+#include "data-schema/volume/volume.hpp"
 
 namespace tacto::capture {
 

@@ -14,7 +14,7 @@
 
 namespace tacto::schema {
 
-enum class PieceShape { plane, sphere, cylinder, quadric, mesh };
+enum class PieceShape { plane, sphere, cylinder, quadric, mesh, volume };
 
 /// How pieces act: a ghost point stays on their surfaces (Zilles and Salisbury 1995), or each piece pushes to
 /// its nearest face, and the forces add up.
@@ -77,7 +77,8 @@ std::array<std::array<double, 3>, 2> map_axes(const PieceTexture& texture);
 struct Piece {
   std::string name;  ///< different for each piece of a scene
   PieceShape shape = PieceShape::plane;
-  double x_m = 0, y_m = 0, z_m = 0;             ///< a point of a plane or an axis, a centre, a mesh's origin
+  double x_m = 0, y_m = 0,
+         z_m = 0;  ///< a point of a plane or an axis, a centre, a mesh's origin, a volume's middle
   std::array<double, 3> direction = {0, 0, 1};  ///< plane: out of the solid; cylinder: its axis
   double thickness_m = 0;                       ///< plane: of the plate below it; 0: without an end
   double radius_m = 0;                          ///< sphere, cylinder
@@ -102,6 +103,11 @@ struct Piece {
   std::vector<TravelPoint> travel = {};
   double texture_gain = 1;
   std::map<std::string, SliderRange> sliders = {};  ///< of kWallNumbers that change, by their names
+  std::string volume = {};                          ///< volume: the stem of its file, or the file
+  double iso = 0;                                   ///< volume: solid where its value is above this one
+  double value_per_m = 0;                           ///< volume: depth = (value - iso) / value_per_m
+  /// Not in the file, once its volume was read: the largest slope of the depth, squared.
+  double steepness = 1;
 };
 
 struct PieceNumber {
@@ -130,10 +136,10 @@ NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number);
 std::vector<Piece> slider_ends(const Piece& piece);
 
 /// The steepest part of its spring: the stiffness, or of a travel the largest slope, at its end the
-/// stiffness.
+/// stiffness; of a volume the stiffness x its steepness.
 double steepest_spring_n_per_m(const Piece& piece);
 
-/// "plane", "sphere", "cylinder", "quadric", "mesh".
+/// "plane", "sphere", "cylinder", "quadric", "mesh", "volume".
 std::string_view to_string(PieceShape shape);
 
 /// "ghost", "add".

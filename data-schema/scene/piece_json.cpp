@@ -10,7 +10,8 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 5> kShapeWords = {"plane", "sphere", "cylinder", "quadric", "mesh"};
+constexpr std::array<std::string_view, 6> kShapeWords = {"plane",   "sphere", "cylinder",
+                                                         "quadric", "mesh",   "volume"};
 constexpr std::array<std::string_view, 3> kTextureWords = {"recording", "bump", "sine"};
 
 // Before the numbers of the wall; each is written if it is not 0.
@@ -90,7 +91,7 @@ std::array<std::array<double, 3>, 2> map_axes(const PieceTexture& texture) {
 }
 
 double steepest_spring_n_per_m(const Piece& piece) {
-  double steepest = piece.stiffness_n_per_m;
+  double steepest = piece.steepness * piece.stiffness_n_per_m;
   TravelPoint last;
   for (const TravelPoint& point : piece.travel) {
     if (point.depth_m > last.depth_m)
@@ -135,6 +136,9 @@ Piece piece_from(const Json& body) {
   if (body.contains("coefficients"))
     for (std::size_t i = 0; i < kQuadricTerms; ++i) piece.coefficients[i] = body["coefficients"][i];
   piece.mesh = text_or(body, "mesh");
+  piece.volume = text_or(body, "volume");
+  piece.iso = number_or(body, "iso", 0);
+  piece.value_per_m = number_or(body, "value_per_m", 0);
   for (const auto& [name, value, changes] : kShapeNumbers) piece.*value = number_or(body, name, 0);
   read_wall(piece, body);
   if (body.contains("transient")) {
@@ -159,6 +163,8 @@ Json piece_body(const Piece& piece) {
     body["direction"] = piece.direction;
   if (piece.shape == PieceShape::quadric) body["coefficients"] = piece.coefficients;
   if (piece.shape == PieceShape::mesh) body["mesh"] = piece.mesh;
+  if (piece.shape == PieceShape::volume)
+    body["volume"] = piece.volume, body["iso"] = piece.iso, body["value_per_m"] = piece.value_per_m;
   for (const auto& [name, value, changes] : kShapeNumbers)
     if (piece.*value != 0) body[name] = piece.*value;
   write_wall(piece, body);

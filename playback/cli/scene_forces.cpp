@@ -316,6 +316,9 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
         .add("steepest_n_per_m", steepest_spring_n_per_m(piece));
     if (click_n > 0) row.add("click_n", click_n);
   }
+  if (piece.shape == schema::PieceShape::volume)
+    row.add("values", on.scene.reliefs.volumes.at(piece.volume)->stored.size())
+        .add("steepest_n_per_m", steepest_spring_n_per_m(alone->pieces.front()));
   for (const schema::PieceNumber& number : schema::kWallNumbers) {
     const bool rubs = number.value == &schema::Piece::static_friction ||
                       number.value == &schema::Piece::kinetic_friction ||

@@ -112,7 +112,7 @@ MAY_INCLUDE = {
         "data-schema/{base files transducer wav} firmware-host/{core/kernel core/wire} spatial/{dsp/filter "
         "dsp/fourier dsp/resample}",
     "playback/player":
-        "data-schema/{base device files height mesh scene session texture} firmware-host/{. core/firmware core/kernel core/wire "
+        "data-schema/{base device files height mesh scene session texture volume} firmware-host/{. core/firmware core/kernel core/wire "
         "link sim/device sim/planar} playback/{choose host-loop model prepare prepare/scene render session} "
         "spatial/dsp/resample",
     "playback/prepare":
@@ -120,7 +120,7 @@ MAY_INCLUDE = {
         "spatial/{dsp/filter dsp/fourier}",
     "playback/prepare/relief": "data-schema/{base height scene} firmware-host/core/scene spatial/dsp/fourier",
     "playback/prepare/scene":
-        "data-schema/{device height mesh scene texture} firmware-host/core/scene playback/{model prepare prepare/relief "
+        "data-schema/{device height mesh scene texture volume} firmware-host/core/scene playback/{model prepare prepare/relief "
         "stability}",
     "playback/render":
         "data-schema/{base device files recording scene texture transducer} firmware-host/{core/kernel core/scene sim/planar} "
@@ -175,7 +175,7 @@ MAY_INCLUDE = {
         "scene session spectrogram texture transducer volume} playback/session spatial/{picture picture/draw spectrogram "
         "texture}",
     "analysis/scene":
-        "data-schema/{base device mesh report scene} firmware-host/core/scene playback/{prepare/scene render/reference session} "
+        "data-schema/{base device mesh report scene volume} firmware-host/core/scene playback/{prepare/scene render/reference session} "
         "spatial/{picture picture/draw}",
     "analysis/trade":
         "analysis/{page trade/offline trade/rows} data-schema/{base results texture transducer} "

@@ -14,6 +14,7 @@
 #include "playback/prepare/scene/contact_transient.hpp"
 #include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/mesh_block.hpp"
+#include "playback/prepare/scene/volume_block.hpp"
 
 namespace tacto::playback {
 
@@ -47,6 +48,8 @@ SceneLayerKind kind_of_piece(PieceShape shape) {
       return SceneLayerKind::cylinder;
     case PieceShape::mesh:
       return SceneLayerKind::mesh;
+    case PieceShape::volume:
+      return SceneLayerKind::volume;
     case PieceShape::quadric:
       break;
   }
@@ -261,6 +264,13 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
       append_words(tables, *words);
       continue;
     }
+    if (piece.shape == PieceShape::volume) {
+      auto placed = table_at({piece.x_m, piece.y_m, piece.z_m}, base.steps, at);
+      TACTO_TRY(placed);
+      placed->transient = *transient;
+      append_words(tables, volume_table(piece, *base.reliefs.volumes.at(piece.volume), *placed, base.steps));
+      continue;
+    }
     auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
     TACTO_TRY(table);
     table->transient = *transient;
@@ -311,6 +321,12 @@ std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const sche
           "the device has no axis {0}: the hand stays at {0} = 0, and forces along {0} are left out", name));
   for (const Piece& piece : scene.pieces)
     if (auto note = cut_of_transient(piece, device, rate_hz)) notes.push_back(std::move(*note));
+  for (const Piece& piece : scene.pieces)
+    if (piece.shape == PieceShape::volume && solid_at_border(piece, *scene.reliefs.volumes.at(piece.volume)))
+      notes.push_back(
+          fmt::format("the volume of piece '{}' is solid at its border, where its force ends with a step: "
+                      "a hand that passes there may gain energy",
+                      piece.name));
   if (!(device.axes.front().mass_kg > 0)) return notes;
   schema::Scene judged_scene;
   judged_scene.pieces = scene.pieces;

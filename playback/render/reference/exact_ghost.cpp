@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kNear_m = 1e-9;  // nearer, a piece is touched
 constexpr double kBends_m = 1e-13;
-constexpr double kFarAway_m = 1e3;  // a mesh, whose triangles are asked instead
+constexpr double kFarAway_m = 1e3;  // a mesh and a volume, which are asked elsewhere
 constexpr int kPasses = 300;        // of a tick
 constexpr int kSweeps = 2000;       // of Hildreth's iteration
 constexpr int kEntrySamples = 128;  // of a way
@@ -68,7 +68,7 @@ ExactGhost::ExactGhost(const PreparedScene& scene, const schema::Device& device,
 ExactGhost::Surface ExactGhost::surface_at(const Piece& piece, const SpaceMetres& place_m) const {
   const SpaceMetres p = sum_of(place_m, -1, {piece.x_m, piece.y_m, piece.z_m});
   const double radius_m = scene_.point_radius_m;
-  if (piece.shape == PieceShape::mesh) return {kFarAway_m, {0, 0, 1}};
+  if (piece.shape == PieceShape::mesh || piece.shape == PieceShape::volume) return {kFarAway_m, {0, 0, 1}};
   if (piece.shape == PieceShape::plane) {
     const SpaceMetres n = unit_of(piece.direction);
     const double above_m = inner(n, p), below_m = -piece.thickness_m - above_m;
@@ -169,7 +169,7 @@ std::vector<ExactGhost::Held> ExactGhost::follow(const SpaceMetres& hand_m) {
     double part = 1;
     std::size_t met = pieces.size();
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (touched[i] || meshes_[i]) continue;
+      if (touched[i] || meshes_[i] || pieces[i].shape == PieceShape::volume) continue;
       const double entry = entry_of(pieces[i], ghost_m_, way);
       if (entry < part) part = entry, met = i;
     }
@@ -377,6 +377,21 @@ SpaceMetres ExactGhost::texture_force(const Piece& piece, Wall& wall, double& no
   return sum_of({}, piece.texture_gain * slope, wall.line);
 }
 
+// As core::touch_volume.
+ExactGhost::Held ExactGhost::in_volume(std::size_t index, const SpaceMetres& hand_m,
+                                       double& outside_m) const {
+  const Piece& piece = scene_.pieces[index];
+  schema::VolumeValue at;
+  if (!value_at(*scene_.reliefs.volumes.at(piece.volume),
+                sum_of(hand_m, -1, {piece.x_m, piece.y_m, piece.z_m}), at))
+    return {{0, 0, 1}, 0};
+  const double depth_m = (at.value - piece.iso) / piece.value_per_m;
+  outside_m = std::max(0.0, -depth_m);
+  const SpaceMetres push_m = sum_of({}, -std::max(0.0, depth_m) / piece.value_per_m, at.slope_per_m);
+  const double size_m = size_of(push_m);
+  return size_m > 0 ? Held{sum_of({}, 1 / size_m, push_m), size_m} : Held{{0, 0, 1}, 0};
+}
+
 SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {
   const bool arrives = !placed_;
   if (arrives) ghost_m_ = hand_m;
@@ -390,8 +405,12 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
     if (adds) held[i] = nearest_face(piece, hand_m);
     double outside_m = surface_at(piece, hand_m).distance_m;
     if (meshes_[i] && walls_[i].touched) outside_m = meshes_[i]->distance_m(hand_m);
+    const bool is_volume = piece.shape == PieceShape::volume;
+    if (is_volume) held[i] = in_volume(i, hand_m, outside_m);
     double force_n = wall_force(piece, walls_[i], held[i], outside_m, inner(held[i].normal, speed_mps));
-    const SpaceMetres on = adds ? sum_of(hand_m, held[i].depth_m, held[i].normal) : ghost_m_;
+    const SpaceMetres on = is_volume ? hand_m
+                           : adds    ? sum_of(hand_m, held[i].depth_m, held[i].normal)
+                                     : ghost_m_;
     if (arrives) walls_[i].anchor_m = walls_[i].last_m = on;
     sum = sum_of(sum, 1, texture_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
     sum = sum_of(sum, force_n, held[i].normal);

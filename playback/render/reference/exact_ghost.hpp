@@ -19,7 +19,8 @@ using SpaceMetres = std::array<double, 3>;
 /// methods: the planes
 /// that hold the ghost by Hildreth's iteration over all that it touches, the entry into a piece by samples
 /// and bisection, curved surfaces by many small steps instead of a closed form, meshes by trying all
-/// triangles, each slip of the friction by bisection. Slow; not for the tick.
+/// triangles, each slip of the friction by bisection, volumes by the weights of
+/// their values. Slow; not for the tick.
 class ExactGhost {
  public:
   /// Keeps references to both.
@@ -72,6 +73,8 @@ class ExactGhost {
   SpaceMetres texture_force(const schema::Piece& piece, Wall& wall, double& normal_n,
                             const SpaceMetres& normal, const SpaceMetres& place_m,
                             const SpaceMetres& speed_mps) const;
+
+  Held in_volume(std::size_t piece, const SpaceMetres& hand_m, double& outside_m) const;
 
   const PreparedScene& scene_;
   const schema::Device& device_;

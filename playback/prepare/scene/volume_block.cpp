@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/prepare/scene/volume_block.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "firmware-host/core/scene/volume.hpp"
+
+namespace tacto::playback {
+
+using schema::Piece;
+using schema::Result;
+using schema::Volume;
+
+namespace {
+
+constexpr double kMostDepthOfStep_m = 0.1;  // of a block
+
+// The first value, at 0, of the place whose middle is `rest_m` from whole counts.
+core::VolumeAxis axis_of(std::size_t samples, double spacing_m, double step_m, double rest_m) {
+  constexpr double kOne = 0x1p32;
+  const auto joined = [](double number) { return static_cast<std::int64_t>(std::round(number * kOne)); };
+  const std::int64_t origin = joined(static_cast<double>(samples - 1) / 2 - rest_m / spacing_m),
+                     per_count = joined(step_m / spacing_m);
+  return {static_cast<std::int32_t>(origin >> 32),    static_cast<std::uint32_t>(origin),
+          static_cast<std::int32_t>(per_count >> 32), static_cast<std::uint32_t>(per_count),
+          static_cast<float>(1 / spacing_m),          static_cast<std::uint32_t>(samples)};
+}
+
+double stored_iso(const Piece& piece, const Volume& volume) {
+  return (piece.iso - volume.offset) / volume.scale;
+}
+
+}  // namespace
+
+Result<void> read_piece_volume(Piece& piece, const std::string& scene, const std::string& where,
+                               std::map<std::string, std::shared_ptr<const Volume>>& volumes) {
+  if (piece.shape != schema::PieceShape::volume) return {};
+  auto& volume = volumes[piece.volume];
+  if (!volume) {
+    auto read = schema::read_volume(schema::texture_in_scene(scene, piece.volume));
+    TACTO_TRY(read);
+    volume = std::make_shared<const Volume>(std::move(*read));
+  }
+  const auto [least, most] = std::ranges::minmax(volume->stored);
+  const auto unsuitable = [&](const char* member, std::string what, std::string remedy) {
+    return schema::fail(schema::ErrorKind::unsuitable, std::move(what), fmt::format("{}/{}", where, member),
+                        std::move(remedy));
+  };
+  if (!(stored_iso(piece, *volume) >= least && stored_iso(piece, *volume) < most))
+    return unsuitable(
+        "iso",
+        fmt::format("the volume {} is {} at a value of {:g}", piece.volume,
+                    stored_iso(piece, *volume) < least ? "solid everywhere" : "empty", piece.iso),
+        fmt::format("choose a value from {:g} to {:g}", volume->value(least), volume->value(most)));
+  if (volume->scale > kMostDepthOfStep_m * piece.value_per_m)
+    return unsuitable("value_per_m",
+                      fmt::format("a step of the stored values, {:g}, is {:g} m deep", volume->scale,
+                                  volume->scale / piece.value_per_m),
+                      fmt::format("give at least {:g}", volume->scale / kMostDepthOfStep_m));
+  piece.steepness = std::pow(steepest_per_m(*volume, piece.iso) / piece.value_per_m, 2);
+  return {};
+}
+
+std::vector<std::uint32_t> volume_table(const Piece& piece, const Volume& volume,
+                                        const core::PieceTable& placed, const PlaneSteps& steps) {
+  core::VolumeTable table;
+  table.piece = placed;
+  table.piece.form[core::kPieceDirection + 2] = 1;
+  table.piece.form[core::kPieceSize] = static_cast<float>(std::ranges::max(volume.half_size_m()));
+  const double step_m[3] = {steps.x_m, steps.y_m, steps.z_m};
+  for (std::size_t i = 0; i < 3; ++i)
+    table.along[i] = axis_of(volume.samples[i], volume.spacing_m[i], step_m[i], double{placed.rest_m[i]});
+  table.iso = static_cast<float>(stored_iso(piece, volume));
+  table.m_per_value = static_cast<float>(volume.scale / piece.value_per_m);
+  constexpr std::size_t kWord = sizeof(std::uint32_t);
+  std::vector<std::uint32_t> words((sizeof table + 2 * volume.stored.size() + kWord - 1) / kWord);
+  std::memcpy(words.data(), &table, sizeof table);
+  std::memcpy(words.data() + sizeof table / kWord, volume.stored.data(), 2 * volume.stored.size());
+  return words;
+}
+
+bool solid_at_border(const Piece& piece, const Volume& volume) {
+  const auto [columns, rows, layers] = volume.samples;
+  const double above = stored_iso(piece, volume);
+  for (std::size_t z = 0; z < layers; ++z)
+    for (std::size_t y = 0; y < rows; ++y) {
+      const bool inner = z > 0 && z + 1 < layers && y > 0 && y + 1 < rows;
+      for (std::size_t x = 0; x < columns; x += inner ? columns - 1 : 1)
+        if (volume.stored[volume.at(x, y, z)] > above) return true;
+    }
+  return false;
+}
+
+std::string remedy_for_volumes(const PreparedScene& scene, std::size_t room) {
+  std::size_t values = 0;
+  for (const Piece& piece : scene.pieces)
+    if (!piece.volume.empty()) values += scene.reliefs.volumes.at(piece.volume)->stored.size();
+  const std::size_t bytes = sizeof(std::int16_t) * values, others = scene.bytes() - bytes;
+  if (others >= room) return "leave pieces out";
+  return fmt::format("crop its volumes, or give them a larger spacing: of {} values {:.0f} fit", values,
+                     std::floor(static_cast<double>(room - others) / static_cast<double>(bytes) *
+                                static_cast<double>(values)));
+}
+
+}  // namespace tacto::playback
