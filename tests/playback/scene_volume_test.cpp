@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Volumes in the kernel: closed paths, against the double-precision interpolant, blocks that are refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "firmware-host/core/scene/scene_kernel.hpp"
+#include "firmware-host/core/scene/volume.hpp"
+#include "playback/prepare/scene/volume_block.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using Place3 = std::array<double, 3>;
+
+schema::Volume random_volume(int from, int to) {
+  schema::Volume volume;
+  volume.samples = {13, 11, 9};
+  volume.spacing_m = {4e-4, 5e-4, 6e-4};
+  std::mt19937 random(10);
+  std::uniform_int_distribution<int> value(from, to);
+  volume.stored.resize(13 * 11 * 9);
+  for (std::int16_t& each : volume.stored) each = static_cast<std::int16_t>(value(random));
+  return volume;
+}
+
+schema::Piece piece_of_volume() {
+  schema::Piece piece;
+  piece.shape = schema::PieceShape::volume;
+  piece.stiffness_n_per_m = 500;
+  piece.value_per_m = 1e6;
+  return piece;
+}
+
+// The middle at count 0.
+std::vector<std::uint32_t> table_words(const schema::Volume& volume, const schema::Piece& piece) {
+  return volume_table(piece, volume, core::PieceTable{}, {1e-5, 1e-5, 1, 1e-5});
+}
+
+// A scene of this table alone.
+std::vector<std::uint32_t> block_around(const std::vector<std::uint32_t>& table, float stiffness) {
+  core::SceneHeader header;
+  header.patches = header.layers = 1;
+  header.numbers = core::kPieceNumbers + core::kWallStateWords;
+  header.table_words = static_cast<std::uint32_t>(table.size());
+  core::ScenePatch space;
+  space.layers = 1;
+  const core::SceneLayer layer{static_cast<std::uint16_t>(core::SceneLayerKind::volume), 0, 0};
+  const float numbers[core::kPieceNumbers + core::kWallStateWords] = {stiffness};
+  std::vector<std::uint32_t> words;
+  const auto append = [&](const void* part, std::size_t bytes) {
+    const std::size_t before = words.size();
+    words.resize(before + bytes / sizeof(std::uint32_t));
+    std::memcpy(words.data() + before, part, bytes);
+  };
+  append(&header, sizeof header);
+  append(&space, sizeof space);
+  append(&layer, sizeof layer);
+  append(numbers, sizeof numbers);
+  append(table.data(), table.size() * sizeof(std::uint32_t));
+  header.check = core::scene_check(words.data(), static_cast<std::uint32_t>(words.size() * 4));
+  std::memcpy(words.data(), &header, sizeof header);
+  return words;
+}
+
+core::SceneFault fault_of(const std::vector<std::uint32_t>& block, core::SceneView& view) {
+  return core::read_scene_block(block.data(), static_cast<std::uint32_t>(block.size() * 4), view);
+}
+
+core::VolumePlace place_at(const Place3& samples) {
+  core::VolumePlace place;
+  for (std::size_t i = 0; i < 3; ++i)
+    place.along[i] = static_cast<std::int64_t>(std::round(samples[i] * 0x1p32));
+  return place;
+}
+
+// Of a straight way in a cell the work's integrand is a polynomial of degree 5: three points of Gauss are
+// exact.
+struct Work {
+  double net = 0, absolute = 0;
+
+  void add(const core::VolumeTable& table, const schema::Volume& volume, const Place3& from,
+           const Place3& to) {
+    constexpr double kGauss[] = {-0.7745966692414834, 0, 0.7745966692414834},
+                     kWeight[] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+    double work = 0;
+    for (int k = 0; k < 3; ++k) {
+      Place3 at;
+      for (std::size_t i = 0; i < 3; ++i) at[i] = from[i] + (to[i] - from[i]) * (1 + kGauss[k]) / 2;
+      const core::VolumeDepth depth = core::depth_at(table, core::values_of(table), place_at(at));
+      EXPECT_GT(depth.depth_m, 0);
+      const float out[] = {depth.outwards.x, depth.outwards.y, depth.outwards.z};
+      for (std::size_t i = 0; i < 3; ++i)
+        work += kWeight[k] * double{depth.depth_m} * double{out[i]} * (to[i] - from[i]) * volume.spacing_m[i];
+    }
+    net += work, absolute += std::abs(work);
+  }
+};
+
+TEST(SceneVolume, AClosedPathFromFaceToFaceGainsNothing) {
+  const schema::Volume volume = random_volume(100, 3000);
+  const std::vector<std::uint32_t> words = table_words(volume, piece_of_volume());
+  const auto& table = *reinterpret_cast<const core::VolumeTable*>(words.data());
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(0.01, 0.99);
+  std::vector<Place3> corners(200);
+  for (Place3& corner : corners)
+    for (std::size_t i = 0; i < 3; ++i) corner[i] = part(random) * static_cast<double>(volume.samples[i] - 1);
+  Work work;
+  for (std::size_t n = 0; n < corners.size(); ++n) {
+    const Place3 &from = corners[n], &to = corners[(n + 1) % corners.size()];
+    std::vector<double> faces = {0, 1};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (double face = std::ceil(std::min(from[i], to[i])); face < std::max(from[i], to[i]); ++face)
+        faces.push_back((face - from[i]) / (to[i] - from[i]));
+    std::ranges::sort(faces);
+    for (std::size_t k = 1; k < faces.size(); ++k) {
+      Place3 a, b;
+      for (std::size_t i = 0; i < 3; ++i)
+        a[i] = from[i] + faces[k - 1] * (to[i] - from[i]), b[i] = from[i] + faces[k] * (to[i] - from[i]);
+      work.add(table, volume, a, b);
+    }
+  }
+  EXPECT_GT(work.absolute, 1e-6);
+  EXPECT_LT(std::abs(work.net), 1e-6 * work.absolute) << work.net / work.absolute;
+}
+
+// The kernel's error: values of 16 bits are exact, a part of a cell has 24 bits, and about 20 operations
+// round.
+TEST(SceneVolume, ItsDepthAndGradientAreThoseOfTheWeightsInDouble) {
+  const schema::Volume volume = random_volume(-3000, 3000);
+  schema::Piece piece = piece_of_volume();
+  piece.iso = 123;
+  const std::vector<std::uint32_t> words = table_words(volume, piece);
+  const auto& table = *reinterpret_cast<const core::VolumeTable*>(words.data());
+  const double steepest = steepest_per_m(volume, -1e9);
+  std::mt19937 random(4);
+  double largest = 0;
+  for (int n = 0; n < 20000; ++n) {
+    Place3 at, place_m;
+    for (std::size_t i = 0; i < 3; ++i) {
+      at[i] = std::uniform_real_distribution<double>(0, static_cast<double>(volume.samples[i] - 1))(random);
+      place_m[i] = at[i] * volume.spacing_m[i] - volume.half_size_m()[i];
+    }
+    schema::VolumeValue exact;
+    ASSERT_TRUE(value_at(volume, place_m, exact));
+    const core::VolumeDepth depth = core::depth_at(table, core::values_of(table), place_at(at));
+    EXPECT_NEAR(double{depth.depth_m}, (exact.value - piece.iso) / piece.value_per_m, 3e-6 * 6e-3);
+    const float out[] = {depth.outwards.x, depth.outwards.y, depth.outwards.z};
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(double{out[i]}, -exact.slope_per_m[i] / piece.value_per_m,
+                  3e-6 * steepest / piece.value_per_m);
+    largest = std::max(largest, std::hypot(exact.slope_per_m[0], exact.slope_per_m[1], exact.slope_per_m[2]));
+  }
+  EXPECT_LE(largest, steepest);
+  EXPECT_GT(largest, 0.5 * steepest);
+}
+
+TEST(SceneVolume, BeyondTheOutermostValuesThereIsNoForce) {
+  const schema::Volume volume = random_volume(1000, 1000);
+  const std::vector<std::uint32_t> words = table_words(volume, piece_of_volume());
+  const auto& table = *reinterpret_cast<const core::VolumeTable*>(words.data());
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const double end : {-0.001, static_cast<double>(volume.samples[axis]) - 0.999}) {
+      Place3 at = {5, 5, 5};
+      EXPECT_GT(core::depth_at(table, core::values_of(table), place_at(at)).depth_m, 0);
+      at[axis] = end;
+      EXPECT_LT(core::depth_at(table, core::values_of(table), place_at(at)).depth_m, 0);
+    }
+}
+
+TEST(SceneVolume, ABlockThatWouldReadBeyondItsEndIsRefused) {
+  const schema::Volume volume = random_volume(0, 100);
+  const std::vector<std::uint32_t> words = table_words(volume, piece_of_volume());
+  core::SceneView view;
+  EXPECT_EQ(fault_of(block_around(words, 500), view), core::SceneFault::none);
+  const auto changed = [&](auto change) {
+    std::vector<std::uint32_t> other = words;
+    change(*reinterpret_cast<core::VolumeTable*>(other.data()));
+    return fault_of(block_around(other, 500), view);
+  };
+  EXPECT_EQ(changed([](core::VolumeTable& t) { ++t.along[2].samples; }), core::SceneFault::structure);
+  EXPECT_EQ(changed([](core::VolumeTable& t) { --t.along[0].samples; }), core::SceneFault::structure);
+  EXPECT_EQ(changed([](core::VolumeTable& t) { t.along[1].samples = 0xFFFFFFFF; }), core::SceneFault::value);
+  EXPECT_EQ(changed([](core::VolumeTable& t) { t.along[1].samples = 1; }), core::SceneFault::value);
+  EXPECT_EQ(changed([](core::VolumeTable& t) { t.along[1].per_m = NAN; }), core::SceneFault::value);
+  EXPECT_EQ(changed([](core::VolumeTable& t) { t.m_per_value = 1; }), core::SceneFault::value);
+  EXPECT_EQ(changed([](core::VolumeTable& t) { t.iso = INFINITY; }), core::SceneFault::value);
+  EXPECT_EQ(changed([](core::VolumeTable& t) { t.piece.travel = 4; }), core::SceneFault::structure);
+}
+
+// Of values that grow linearly along z the force is that of a spring of the stiffness.
+TEST(SceneVolume, OnASlopeOfValuePerMetreItIsAWall) {
+  schema::Volume volume = random_volume(0, 0);
+  for (std::size_t z = 0; z < volume.samples[2]; ++z)
+    for (std::size_t y = 0; y < volume.samples[1]; ++y)
+      for (std::size_t x = 0; x < volume.samples[0]; ++x)
+        volume.stored[volume.at(x, y, z)] = static_cast<std::int16_t>(600 * (4 - static_cast<int>(z)));
+  const std::vector<std::uint32_t> block = block_around(table_words(volume, piece_of_volume()), 500);
+  core::SceneView view;
+  ASSERT_EQ(fault_of(block, view), core::SceneFault::none);
+  core::ForceSetup setup;
+  for (int i = 0; i < 3; ++i) setup.axes[i] = {static_cast<core::AxisAlong>(i), 1e-5F, 1e9F, 1e9F};
+  setup.axis_count = 3, setup.peak_n = setup.continuous_n = 1e9F, setup.slew_n_per_s = 1e12F,
+  setup.rate_hz = 1000;
+  std::vector<float> live(view.live_words());
+  core::SceneKernel kernel;
+  kernel.set(view, setup, live.data());
+  for (std::int32_t depth = -100; depth <= 200; depth += 10) {
+    const std::int32_t counts[] = {17, -9, -depth};
+    const core::ForceOutput output = kernel.tick(counts, true);
+    EXPECT_NEAR(double{output.force_n[2]}, 500 * 1e-5 * std::max(0, depth), 1e-5);
+    EXPECT_EQ(output.force_n[0], 0);
+  }
+}
+
+}  // namespace
+}  // namespace tacto::playback
