@@ -96,6 +96,8 @@ cli::Report row_of(const Piece& piece) {
   if (!piece.mesh.empty()) row.add("mesh", piece.mesh);
   if (!piece.volume.empty())
     row.add("volume", piece.volume).add("iso", piece.iso).add("value_per_m", piece.value_per_m);
+  if (piece.carve)
+    row.add("carve_force_n", piece.carve->force_n).add("carve_value_per_s", piece.carve->value_per_s);
   add_above_0("radius_m", piece.radius_m);
   add_above_0("thickness_m", piece.thickness_m);
   row.add("stiffness_n_per_m", piece.stiffness_n_per_m);

@@ -108,8 +108,10 @@ Result<void> check_travel(const Piece& piece, const std::string& where) {
 
 Result<void> check_volume_members(const Piece& piece, const std::string& where) {
   const bool is_volume = piece.shape == PieceShape::volume;
-  const std::pair<const char*, bool> members[] = {
-      {"volume", !piece.volume.empty()}, {"iso", piece.iso != 0}, {"value_per_m", piece.value_per_m != 0}};
+  const std::pair<const char*, bool> members[] = {{"volume", !piece.volume.empty()},
+                                                  {"iso", piece.iso != 0},
+                                                  {"value_per_m", piece.value_per_m != 0},
+                                                  {"carve", piece.carve.has_value()}};
   for (const auto& [member, given] : members)
     if (given && !is_volume)
       return fail(ErrorKind::unsuitable, fmt::format("a {} has no {}", to_string(piece.shape), member),

@@ -55,6 +55,11 @@ struct TravelPoint {
   double depth_m = 0, force_n = 0;
 };
 
+/// Above this force of its spring the values of a volume around the point fall.
+struct Carving {
+  double force_n = 0, value_per_s = 0;
+};
+
 enum class PieceTextureType { recording, bump, sine };
 
 /// What a surface adds to the force of its wall.
@@ -106,6 +111,7 @@ struct Piece {
   std::string volume = {};                          ///< volume: the stem of its file, or the file
   double iso = 0;                                   ///< volume: solid where its value is above this one
   double value_per_m = 0;                           ///< volume: depth = (value - iso) / value_per_m
+  std::optional<Carving> carve = std::nullopt;      ///< volume: how the point removes material
   /// Not in the file, once its volume was read: the largest slope of the depth, squared.
   double steepness = 1;
 };

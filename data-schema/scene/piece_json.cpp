@@ -139,6 +139,7 @@ Piece piece_from(const Json& body) {
   piece.volume = text_or(body, "volume");
   piece.iso = number_or(body, "iso", 0);
   piece.value_per_m = number_or(body, "value_per_m", 0);
+  if (body.contains("carve")) piece.carve = {body["carve"]["force_n"], body["carve"]["value_per_s"]};
   for (const auto& [name, value, changes] : kShapeNumbers) piece.*value = number_or(body, name, 0);
   read_wall(piece, body);
   if (body.contains("transient")) {
@@ -165,6 +166,8 @@ Json piece_body(const Piece& piece) {
   if (piece.shape == PieceShape::mesh) body["mesh"] = piece.mesh;
   if (piece.shape == PieceShape::volume)
     body["volume"] = piece.volume, body["iso"] = piece.iso, body["value_per_m"] = piece.value_per_m;
+  if (piece.carve)
+    body["carve"] = {{"force_n", piece.carve->force_n}, {"value_per_s", piece.carve->value_per_s}};
   for (const auto& [name, value, changes] : kShapeNumbers)
     if (piece.*value != 0) body[name] = piece.*value;
   write_wall(piece, body);

@@ -355,10 +355,10 @@ Result<std::vector<Report>> rows_of_pieces(const SceneOnDevice& on) {
 // What keeps the scene from fitting; empty: it fits. `too_slow`: in words, or empty.
 void add_fit(Report& report, const PreparedScene& scene, std::optional<std::size_t> room,
              const std::string& too_slow) {
-  const std::size_t bytes = scene.bytes();
+  const std::size_t bytes = scene.room_bytes();
   const bool small = !room || bytes <= *room;
   report.add("fits", small && too_slow.empty());
-  if (!room && !scene.meshes.empty())
+  if (!room && !(scene.meshes.empty() && scene.reliefs.volumes.empty()))
     report.add("memory", "not compared: --device-memory or --board gives the room of the device");
   if (!small) {
     const std::string remedy = scene.remedy_for(*room);

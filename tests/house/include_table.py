@@ -100,7 +100,7 @@ MAY_INCLUDE = {
         "data-schema/{base files texture} spatial/{dsp/filter dsp/resample numbers texture}",
     "playback/choose": "data-schema/{results scene} firmware-host/{boards core/scene} playback/{model prepare}",
     "playback/cli":
-        "data-schema/{base command control device files recording report scene session texture} "
+        "data-schema/{base command control device files recording report scene session texture volume} "
         "firmware-host/{boards core/firmware core/scene link} playback/{choose control host-loop model player prepare/relief prepare/scene "
         "render session strokes}",
     "playback/control": "data-schema/{base control files}",
@@ -126,7 +126,7 @@ MAY_INCLUDE = {
         "data-schema/{base device files recording scene texture transducer} firmware-host/{core/kernel core/scene sim/planar} "
         "playback/{choose model prepare prepare/scene render/reference} spatial/{dsp/filter features}",
     "playback/render/reference":
-        "data-schema/{base device mesh} firmware-host/core/{kernel scene} playback/{model prepare prepare/relief prepare/scene} "
+        "data-schema/{base device mesh volume} firmware-host/core/{kernel scene} playback/{model prepare prepare/relief prepare/scene} "
         "spatial/{dsp/filter dsp/fourier}",
     "playback/session":
         "data-schema/{base files session wav} firmware-host/{core/firmware core/kernel core/wire link} playback/model",

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "firmware-host/core/firmware/firmware.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
 #include "firmware-host/core/scene/volume.hpp"
 #include "playback/prepare/scene/volume_block.hpp"
@@ -217,6 +218,120 @@ TEST(SceneVolume, OnASlopeOfValuePerMetreItIsAWall) {
     EXPECT_NEAR(double{output.force_n[2]}, 500 * 1e-5 * std::max(0, depth), 1e-5);
     EXPECT_EQ(output.force_n[0], 0);
   }
+}
+
+// A piece that carves, and its block on a device without limits.
+struct CarvedScene {
+  std::vector<std::uint32_t> block;
+  core::SceneView view;
+  core::SceneKernel kernel;
+  core::ForceSetup setup;
+  std::vector<float> live;
+
+  CarvedScene(const schema::Volume& volume, double force_n, double value_per_s) {
+    schema::Piece piece = piece_of_volume();
+    piece.iso = 0.5;
+    piece.carve = {force_n, value_per_s};
+    std::vector<std::uint32_t> table = table_words(volume, piece);
+    std::uint32_t carved = 0;
+    EXPECT_TRUE(set_carving(piece, volume, 1000, "s", carved, table));
+    block = block_around(table, 500);
+    EXPECT_EQ(fault_of(block, view), core::SceneFault::none);
+    EXPECT_EQ(view.carved_words, carved);
+    for (int i = 0; i < 3; ++i) setup.axes[i] = {static_cast<core::AxisAlong>(i), 1e-5F, 1e9F, 1e9F};
+    setup.axis_count = 3, setup.peak_n = setup.continuous_n = 1e9F, setup.slew_n_per_s = 1e12F;
+    setup.rate_hz = 1000;
+    live.resize(view.live_words());
+    kernel.set(view, setup, live.data());
+  }
+  std::vector<std::int16_t> values(const schema::Volume& volume) const {
+    const std::int16_t* const first = kernel.carved_values(0);
+    return {first, first + volume.stored.size()};
+  }
+};
+
+schema::Volume slope_along_z() {
+  schema::Volume volume = random_volume(0, 0);
+  for (std::size_t z = 0; z < volume.samples[2]; ++z)
+    for (std::size_t i = 0; i < 13 * 11; ++i)
+      volume.stored[z * 13 * 11 + i] = static_cast<std::int16_t>(600 * (4 - static_cast<int>(z)));
+  return volume;
+}
+
+TEST(SceneVolume, TicksInACellRemoveEightTimesTheirFall) {
+  const schema::Volume volume = slope_along_z();
+  CarvedScene scene(volume, 0.05, 2500);  // 2.5 steps a tick: 2 and 3 by turns
+  const std::int32_t deep[] = {3, 3, -100};
+  constexpr int kTicks = 40;
+  for (int i = 0; i < kTicks; ++i) scene.kernel.tick(deep, true);
+  std::vector<std::int16_t> left = scene.values(volume);
+  long removed = 0;
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < left.size(); ++i)
+    removed += volume.stored[i] - left[i], changed += volume.stored[i] != left[i];
+  EXPECT_EQ(removed, 8 * kTicks * 5 / 2);
+  EXPECT_EQ(changed, 8);
+  // Shallow, the force is below the threshold.
+  const std::int32_t shallow[] = {160, 3, -9};
+  for (int i = 0; i < kTicks; ++i) scene.kernel.tick(shallow, true);
+  EXPECT_EQ(scene.values(volume), left);
+  // Until the force has fallen to the threshold, and never below the smallest value.
+  double last_n = 1e9;
+  for (int i = 0; i < 2000; ++i) last_n = double{scene.kernel.tick(deep, true).force_n[2]};
+  EXPECT_LT(last_n, 0.06);
+  left = scene.values(volume);
+  EXPECT_GE(*std::ranges::min_element(left), *std::ranges::min_element(volume.stored));
+  // The same ticks on a kernel that was set again: the same bits.
+  scene.kernel.set(scene.view, scene.setup, scene.live.data());
+  EXPECT_EQ(scene.values(volume), volume.stored);
+}
+
+TEST(SceneVolume, CarvingAtAnyRateNeverGivesEnergy) {
+  const schema::Volume volume = slope_along_z();
+  std::mt19937 random(8);
+  for (const double value_per_s : {30.0, 4e4, 3e6}) {
+    CarvedScene scene(volume, 0.1, value_per_s);
+    double work = 0, last_m[2] = {0, 0.0008};
+    float last_n[2] = {};
+    for (int i = 0; i < 20000; ++i) {
+      const double z_m = 0.0008 * std::cos(0.01 * i) + 1e-5 * static_cast<double>(random() % 5);
+      const std::int32_t counts[] = {static_cast<std::int32_t>(150 * std::sin(0.003 * i)), 7,
+                                     static_cast<std::int32_t>(std::lround(z_m / 1e-5))};
+      const core::ForceOutput output = scene.kernel.tick(counts, true);
+      for (const int axis : {0, 2}) {
+        const int k = axis / 2;
+        work += (counts[axis] * 1e-5 - last_m[k]) * 0.5 * (double{output.force_n[axis]} + double{last_n[k]});
+        last_m[k] = counts[axis] * 1e-5, last_n[k] = output.force_n[axis];
+      }
+    }
+    EXPECT_LE(work, 1e-6) << value_per_s;
+  }
+}
+
+TEST(SceneVolume, ADeviceNeedsRoomForTheValuesTwice) {
+  schema::Volume volume = random_volume(0, 0);
+  volume.samples = {32, 16, 16};
+  volume.stored.assign(32 * 16 * 16, 1);
+  const CarvedScene scene(volume, 0.05, 2500);
+  std::vector<float> memory(10000);
+  const auto answer_in = [&](std::size_t words) {
+    core::SceneUpload upload(memory.data(), static_cast<std::uint32_t>(words));
+    wire::ScenePart part{};
+    part.bytes = static_cast<std::uint32_t>(scene.block.size() * 4);
+    core::Reply reply{};
+    for (; part.first < part.bytes; part.first += part.count) {
+      part.count =
+          static_cast<std::uint16_t>(std::min<std::size_t>(wire::kMaxScenePart, part.bytes - part.first));
+      std::memcpy(part.data, reinterpret_cast<const std::uint8_t*>(scene.block.data()) + part.first,
+                  part.count);
+      reply = upload.part(part);
+      if (reply.code != wire::AnswerCode::ok) break;
+    }
+    return reply.code;
+  };
+  const std::size_t needed = scene.block.size() + scene.view.live_words();
+  EXPECT_EQ(answer_in(needed), wire::AnswerCode::ok);
+  EXPECT_EQ(answer_in(needed - 1), wire::AnswerCode::too_large);
 }
 
 }  // namespace

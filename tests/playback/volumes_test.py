@@ -247,7 +247,58 @@ def a_played_volume_replays_to_the_bit():
     assert pathlib.Path("s.png").stat().st_size > 5000
 
 
+def carved_by(values, spacing, iso, counts, stiffness, force_n, per_tick):
+    """Tick by tick in NumPy: the trilinear gradient of the potential, then the fall of the eight values."""
+    left, lowest, rest = values.astype(int).copy(), values.min(), 0.0
+    corners = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)])
+    for count in counts:
+        at = count * STEP_M / spacing + (np.array(values.shape[::-1]) - 1) / 2
+        first = np.floor(at).astype(int)
+        if (first < 0).any() or (first > np.array(values.shape[::-1]) - 2).any():
+            continue
+        index = tuple((first + corners).T[::-1])
+        weights = np.where(corners == 1, at - first, 1 - (at - first))
+        depth = (left[index] @ weights.prod(1) - iso) / 1e6
+        slope = [left[index] @ (np.where(corners[:, k] == 1, 1, -1) / spacing * np.delete(weights, k, 1).prod(1)) / 1e6 for k in range(3)]
+        if depth > 0 and stiffness * depth * np.linalg.norm(slope) > force_n:
+            rest += per_tick
+            left[index] = np.maximum(lowest, left[index] - int(rest))
+            rest -= int(rest)
+    return left
+
+
+def what_was_carved_replays_and_is_exported():
+    values = ball((31, 31, 31), 9.0, 0.8)
+    write_nrrd("v.nrrd", values, spacing="spacings: 0.8 0.8 0.8")
+    run_json("import", "v.nrrd", "--unit", "mm", "-o", "v")
+    write_scene("s", "v", carve={"force_n": 0.6, "value_per_s": 20500})
+    time_s, places = path_through(2, 0.008)
+    write_path("p.csv", time_s, places)
+    report = run_json("play", "s.scene.json", "-d", "sim:arm", "--finger-path", "p.csv", "--onset", "0s", "-o", "played")
+    assert report["lost_ticks"] == 0, report
+    again = run_json("replay", "played", "--volume", "v", "-o", "carved")
+    assert again["same_to_the_bit"] is True and again["carved_values"] > 100 and again["files"] == ["carved.volume.nc"], again
+    left, scale, _, spacing = values_in("carved.volume.nc")
+    assert scale == 1 and np.allclose(spacing, 8e-4, rtol=1e-12) and (left <= values).all() and left.min() == values.min()
+    run_json("session", "played", "-o", "played.csv")
+    table = np.genfromtxt("played.csv", delimiter=",", names=True)
+    counts = np.column_stack([table[f"{axis}_m"] for axis in "xyz"]) / STEP_M
+    assert abs(counts - np.rint(counts)).max() < 1e-3
+    expected = carved_by(values, 8e-4, 0, np.rint(counts), 400, 0.6, 20.5)
+    assert (left != values).sum() == again["carved_values"] and (left != expected).sum() <= 8, (left != expected).sum()
+    for arguments, code in ((("--volume", "v"), USAGE), (("-o", "w"), USAGE), (("--volume", "v", "-o", "carved"), USAGE), (("--volume", "carved", "-o", "w"), UNSUITABLE), (("--volume", "none", "-o", "w"), NOT_FOUND)):
+        error_of("replay", "played", *arguments, code=code)
+    assert not pathlib.Path("w.volume.nc").exists()
+    # The reference in double precision carves the same.
+    said = run_json("render", "s.scene.json", "--finger-path", "p.csv", "--device", "arm", "-o", "f.csv")
+    assert said["largest_rounding_n"] < 1e-4 * said["force_peak_n"] and said["other_side_ticks"] <= 0.01 * said["ticks"], said
+    tight = run_json("explain", "s.scene.json", "--device", "arm")
+    assert tight["live_bytes"] > 2 * 31**3 and run_json("explain", "s.scene.json", "--device", "arm", "--device-memory", str(tight["block_bytes"] + 1000) + "B", code=None)["fits"] is False, tight
+    write_scene("s", "v", carve={"force_n": 0.6, "value_per_s": 1e12})
+    assert error_of("explain", "s.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("/carve/value_per_s")
+
+
 if __name__ == "__main__":
     for test in (every_type_and_encoding_gives_the_values, directions_and_units_are_those_of_the_file, what_is_wrong_with_a_file_is_said, a_changed_volume_is_found, what_is_wrong_with_a_scene_is_said,
-                 a_rendered_force_is_that_of_scipys_interpolation, a_played_volume_replays_to_the_bit):
+                 a_rendered_force_is_that_of_scipys_interpolation, a_played_volume_replays_to_the_bit, what_was_carved_replays_and_is_exported):
         tacto.in_folder(test)

@@ -477,7 +477,9 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
     }
     if (is_volume(scene, i) && !beyond) {
       const auto& volume = table_of<VolumeTable>(scene, scene.layers[i]);
-      const VolumeTouch in = touch_volume(volume, hand.counts);
+      auto* const carved = reinterpret_cast<uint32_t*>(live + scene.uncarved_words()) + volume.carved;
+      const VolumeTouch in =
+          touch_volume(volume, hand.counts, number[kPieceStiffness], volume.carve_n > 0 ? carved : nullptr);
       touch.depth_m = length(in.push_m), touch.outside_m = in.outside_m;
       if (touch.depth_m > 0) normal = (1 / touch.depth_m) * in.push_m;
     }

@@ -32,6 +32,7 @@ constexpr float kMostTransient_n_s_per_m = 1e6F;
 constexpr float kLeastLoss = 1e-6F;  // of a transient from tick to tick
 constexpr float kMostPasses_per_m = 1e6F;
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
+constexpr uint32_t kMostFall = 0xFFFF0000;
 constexpr float kMostVoxels_per_m = 1e7F, kMost_m_per_value = 0.1F, kMostIso = 1e6F;
 constexpr float kThinnestSkin_m = 1e-12F, kThickestSkin_m = 1e-3F;
 
@@ -323,9 +324,8 @@ bool sound(const VolumeAxis& axis) noexcept {
   return axis.samples >= 2 && axis.samples <= kMostVolumeSamples && within(axis.per_m, 0, kMostVoxels_per_m);
 }
 
-// Without a travel and a texture.
-SceneFault check_volume(const SceneView& view, const SceneLayer& layer, uint32_t room,
-                        uint32_t& words) noexcept {
+// Without a travel and a texture. Adds its carved words.
+SceneFault check_volume(SceneView& view, const SceneLayer& layer, uint32_t room, uint32_t& words) noexcept {
   constexpr uint32_t kHead = sizeof(VolumeTable) / sizeof(uint32_t);
   if (room < kHead) return SceneFault::structure;
   const auto& table = table_of<VolumeTable>(view, layer);
@@ -338,14 +338,19 @@ SceneFault check_volume(const SceneView& view, const SceneLayer& layer, uint32_t
   const uint64_t all = kHead + (values + 1) / 2;
   if (all > room) return SceneFault::structure;
   words = static_cast<uint32_t>(all);
-  return sound(table.piece, SceneLayerKind::volume) && within(table.iso, -kMostIso, kMostIso) &&
+  if (table.carve_n > 0) {
+    if (table.carved != view.carved_words) return SceneFault::structure;
+    view.carved_words += carved_words_of(table);
+  }
+  return within(table.carve_n, 0, kMostKappa_n) && table.carve_per_tick <= kMostFall &&
+                 table.carve_to >= INT16_MIN && table.carve_to <= INT16_MAX &&
+                 sound(table.piece, SceneLayerKind::volume) && within(table.iso, -kMostIso, kMostIso) &&
                  within(table.m_per_value, 0, kMost_m_per_value)
              ? SceneFault::none
              : SceneFault::value;
 }
 
-SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,
-                       uint32_t& words) noexcept {
+SceneFault check_table(SceneView& view, const SceneLayer& layer, uint32_t room, uint32_t& words) noexcept {
   switch (static_cast<SceneLayerKind>(layer.kind)) {
     case SceneLayerKind::grooves:
       return check_surface(view, layer, &GroovesTable::harmonics, kMostHarmonics, room, words);

@@ -360,11 +360,14 @@ struct SceneView {
   const float* numbers = nullptr;
   const uint32_t* tables = nullptr;
   uint32_t patch_count = 0, layer_count = 0, number_count = 0, table_words = 0;
-  bool needs_speed = false;  ///< it has a layer whose force depends on the speed
-  bool in_space = false;     ///< its layers are pieces, all of one patch; that adds: contact `add`
+  bool needs_speed = false;   ///< it has a layer whose force depends on the speed
+  bool in_space = false;      ///< its layers are pieces, all of one patch; that adds: contact `add`
+  uint32_t carved_words = 0;  ///< of volumes that can be carved
 
   /// Of 4 bytes, of the memory that a kernel needs beside the block.
-  uint32_t live_words() const noexcept { return number_count + patch_count * kPatchWords; }
+  uint32_t live_words() const noexcept { return uncarved_words() + carved_words; }
+  /// Of these before the carved words.
+  uint32_t uncarved_words() const noexcept { return number_count + patch_count * kPatchWords; }
 };
 
 enum class SceneFault : uint8_t {

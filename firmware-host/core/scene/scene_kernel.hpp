@@ -64,6 +64,9 @@ class SceneKernel {
   /// Whether a body or lasso is this layer and acted in the last tick; then sets its place in the plane, in
   /// m.
   bool body_place(uint32_t patch, uint32_t layer, PlaneVector& place_m) const noexcept;
+  const SceneView& scene() const noexcept { return scene_; }
+  /// The values of a volume that can be carved, as they are after the last tick; null of other layers.
+  const int16_t* carved_values(uint32_t layer) const noexcept;
   float rate_hz() const noexcept { return setup_.rate_hz; }
   bool at_rest() const noexcept { return envelope_.at_rest() && limiter_.at_rest(); }
 

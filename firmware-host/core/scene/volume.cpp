@@ -24,6 +24,28 @@ bool cell_of(const VolumeTable& table, const VolumePlace& place, Cell& cell) noe
   return true;
 }
 
+int16_t* carved_values(uint32_t* carved) noexcept {
+  return reinterpret_cast<int16_t*>(carved + 1);
+}
+
+// Whole values; the rest is kept for the next tick that carves.
+int32_t fall_of_tick(const VolumeTable& table, uint32_t& rest) noexcept {
+  const uint32_t sum = rest + table.carve_per_tick;
+  rest = sum & 0xFFFF;
+  return static_cast<int32_t>(sum >> 16);
+}
+
+void carve(const VolumeTable& table, const VolumePlace& place, int32_t fall, int16_t* values) noexcept {
+  Cell cell;
+  if (!cell_of(table, place, cell)) return;
+  const uint32_t row = table.along[0].samples, layer = row * table.along[1].samples;
+  for (uint32_t i = 0; i < 8; ++i) {
+    int16_t& value = values[cell.first + (i & 1) + (i >> 1 & 1) * row + (i >> 2) * layer];
+    const int32_t least = value < table.carve_to ? value : table.carve_to, lower = value - fall;
+    value = static_cast<int16_t>(lower > least ? lower : least);
+  }
+}
+
 }  // namespace
 
 VolumePlace place_in(const VolumeTable& table, const int32_t (&counts)[3]) noexcept {
@@ -62,10 +84,27 @@ VolumeDepth depth_at(const VolumeTable& table, const int16_t* values, const Volu
            out(1, along_y[0] + cell.z * (along_y[1] - along_y[0])), out(2, along_z)}};
 }
 
-VolumeTouch touch_volume(const VolumeTable& table, const int32_t (&counts)[3]) noexcept {
-  const VolumeDepth at = depth_at(table, values_of(table), place_in(table, counts));
+VolumeTouch touch_volume(const VolumeTable& table, const int32_t (&counts)[3], float stiffness,
+                         uint32_t* carved) noexcept {
+  const int16_t* const values = carved != nullptr ? carved_values(carved) : values_of(table);
+  const VolumePlace place = place_in(table, counts);
+  const VolumeDepth at = depth_at(table, values, place);
   if (!(at.depth_m > 0)) return {{}, -at.depth_m};
-  return {at.depth_m * at.outwards, 0};
+  const SpaceVector push_m = at.depth_m * at.outwards;
+  if (carved != nullptr && stiffness * length(push_m) > table.carve_n)
+    carve(table, place, fall_of_tick(table, *carved), carved_values(carved));
+  return {push_m, 0};
+}
+
+void uncarve(const SceneView& scene, uint32_t* carved_words) noexcept {
+  for (uint32_t i = 0; i < scene.layer_count && scene.carved_words > 0; ++i) {
+    if (scene.layers[i].kind != static_cast<uint16_t>(SceneLayerKind::volume)) continue;
+    const auto& table = table_of<VolumeTable>(scene, scene.layers[i]);
+    if (!(table.carve_n > 0)) continue;
+    uint32_t* const own = carved_words + table.carved;
+    *own = 0;
+    __builtin_memcpy(own + 1, values_of(table), value_words_of(table) * sizeof(uint32_t));
+  }
 }
 
 }  // namespace tacto::core

@@ -24,10 +24,23 @@ static_assert(sizeof(VolumeAxis) == 24);
 struct VolumeTable {
   PieceTable piece;  ///< its form is not used: a unit vector and the half extent
   VolumeAxis along[3];
-  float iso = 0;          ///< the value of the surface
-  float m_per_value = 0;  ///< of the depth
+  float iso = 0;                ///< the value of the surface
+  float m_per_value = 0;        ///< of the depth
+  float carve_n = 0;            ///< force of the spring above which the point removes material; 0: never
+  uint32_t carve_per_tick = 0;  ///< how much then the eight values around it fall, x 2^16
+  int32_t carve_to = 0;         ///< no value falls below this one
+  uint32_t carved = 0;          ///< with carve_n: place of its state among the carved words
 };
-static_assert(sizeof(VolumeTable) == 176);
+static_assert(sizeof(VolumeTable) == 192);
+
+inline uint32_t value_words_of(const VolumeTable& table) noexcept {
+  return (table.along[0].samples * table.along[1].samples * table.along[2].samples + 1) / 2;
+}
+
+/// Of the state of a volume that can be carved: a rest of carve_per_tick, then the values as they are.
+inline uint32_t carved_words_of(const VolumeTable& table) noexcept {
+  return table.carve_n > 0 ? 1 + value_words_of(table) : 0;
+}
 
 inline const int16_t* values_of(const VolumeTable& table) noexcept {
   return reinterpret_cast<const int16_t*>(&table + 1);
@@ -58,7 +71,13 @@ struct VolumeTouch {
 };
 
 /// With the stiffness K the force is K x push_m, the gradient of the potential K depth^2 / 2 of the depths
-/// above 0: so a closed path gains no energy. Safe in the tick: one step.
-VolumeTouch touch_volume(const VolumeTable& table, const int32_t (&counts)[3]) noexcept;
+/// above 0: so a closed path gains no energy. Where it is above carve_n the values around the point fall for
+/// the next tick: a potential that falls gives no energy either. `carved`: its state, or null if it has none.
+/// Safe in the tick: one step.
+VolumeTouch touch_volume(const VolumeTable& table, const int32_t (&counts)[3], float stiffness,
+                         uint32_t* carved) noexcept;
+
+/// Sets the state of all volumes that can be carved to their tables. Between ticks.
+void uncarve(const SceneView& scene, uint32_t* carved_words) noexcept;
 
 }  // namespace tacto::core

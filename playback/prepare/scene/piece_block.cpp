@@ -248,6 +248,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
   std::vector<core::SceneLayer> layers;
   std::vector<float> numbers;
   std::vector<std::uint32_t> tables;
+  std::uint32_t carved = 0;
   for (const Piece& piece : scene.pieces) {
     const std::string at = fmt::format("{}#/pieces/{}", where, layers.size());
     for (const Piece& end : slider_ends(piece)) TACTO_TRY(check_wall(end, device, rate_hz, hand, at));
@@ -268,7 +269,9 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
       auto placed = table_at({piece.x_m, piece.y_m, piece.z_m}, base.steps, at);
       TACTO_TRY(placed);
       placed->transient = *transient;
-      append_words(tables, volume_table(piece, *base.reliefs.volumes.at(piece.volume), *placed, base.steps));
+      auto table = volume_table(piece, *base.reliefs.volumes.at(piece.volume), *placed, base.steps);
+      TACTO_TRY(set_carving(piece, *base.reliefs.volumes.at(piece.volume), rate_hz, at, carved, table));
+      append_words(tables, table);
       continue;
     }
     auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);

@@ -65,6 +65,8 @@ struct PreparedScene {
   schema::PieceContact contact = schema::PieceContact::ghost;
 
   std::size_t bytes() const { return words.size() * sizeof(std::uint32_t); }
+  /// What the device needs to have free for it: the block, and the values of volumes that can be carved.
+  std::size_t room_bytes() const { return bytes() + view().carved_words * sizeof(std::uint32_t); }
   /// Points into this object.
   core::SceneView view() const;
   /// Other patches for the same device, each of them once part of such a scene.

@@ -84,6 +84,34 @@ std::vector<std::uint32_t> volume_table(const Piece& piece, const Volume& volume
   return words;
 }
 
+double carve_per_tick(const Piece& piece, const Volume& volume, double rate_hz) {
+  return std::round(piece.carve->value_per_s / volume.scale / rate_hz * 0x1p16);
+}
+
+Result<void> set_carving(const Piece& piece, const Volume& volume, double rate_hz, const std::string& where,
+                         std::uint32_t& carved, std::vector<std::uint32_t>& words) {
+  if (!piece.carve) return {};
+  constexpr double kMost = 65535 * 0x1p16;
+  const double per_tick = carve_per_tick(piece, volume, rate_hz);
+  if (!(per_tick >= 1 && per_tick <= kMost))
+    return schema::fail(
+        schema::ErrorKind::unsuitable,
+        fmt::format("{:g} a second are {:g} steps of the stored values in a tick of {:g} Hz",
+                    piece.carve->value_per_s, piece.carve->value_per_s / volume.scale / rate_hz, rate_hz),
+        where + "/carve/value_per_s",
+        fmt::format("give {:.3g} to {:.3g}", volume.scale * rate_hz / 0x1p16,
+                    65535 * volume.scale * rate_hz));
+  core::VolumeTable table;
+  std::memcpy(static_cast<void*>(&table), words.data(), sizeof table);
+  table.carve_n = static_cast<float>(piece.carve->force_n);
+  table.carve_per_tick = static_cast<std::uint32_t>(per_tick);
+  table.carve_to = std::ranges::min(volume.stored);
+  table.carved = carved;
+  carved += carved_words_of(table);
+  std::memcpy(words.data(), &table, sizeof table);
+  return {};
+}
+
 bool solid_at_border(const Piece& piece, const Volume& volume) {
   const auto [columns, rows, layers] = volume.samples;
   const double above = stored_iso(piece, volume);
@@ -97,10 +125,13 @@ bool solid_at_border(const Piece& piece, const Volume& volume) {
 }
 
 std::string remedy_for_volumes(const PreparedScene& scene, std::size_t room) {
-  std::size_t values = 0;
-  for (const Piece& piece : scene.pieces)
-    if (!piece.volume.empty()) values += scene.reliefs.volumes.at(piece.volume)->stored.size();
-  const std::size_t bytes = sizeof(std::int16_t) * values, others = scene.bytes() - bytes;
+  std::size_t values = 0, bytes = 0;
+  for (const Piece& piece : scene.pieces) {
+    if (piece.volume.empty()) continue;
+    const std::size_t own = scene.reliefs.volumes.at(piece.volume)->stored.size();
+    values += own, bytes += sizeof(std::int16_t) * own * (piece.carve ? 2 : 1);
+  }
+  const std::size_t others = scene.room_bytes() - bytes;
   if (others >= room) return "leave pieces out";
   return fmt::format("crop its volumes, or give them a larger spacing: of {} values {:.0f} fit", values,
                      std::floor(static_cast<double>(room - others) / static_cast<double>(bytes) *

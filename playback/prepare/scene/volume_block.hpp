@@ -24,6 +24,16 @@ schema::Result<void> read_piece_volume(schema::Piece& piece, const std::string& 
 std::vector<std::uint32_t> volume_table(const schema::Piece& piece, const schema::Volume& volume,
                                         const core::PieceTable& placed, const PlaneSteps& steps);
 
+/// How a tick removes material, in such a table; `carved`: the carved words of the volumes before it, to
+/// which its own are added. Errors: unsuitable: more than 65,535 steps of the stored values a tick, or less
+/// than 2^-16.
+schema::Result<void> set_carving(const schema::Piece& piece, const schema::Volume& volume, double rate_hz,
+                                 const std::string& where, std::uint32_t& carved,
+                                 std::vector<std::uint32_t>& table);
+
+/// Steps of the stored values by which they fall in a tick that carves, x 2^16. Precondition: it has `carve`.
+double carve_per_tick(const schema::Piece& piece, const schema::Volume& volume, double rate_hz);
+
 /// Whether an outermost value is above `iso`.
 bool solid_at_border(const schema::Piece& piece, const schema::Volume& volume);
 

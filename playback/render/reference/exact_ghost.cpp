@@ -8,6 +8,7 @@
 
 #include "firmware-host/core/scene/piece_texture.hpp"
 #include "playback/prepare/scene/contact_transient.hpp"
+#include "playback/prepare/scene/volume_block.hpp"
 #include "playback/render/reference/exact_relief.hpp"
 
 namespace tacto::playback {
@@ -63,6 +64,12 @@ ExactGhost::ExactGhost(const PreparedScene& scene, const schema::Device& device,
                           ? std::optional<ExactMesh>(std::in_place, scene.meshes.at(piece.mesh),
                                                      SpaceMetres{piece.x_m, piece.y_m, piece.z_m})
                           : std::nullopt);
+  for (const Piece& piece : scene.pieces)
+    if (const schema::Volume* const volume =
+            piece.carve ? scene.reliefs.volumes.at(piece.volume).get() : nullptr)
+      carved_.push_back(CarvedVolume{*volume, std::ranges::min(volume->stored), 0});
+    else
+      carved_.emplace_back();
 }
 
 ExactGhost::Surface ExactGhost::surface_at(const Piece& piece, const SpaceMetres& place_m) const {
@@ -378,18 +385,35 @@ SpaceMetres ExactGhost::texture_force(const Piece& piece, Wall& wall, double& no
 }
 
 // As core::touch_volume.
-ExactGhost::Held ExactGhost::in_volume(std::size_t index, const SpaceMetres& hand_m,
-                                       double& outside_m) const {
+ExactGhost::Held ExactGhost::in_volume(std::size_t index, const SpaceMetres& hand_m, double& outside_m) {
   const Piece& piece = scene_.pieces[index];
+  const SpaceMetres place_m = sum_of(hand_m, -1, {piece.x_m, piece.y_m, piece.z_m});
   schema::VolumeValue at;
-  if (!value_at(*scene_.reliefs.volumes.at(piece.volume),
-                sum_of(hand_m, -1, {piece.x_m, piece.y_m, piece.z_m}), at))
+  if (!value_at(carved_[index] ? carved_[index]->volume : *scene_.reliefs.volumes.at(piece.volume), place_m,
+                at))
     return {{0, 0, 1}, 0};
   const double depth_m = (at.value - piece.iso) / piece.value_per_m;
   outside_m = std::max(0.0, -depth_m);
   const SpaceMetres push_m = sum_of({}, -std::max(0.0, depth_m) / piece.value_per_m, at.slope_per_m);
   const double size_m = size_of(push_m);
+  if (carved_[index] && piece.stiffness_n_per_m * size_m > piece.carve->force_n) carve(index, place_m);
   return size_m > 0 ? Held{sum_of({}, 1 / size_m, push_m), size_m} : Held{{0, 0, 1}, 0};
+}
+
+void ExactGhost::carve(std::size_t index, const SpaceMetres& place_m) {
+  auto& [volume, lowest, uncut] = *carved_[index];
+  uncut += carve_per_tick(scene_.pieces[index], volume, 1 / tick_s_) / 0x1p16;
+  const double fall = std::floor(uncut);
+  uncut -= fall;
+  std::array<std::size_t, 3> first;
+  for (std::size_t i = 0; i < 3; ++i)
+    first[i] = static_cast<std::size_t>((place_m[i] + volume.half_size_m()[i]) / volume.spacing_m[i]);
+  for (std::size_t z = first[2]; z < first[2] + 2; ++z)
+    for (std::size_t y = first[1]; y < first[1] + 2; ++y)
+      for (std::size_t x = first[0]; x < first[0] + 2; ++x) {
+        std::int16_t& value = volume.stored[volume.at(x, y, z)];
+        value = static_cast<std::int16_t>(std::max<double>(lowest, value - fall));
+      }
 }
 
 SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "data-schema/device/device.hpp"
+#include "data-schema/volume/volume.hpp"
 #include "playback/prepare/scene/prepared_scene.hpp"
 #include "playback/render/reference/exact_mesh.hpp"
 
@@ -57,6 +58,11 @@ class ExactGhost {
   struct TouchedTriangle {
     std::size_t piece = 0, triangle = 0;
   };
+  struct CarvedVolume {
+    schema::Volume volume;
+    std::int16_t lowest = 0;
+    double uncut = 0;  // the part of a step that a tick left
+  };
   void add_triangles(std::vector<Touch>& touches);
   Surface surface_at(const schema::Piece& piece, const SpaceMetres& place_m) const;
   double entry_of(const schema::Piece& piece, const SpaceMetres& from_m, const SpaceMetres& way_m) const;
@@ -74,7 +80,8 @@ class ExactGhost {
                             const SpaceMetres& normal, const SpaceMetres& place_m,
                             const SpaceMetres& speed_mps) const;
 
-  Held in_volume(std::size_t piece, const SpaceMetres& hand_m, double& outside_m) const;
+  Held in_volume(std::size_t piece, const SpaceMetres& hand_m, double& outside_m);
+  void carve(std::size_t piece, const SpaceMetres& place_m);
 
   const PreparedScene& scene_;
   const schema::Device& device_;
@@ -82,8 +89,9 @@ class ExactGhost {
   bool placed_ = false;
   SpaceMetres ghost_m_ = {};
   std::vector<Wall> walls_;
-  std::vector<std::optional<ExactMesh>> meshes_;  // of each piece
-  std::vector<TouchedTriangle> triangles_;        // that the ghost met and is still near
+  std::vector<std::optional<ExactMesh>> meshes_;     // of each piece
+  std::vector<std::optional<CarvedVolume>> carved_;  // of each piece that can be carved
+  std::vector<TouchedTriangle> triangles_;           // that the ghost met and is still near
 };
 
 }  // namespace tacto::playback
