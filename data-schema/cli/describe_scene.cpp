@@ -138,6 +138,7 @@ void add_pieces(cli::Report& report, const Scene& scene) {
   for (const Piece& piece : scene.pieces) rows.push_back(row_of(piece));
   report.add("contact", to_string(scene.contact)).add("pieces", std::move(rows));
   if (scene.point_radius_m > 0) report.add("radius_m", scene.point_radius_m);
+  if (!scene.tool_m.empty()) report.add("tool_points", scene.tool_m.size());
 }
 
 }  // namespace

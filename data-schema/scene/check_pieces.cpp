@@ -196,6 +196,10 @@ Result<void> check_pieces(const Scene& scene, const std::string& where) {
                   where + "#/radius_m",
                   "leave radius_m out, or make the piece larger by the radius; planes, spheres and "
                   "cylinders are exact");
+    if (!scene.tool_m.empty() && piece.shape != PieceShape::volume)
+      return fail(ErrorKind::unsuitable,
+                  fmt::format("a tool of points does not touch a {}", to_string(piece.shape)),
+                  where + "#/tool_m", "it touches volumes; leave it out, or the other pieces");
     if (scene.contact == PieceContact::add && piece.shape == PieceShape::mesh)
       return fail(ErrorKind::unsuitable, "a mesh does not push to its nearest face", where + "#/contact",
                   "leave contact out: a ghost point touches meshes");

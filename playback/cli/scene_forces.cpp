@@ -296,6 +296,7 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
   one.pieces = {piece};
   one.point_radius_m = on.scene.point_radius_m;
   one.contact = on.scene.contact;
+  one.tool_m = on.scene.tool_m;
   const auto alone = prepare_pieces(one, on.file, on.device, double{on.setup.rate_hz}, std::nullopt);
   TACTO_TRY(alone);
   Report row;

@@ -121,6 +121,9 @@ def print_table(ours, theirs, used):
     mesh = ours["GhostOnMeshOf99856/iterations:200000"]
     print(f"\n{'ghost point, 99,856 triangles, 0.2 m/s, 1 mm deep':56} median {mesh['median_ns'] / 1e3:.2f} us (at most 1.2), p99 {mesh['p99_ns'] / 1e3:.2f} us (4); "
           f"force within {mesh['worst_angle_mrad']:.1f} mrad of the ball's normal (half angle of a facet: 14.0)")
+    for points, most, ticks in ((1, 0.3, 200000), (1000, 20, 20000)):
+        volume = ours[f"TouchVolume/{points}/iterations:{ticks}"]
+        print(f"{f'volume of 256^3 values, {points} point' + 's' * (points > 1):56} median {volume['median_ns'] / 1e3:.2f} us (at most {most}), p99 {volume['p99_ns'] / 1e3:.2f} us")
     print(f"\npeak memory above an idle process ({used['idle_mb']:.0f} MB):")
     for what, mb in used["above_idle_mb"].items():
         print(f"  {what:24} {mb:6.1f} MB")

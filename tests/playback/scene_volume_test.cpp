@@ -334,5 +334,46 @@ TEST(SceneVolume, ADeviceNeedsRoomForTheValuesTwice) {
   EXPECT_EQ(answer_in(needed - 1), wire::AnswerCode::too_large);
 }
 
+TEST(SceneVolume, TheForceOfAToolIsTheSumOverItsPoints) {
+  const schema::Volume volume = random_volume(-3000, 3000);
+  const schema::Piece piece = piece_of_volume();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> at_m(-1e-3, 1e-3);
+  std::vector<std::array<double, 3>> tool_m(300);
+  for (auto& point_m : tool_m)
+    for (double& each : point_m) each = at_m(random);
+  tool_m[0] = {0, 0, 0};
+  const auto words = volume_table(piece, volume, core::PieceTable{}, {1e-5, 1e-5, 1, 1e-5}, tool_m);
+  const auto& table = *reinterpret_cast<const core::VolumeTable*>(words.data());
+  for (int n = 0; n < 50; ++n) {
+    std::int32_t counts[3];
+    for (std::int32_t& count : counts) count = static_cast<std::int32_t>(1e5 * at_m(random));
+    const core::SpaceVector push = core::touch_volume(table, counts, 500, nullptr).push_m;
+    Place3 sum = {};
+    double absolute = 0;
+    for (const auto& point_m : tool_m) {
+      schema::VolumeValue value;
+      if (!value_at(
+              volume,
+              {counts[0] * 1e-5 + point_m[0], counts[1] * 1e-5 + point_m[1], counts[2] * 1e-5 + point_m[2]},
+              value))
+        continue;
+      const double depth_m = std::max(0.0, value.value / 1e6);
+      for (std::size_t i = 0; i < 3; ++i) {
+        sum[i] -= depth_m * value.slope_per_m[i] / 1e6;
+        absolute += std::abs(depth_m * value.slope_per_m[i] / 1e6);
+      }
+    }
+    EXPECT_GT(absolute, 0);
+    for (const auto& [kernel, exact] : {std::pair{push.x, sum[0]}, {push.y, sum[1]}, {push.z, sum[2]}})
+      EXPECT_NEAR(double{kernel}, exact, 1e-6 * absolute);
+  }
+  core::SceneView view;
+  EXPECT_EQ(fault_of(block_around(words, 500), view), core::SceneFault::none);
+  std::vector<std::uint32_t> other = words;
+  reinterpret_cast<core::VolumeTable*>(other.data())->points = 0xFFFFFFFF;
+  EXPECT_EQ(fault_of(block_around(other, 500), view), core::SceneFault::structure);
+}
+
 }  // namespace
 }  // namespace tacto::playback

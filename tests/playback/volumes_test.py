@@ -217,6 +217,40 @@ def a_rendered_force_is_that_of_scipys_interpolation():
     assert report["other_side_ticks"] == 0 and report["largest_rounding_n"] < 1e-5 * largest, report
 
 
+def a_tool_is_the_sum_of_its_points():
+    values = ball((31, 31, 31), 9.0, 0.8)
+    write_nrrd("v.nrrd", values, spacing="spacings: 0.8 0.8 0.8")
+    run_json("import", "v.nrrd", "--unit", "mm", "-o", "v")
+    rng = np.random.default_rng(2)
+    tool = rng.normal(0, 1, (1000, 3))
+    tool *= 0.003 / np.linalg.norm(tool, axis=1)[:, None]
+    write_scene("s", "v", stiffness_n_per_m=2, scene={"tool_m": tool.tolist()}.items())
+    time_s, places = path_through(1, 0.007)
+    write_path("p.csv", time_s, places)
+    report = run_json("render", "s.scene.json", "--finger-path", "p.csv", "--device", "arm", "-o", "f.csv")
+    table = np.genfromtxt("f.csv", delimiter=",", names=True)
+    hand = np.rint(np.column_stack([table[f"{axis}_m"] for axis in "xyz"]) / STEP_M) * STEP_M
+    force = np.column_stack([table[f"force_{axis}_n"] for axis in "xyz"])
+    for i in range(0, len(hand), 50):
+        at = ((hand[i] + tool) / 8e-4 + 15).T[::-1]
+        depth = np.maximum(0, map_coordinates(values.astype(float), at, order=1, cval=-1e9)) / 1e6
+        first, expected = np.floor(at), np.zeros(3)
+        for axis in range(3):
+            low, high = at.copy(), at.copy()
+            low[axis], high[axis] = first[axis], first[axis] + 1
+            rise = (map_coordinates(values.astype(float), high, order=1) - map_coordinates(values.astype(float), low, order=1)) / 8e-4 / 1e6
+            expected[2 - axis] = -2 * (depth * rise).sum()
+        assert abs(force[i] - expected).max() < 2e-6 * (1 + report["force_peak_n"]), (i, force[i], expected)
+    assert report["force_peak_n"] > 0.5 and run_json("info", "s.scene.json")["tool_points"] == 1000, report
+    report = run_json("play", "s.scene.json", "-d", "sim:arm", "--finger-path", "p.csv", "--onset", "0s", "-o", "played")
+    assert run_json("replay", "played")["same_to_the_bit"] is True
+    for scene, code in (({"tool_m": tool.tolist() + [[0, 0, 0]]}, MALFORMED), ({"tool_m": []}, MALFORMED), ({"tool_m": [[0, 0]]}, MALFORMED), ({"tool_m": [[0, 0, 2]]}, MALFORMED)):
+        write_scene("s", "v", scene=scene.items())
+        error_of("explain", "s.scene.json", "--device", "arm", code=code)
+    pathlib.Path("s.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "tool_m": [[0, 0, 0]], "pieces": [{"name": "floor", "shape": "plane", "place": {"x_m": 0, "y_m": 0, "z_m": 0}, "stiffness_n_per_m": 100}]}))
+    assert error_of("explain", "s.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/tool_m")
+
+
 def a_played_volume_replays_to_the_bit():
     write_nrrd("v.nrrd", ball((31, 31, 31), 9.0, 0.8), spacing="spacings: 0.8 0.8 0.8")
     run_json("import", "v.nrrd", "--unit", "mm", "-o", "v")
@@ -293,12 +327,12 @@ def what_was_carved_replays_and_is_exported():
     said = run_json("render", "s.scene.json", "--finger-path", "p.csv", "--device", "arm", "-o", "f.csv")
     assert said["largest_rounding_n"] < 1e-4 * said["force_peak_n"] and said["other_side_ticks"] <= 0.01 * said["ticks"], said
     tight = run_json("explain", "s.scene.json", "--device", "arm")
-    assert tight["live_bytes"] > 2 * 31**3 and run_json("explain", "s.scene.json", "--device", "arm", "--device-memory", str(tight["block_bytes"] + 1000) + "B", code=None)["fits"] is False, tight
+    assert tight["live_bytes"] > 2 * 31**3 and run_json("explain", "s.scene.json", "--device", "arm", "--device-memory", str(tight["block_bytes"] + 1000), code=None)["fits"] is False, tight
     write_scene("s", "v", carve={"force_n": 0.6, "value_per_s": 1e12})
     assert error_of("explain", "s.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("/carve/value_per_s")
 
 
 if __name__ == "__main__":
     for test in (every_type_and_encoding_gives_the_values, directions_and_units_are_those_of_the_file, what_is_wrong_with_a_file_is_said, a_changed_volume_is_found, what_is_wrong_with_a_scene_is_said,
-                 a_rendered_force_is_that_of_scipys_interpolation, a_played_volume_replays_to_the_bit, what_was_carved_replays_and_is_exported):
+                 a_rendered_force_is_that_of_scipys_interpolation, a_played_volume_replays_to_the_bit, what_was_carved_replays_and_is_exported, a_tool_is_the_sum_of_its_points):
         tacto.in_folder(test)

@@ -33,7 +33,7 @@ constexpr float kLeastLoss = 1e-6F;  // of a transient from tick to tick
 constexpr float kMostPasses_per_m = 1e6F;
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
 constexpr uint32_t kMostFall = 0xFFFF0000;
-constexpr float kMostVoxels_per_m = 1e7F, kMost_m_per_value = 0.1F, kMostIso = 1e6F;
+constexpr float kMostVoxels_per_m = 1e7F, kMost_m_per_value = 0.1F, kMostIso = 65536;
 constexpr float kThinnestSkin_m = 1e-12F, kThickestSkin_m = 1e-3F;
 
 bool is_direction(float cosine, float sine) noexcept {
@@ -335,7 +335,8 @@ SceneFault check_volume(SceneView& view, const SceneLayer& layer, uint32_t room,
     if (!sound(axis)) return SceneFault::value;
     values *= axis.samples;
   }
-  const uint64_t all = kHead + (values + 1) / 2;
+  if (table.points > kMostToolPoints) return SceneFault::structure;
+  const uint64_t all = kHead + table.points * (sizeof(ToolPoint) / sizeof(uint32_t)) + (values + 1) / 2;
   if (all > room) return SceneFault::structure;
   words = static_cast<uint32_t>(all);
   if (table.carve_n > 0) {

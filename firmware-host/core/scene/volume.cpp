@@ -13,15 +13,55 @@ struct Cell {
 bool cell_of(const VolumeTable& table, const VolumePlace& place, Cell& cell) noexcept {
   uint32_t whole[3];
   float part[3];
+  bool within = true;
   for (int i = 0; i < 3; ++i) {
-    const int64_t at = place.along[i] >> 32;
-    if (at < 0 || at > static_cast<int64_t>(table.along[i].samples) - 2) return false;
-    whole[i] = static_cast<uint32_t>(at);
+    whole[i] = static_cast<uint32_t>(static_cast<uint64_t>(place.along[i]) >> 32);  // below 0: a large one
+    within = within && whole[i] < table.along[i].samples - 1;
     part[i] = static_cast<float>(static_cast<uint32_t>(place.along[i])) * 0x1p-32F;
   }
   cell = {(whole[2] * table.along[1].samples + whole[1]) * table.along[0].samples + whole[0], part[0],
           part[1], part[2]};
-  return true;
+  return within;
+}
+
+// Of the interpolant: over iso, and its gradient per sample.
+struct Level {
+  float above = 0;
+  SpaceVector rise;
+};
+
+// Differences of values are exact.
+Level level_at(const VolumeTable& table, const int16_t* values, const Cell& cell) noexcept {
+  const uint32_t row = table.along[0].samples, layer = row * table.along[1].samples;
+  float above[4], rise[4];  // over iso, and along x: of the rows at y z, y + 1 z, y z + 1, y + 1 z + 1
+  for (uint32_t i = 0; i < 4; ++i) {
+    const int16_t* const at = values + cell.first + (i & 1) * row + (i >> 1) * layer;
+    rise[i] = static_cast<float>(at[1] - at[0]);
+    above[i] = (static_cast<float>(at[0]) - table.iso) + cell.x * rise[i];
+  }
+  const float along_y[2] = {above[1] - above[0], above[3] - above[2]},
+              at_z[2] = {above[0] + cell.y * along_y[0], above[2] + cell.y * along_y[1]},
+              rise_at_z[2] = {rise[0] + cell.y * (rise[1] - rise[0]), rise[2] + cell.y * (rise[3] - rise[2])};
+  const float along_z = at_z[1] - at_z[0];
+  return {at_z[0] + cell.z * along_z,
+          {rise_at_z[0] + cell.z * (rise_at_z[1] - rise_at_z[0]),
+           along_y[0] + cell.z * (along_y[1] - along_y[0]), along_z}};
+}
+
+// From values per sample to m per m.
+SpaceVector outwards(const VolumeTable& table, SpaceVector rise) noexcept {
+  const auto out = [&](int axis, float per_sample) {
+    return -table.m_per_value * table.along[axis].per_m * per_sample;
+  };
+  return {out(0, rise.x), out(1, rise.y), out(2, rise.z)};
+}
+
+VolumePlace moved(const VolumePlace& hand, const ToolPoint& point) noexcept {
+  VolumePlace place;
+  for (int i = 0; i < 3; ++i)
+    place.along[i] =
+        static_cast<int64_t>(static_cast<uint64_t>(hand.along[i]) + joined(point.whole[i], point.part[i]));
+  return place;
 }
 
 int16_t* carved_values(uint32_t* carved) noexcept {
@@ -35,9 +75,7 @@ int32_t fall_of_tick(const VolumeTable& table, uint32_t& rest) noexcept {
   return static_cast<int32_t>(sum >> 16);
 }
 
-void carve(const VolumeTable& table, const VolumePlace& place, int32_t fall, int16_t* values) noexcept {
-  Cell cell;
-  if (!cell_of(table, place, cell)) return;
+void carve(const VolumeTable& table, const Cell& cell, int32_t fall, int16_t* values) noexcept {
   const uint32_t row = table.along[0].samples, layer = row * table.along[1].samples;
   for (uint32_t i = 0; i < 8; ++i) {
     int16_t& value = values[cell.first + (i & 1) + (i >> 1 & 1) * row + (i >> 2) * layer];
@@ -61,39 +99,36 @@ VolumePlace place_in(const VolumeTable& table, const int32_t (&counts)[3]) noexc
   return place;
 }
 
-// Differences of values are exact.
 VolumeDepth depth_at(const VolumeTable& table, const int16_t* values, const VolumePlace& place) noexcept {
   Cell cell;
   if (!cell_of(table, place, cell)) return {};
-  const uint32_t row = table.along[0].samples, layer = row * table.along[1].samples;
-  float above[4], rise[4];  // over iso, and along x: of the rows at y z, y + 1 z, y z + 1, y + 1 z + 1
-  for (uint32_t i = 0; i < 4; ++i) {
-    const int16_t* const at = values + cell.first + (i & 1) * row + (i >> 1) * layer;
-    rise[i] = static_cast<float>(at[1] - at[0]);
-    above[i] = (static_cast<float>(at[0]) - table.iso) + cell.x * rise[i];
-  }
-  const float along_y[2] = {above[1] - above[0], above[3] - above[2]},
-              at_z[2] = {above[0] + cell.y * along_y[0], above[2] + cell.y * along_y[1]},
-              rise_at_z[2] = {rise[0] + cell.y * (rise[1] - rise[0]), rise[2] + cell.y * (rise[3] - rise[2])};
-  const float along_z = at_z[1] - at_z[0];
-  const auto out = [&](int axis, float per_sample) {
-    return -table.m_per_value * table.along[axis].per_m * per_sample;
-  };
-  return {table.m_per_value * (at_z[0] + cell.z * along_z),
-          {out(0, rise_at_z[0] + cell.z * (rise_at_z[1] - rise_at_z[0])),
-           out(1, along_y[0] + cell.z * (along_y[1] - along_y[0])), out(2, along_z)}};
+  const Level level = level_at(table, values, cell);
+  return {table.m_per_value * level.above, outwards(table, level.rise)};
 }
 
+// The sum is that of values, without a branch on which points are inside: 1,000 of them are read while others
+// are on their way from memory.
 VolumeTouch touch_volume(const VolumeTable& table, const int32_t (&counts)[3], float stiffness,
                          uint32_t* carved) noexcept {
   const int16_t* const values = carved != nullptr ? carved_values(carved) : values_of(table);
-  const VolumePlace place = place_in(table, counts);
-  const VolumeDepth at = depth_at(table, values, place);
-  if (!(at.depth_m > 0)) return {{}, -at.depth_m};
-  const SpaceVector push_m = at.depth_m * at.outwards;
-  if (carved != nullptr && stiffness * length(push_m) > table.carve_n)
-    carve(table, place, fall_of_tick(table, *carved), carved_values(carved));
-  return {push_m, 0};
+  const VolumePlace hand = place_in(table, counts);
+  const ToolPoint origin, *const points = table.points > 0 ? points_of(table) : &origin;
+  SpaceVector sum;
+  float highest = -1e30F;
+  int32_t fall = -1;  // of this tick, once for all points
+  for (uint32_t i = 0; i == 0 || i < table.points; ++i) {
+    Cell cell;
+    if (!cell_of(table, moved(hand, points[i]), cell)) continue;
+    const Level level = level_at(table, values, cell);
+    highest = level.above > highest ? level.above : highest;
+    const SpaceVector push = (level.above > 0 ? level.above : 0) * level.rise;
+    sum = sum + push;
+    if (carved == nullptr) continue;
+    if (!(stiffness * length(table.m_per_value * outwards(table, push)) > table.carve_n)) continue;
+    if (fall < 0) fall = fall_of_tick(table, *carved);
+    carve(table, cell, fall, carved_values(carved));
+  }
+  return {table.m_per_value * outwards(table, sum), highest > 0 ? 0 : -table.m_per_value * highest};
 }
 
 void uncarve(const SceneView& scene, uint32_t* carved_words) noexcept {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A point in a volume of voxels: the depth below the surface of one value, and its gradient, of one
-// interpolant (Massie 1996).
+// A point, or a tool of many points, in a volume of voxels: the depth below the surface of one value, and its
+// gradient, of one interpolant (Massie 1996; McNeely 1999).
 #pragma once
 
 #include "firmware-host/core/scene/piece.hpp"
@@ -8,6 +8,7 @@
 namespace tacto::core {
 
 inline constexpr uint32_t kMostVolumeSamples = 4096;  ///< along an axis
+inline constexpr uint32_t kMostToolPoints = 1000;
 
 /// An axis of a volume: samples against counts of the encoder, from the origin of the piece on.
 struct VolumeAxis {
@@ -20,7 +21,8 @@ struct VolumeAxis {
 };
 static_assert(sizeof(VolumeAxis) == 24);
 
-/// This, then the values: i16, those along x next to each other, then along y, then along z; two in a word.
+/// This, then the points of the tool, then the values: i16, those along x next to each other, then along y,
+/// then along z; two in a word.
 struct VolumeTable {
   PieceTable piece;  ///< its form is not used: a unit vector and the half extent
   VolumeAxis along[3];
@@ -30,8 +32,20 @@ struct VolumeTable {
   uint32_t carve_per_tick = 0;  ///< how much then the eight values around it fall, x 2^16
   int32_t carve_to = 0;         ///< no value falls below this one
   uint32_t carved = 0;          ///< with carve_n: place of its state among the carved words
+  uint32_t points = 0;          ///< of the tool; 0: the hand is the point
 };
-static_assert(sizeof(VolumeTable) == 192);
+static_assert(sizeof(VolumeTable) == 196);
+
+/// From the hand, in samples along x, y and z: whole + part 2^-32.
+struct ToolPoint {
+  int32_t whole[3] = {};
+  uint32_t part[3] = {};
+};
+static_assert(sizeof(ToolPoint) == 24);
+
+inline const ToolPoint* points_of(const VolumeTable& table) noexcept {
+  return reinterpret_cast<const ToolPoint*>(&table + 1);
+}
 
 inline uint32_t value_words_of(const VolumeTable& table) noexcept {
   return (table.along[0].samples * table.along[1].samples * table.along[2].samples + 1) / 2;
@@ -43,7 +57,7 @@ inline uint32_t carved_words_of(const VolumeTable& table) noexcept {
 }
 
 inline const int16_t* values_of(const VolumeTable& table) noexcept {
-  return reinterpret_cast<const int16_t*>(&table + 1);
+  return reinterpret_cast<const int16_t*>(points_of(table) + table.points);
 }
 
 /// A place in samples, each 2^-32 of one.
@@ -66,14 +80,14 @@ struct VolumeDepth {
 VolumeDepth depth_at(const VolumeTable& table, const int16_t* values, const VolumePlace& place) noexcept;
 
 struct VolumeTouch {
-  SpaceVector push_m;       ///< depth x its gradient, outwards; 0 outside
-  float outside_m = 1e30F;  ///< minus the depth
+  SpaceVector push_m;       ///< sum over the points: depth x its gradient, outwards; 0 outside
+  float outside_m = 1e30F;  ///< minus the largest depth; 0 inside
 };
 
 /// With the stiffness K the force is K x push_m, the gradient of the potential K depth^2 / 2 of the depths
-/// above 0: so a closed path gains no energy. Where it is above carve_n the values around the point fall for
-/// the next tick: a potential that falls gives no energy either. `carved`: its state, or null if it has none.
-/// Safe in the tick: one step.
+/// above 0, summed over the points: so a closed path gains no energy. Where that of a point is above carve_n
+/// the values around it fall, from the next point on: a potential that falls gives no energy either.
+/// `carved`: its state, or null if it has none. Safe in the tick: one step per point.
 VolumeTouch touch_volume(const VolumeTable& table, const int32_t (&counts)[3], float stiffness,
                          uint32_t* carved) noexcept;
 

@@ -238,6 +238,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
   base.pieces = scene.pieces;
   base.point_radius_m = scene.point_radius_m;
   base.contact = scene.contact;
+  base.tool_m = scene.tool_m;
   base.steps = steps_of(device, rate_hz);
   base.stiffness_limit_n_per_m = stiffness_limit_of(device, rate_hz, hand, 0, true);
   core::ScenePatch space;
@@ -269,7 +270,8 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
       auto placed = table_at({piece.x_m, piece.y_m, piece.z_m}, base.steps, at);
       TACTO_TRY(placed);
       placed->transient = *transient;
-      auto table = volume_table(piece, *base.reliefs.volumes.at(piece.volume), *placed, base.steps);
+      auto table =
+          volume_table(piece, *base.reliefs.volumes.at(piece.volume), *placed, base.steps, base.tool_m);
       TACTO_TRY(set_carving(piece, *base.reliefs.volumes.at(piece.volume), rate_hz, at, carved, table));
       append_words(tables, table);
       continue;

@@ -452,8 +452,8 @@ Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, dou
     return {};
   };
   for (std::size_t i = 0; i < scene.pieces.size(); ++i)
-    TACTO_TRY(
-        read_piece_volume(scene.pieces[i], where, fmt::format("{}#/pieces/{}", where, i), reliefs.volumes));
+    TACTO_TRY(read_piece_volume(scene.pieces[i], where, fmt::format("{}#/pieces/{}", where, i),
+                                scene.tool_m.size(), reliefs.volumes));
   for (schema::Piece& piece : scene.pieces) {
     if (!piece.texture || piece.texture->type == schema::PieceTextureType::sine) continue;
     const std::string file = schema::texture_in_scene(where, piece.texture->file);

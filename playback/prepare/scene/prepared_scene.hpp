@@ -63,6 +63,7 @@ struct PreparedScene {
   std::map<std::string, std::shared_ptr<const schema::Mesh>> meshes = {};  ///< by Piece::mesh
   double point_radius_m = 0;
   schema::PieceContact contact = schema::PieceContact::ghost;
+  std::vector<std::array<double, 3>> tool_m = {};  ///< schema::Scene::tool_m
 
   std::size_t bytes() const { return words.size() * sizeof(std::uint32_t); }
   /// What the device needs to have free for it: the block, and the values of volumes that can be carved.

@@ -20,12 +20,15 @@ namespace {
 
 constexpr double kMostDepthOfStep_m = 0.1;  // of a block
 
+// Of 2^-32.
+std::int64_t in_samples(double samples) {
+  return static_cast<std::int64_t>(std::round(samples * 0x1p32));
+}
+
 // The first value, at 0, of the place whose middle is `rest_m` from whole counts.
 core::VolumeAxis axis_of(std::size_t samples, double spacing_m, double step_m, double rest_m) {
-  constexpr double kOne = 0x1p32;
-  const auto joined = [](double number) { return static_cast<std::int64_t>(std::round(number * kOne)); };
-  const std::int64_t origin = joined(static_cast<double>(samples - 1) / 2 - rest_m / spacing_m),
-                     per_count = joined(step_m / spacing_m);
+  const std::int64_t origin = in_samples(static_cast<double>(samples - 1) / 2 - rest_m / spacing_m),
+                     per_count = in_samples(step_m / spacing_m);
   return {static_cast<std::int32_t>(origin >> 32),    static_cast<std::uint32_t>(origin),
           static_cast<std::int32_t>(per_count >> 32), static_cast<std::uint32_t>(per_count),
           static_cast<float>(1 / spacing_m),          static_cast<std::uint32_t>(samples)};
@@ -38,6 +41,7 @@ double stored_iso(const Piece& piece, const Volume& volume) {
 }  // namespace
 
 Result<void> read_piece_volume(Piece& piece, const std::string& scene, const std::string& where,
+                               std::size_t tool_points,
                                std::map<std::string, std::shared_ptr<const Volume>>& volumes) {
   if (piece.shape != schema::PieceShape::volume) return {};
   auto& volume = volumes[piece.volume];
@@ -62,12 +66,14 @@ Result<void> read_piece_volume(Piece& piece, const std::string& scene, const std
                       fmt::format("a step of the stored values, {:g}, is {:g} m deep", volume->scale,
                                   volume->scale / piece.value_per_m),
                       fmt::format("give at least {:g}", volume->scale / kMostDepthOfStep_m));
-  piece.steepness = std::pow(steepest_per_m(*volume, piece.iso) / piece.value_per_m, 2);
+  piece.steepness = std::pow(steepest_per_m(*volume, piece.iso) / piece.value_per_m, 2) *
+                    static_cast<double>(std::max<std::size_t>(1, tool_points));
   return {};
 }
 
 std::vector<std::uint32_t> volume_table(const Piece& piece, const Volume& volume,
-                                        const core::PieceTable& placed, const PlaneSteps& steps) {
+                                        const core::PieceTable& placed, const PlaneSteps& steps,
+                                        const std::vector<std::array<double, 3>>& tool_m) {
   core::VolumeTable table;
   table.piece = placed;
   table.piece.form[core::kPieceDirection + 2] = 1;
@@ -77,10 +83,21 @@ std::vector<std::uint32_t> volume_table(const Piece& piece, const Volume& volume
     table.along[i] = axis_of(volume.samples[i], volume.spacing_m[i], step_m[i], double{placed.rest_m[i]});
   table.iso = static_cast<float>(stored_iso(piece, volume));
   table.m_per_value = static_cast<float>(volume.scale / piece.value_per_m);
-  constexpr std::size_t kWord = sizeof(std::uint32_t);
-  std::vector<std::uint32_t> words((sizeof table + 2 * volume.stored.size() + kWord - 1) / kWord);
-  std::memcpy(words.data(), &table, sizeof table);
-  std::memcpy(words.data() + sizeof table / kWord, volume.stored.data(), 2 * volume.stored.size());
+  table.points = static_cast<std::uint32_t>(tool_m.size());
+  std::vector<core::ToolPoint> points(tool_m.size());
+  for (std::size_t n = 0; n < points.size(); ++n)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::int64_t samples = in_samples(tool_m[n][i] / volume.spacing_m[i]);
+      points[n].whole[i] = static_cast<std::int32_t>(samples >> 32);
+      points[n].part[i] = static_cast<std::uint32_t>(samples);
+    }
+  const std::size_t point_bytes = points.size() * sizeof(core::ToolPoint),
+                    value_bytes = 2 * volume.stored.size();
+  std::vector<std::uint32_t> words((sizeof table + point_bytes + value_bytes + 3) / sizeof(std::uint32_t));
+  auto* const at = reinterpret_cast<std::byte*>(words.data());
+  std::memcpy(at, &table, sizeof table);
+  std::copy_n(reinterpret_cast<const std::byte*>(points.data()), point_bytes, at + sizeof table);
+  std::memcpy(at + sizeof table + point_bytes, volume.stored.data(), value_bytes);
   return words;
 }
 

@@ -2,6 +2,7 @@
 // From a volume to the table that the kernel reads.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -13,16 +14,18 @@
 
 namespace tacto::playback {
 
-/// Of a piece with a volume: reads its file, if it is not among `volumes` yet, and sets its steepness.
-/// `scene`: the scene's file; `where`: the piece in it. Errors: as schema::read_volume(); unsuitable: no or
-/// every value is above `iso`, value_per_m below ten times a step of the stored values.
+/// Of a piece with a volume: reads its file, if it is not among `volumes` yet, and sets its steepness, with a
+/// tool that of all its points together. `scene`: the scene's file; `where`: the piece in it. Errors: as
+/// schema::read_volume(); unsuitable: no or every value is above `iso`, value_per_m below ten times a step of
+/// the stored values.
 schema::Result<void> read_piece_volume(schema::Piece& piece, const std::string& scene,
-                                       const std::string& where,
+                                       const std::string& where, std::size_t tool_points,
                                        std::map<std::string, std::shared_ptr<const schema::Volume>>& volumes);
 
-/// A core::VolumeTable with its values. `placed`: the middle of the volume in counts.
+/// A core::VolumeTable with its points and values. `placed`: the middle of the volume in counts.
 std::vector<std::uint32_t> volume_table(const schema::Piece& piece, const schema::Volume& volume,
-                                        const core::PieceTable& placed, const PlaneSteps& steps);
+                                        const core::PieceTable& placed, const PlaneSteps& steps,
+                                        const std::vector<std::array<double, 3>>& tool_m = {});
 
 /// How a tick removes material, in such a table; `carved`: the carved words of the volumes before it, to
 /// which its own are added. Errors: unsuitable: more than 65,535 steps of the stored values a tick, or less

@@ -387,24 +387,38 @@ SpaceMetres ExactGhost::texture_force(const Piece& piece, Wall& wall, double& no
 // As core::touch_volume.
 ExactGhost::Held ExactGhost::in_volume(std::size_t index, const SpaceMetres& hand_m, double& outside_m) {
   const Piece& piece = scene_.pieces[index];
-  const SpaceMetres place_m = sum_of(hand_m, -1, {piece.x_m, piece.y_m, piece.z_m});
-  schema::VolumeValue at;
-  if (!value_at(carved_[index] ? carved_[index]->volume : *scene_.reliefs.volumes.at(piece.volume), place_m,
-                at))
-    return {{0, 0, 1}, 0};
-  const double depth_m = (at.value - piece.iso) / piece.value_per_m;
-  outside_m = std::max(0.0, -depth_m);
-  const SpaceMetres push_m = sum_of({}, -std::max(0.0, depth_m) / piece.value_per_m, at.slope_per_m);
-  const double size_m = size_of(push_m);
-  if (carved_[index] && piece.stiffness_n_per_m * size_m > piece.carve->force_n) carve(index, place_m);
-  return size_m > 0 ? Held{sum_of({}, 1 / size_m, push_m), size_m} : Held{{0, 0, 1}, 0};
+  const schema::Volume& volume =
+      carved_[index] ? carved_[index]->volume : *scene_.reliefs.volumes.at(piece.volume);
+  const SpaceMetres from_middle_m = sum_of(hand_m, -1, {piece.x_m, piece.y_m, piece.z_m});
+  const std::vector<SpaceMetres> hand_alone(1);
+  SpaceMetres sum_m = {};
+  std::optional<double> fall;
+  for (const SpaceMetres& point_m : scene_.tool_m.empty() ? hand_alone : scene_.tool_m) {
+    const SpaceMetres place_m = sum_of(from_middle_m, 1, point_m);
+    schema::VolumeValue at;
+    if (!value_at(volume, place_m, at)) continue;
+    const double depth_m = (at.value - piece.iso) / piece.value_per_m;
+    outside_m = std::min(outside_m, std::max(0.0, -depth_m));
+    const SpaceMetres push_m = sum_of({}, -std::max(0.0, depth_m) / piece.value_per_m, at.slope_per_m);
+    sum_m = sum_of(sum_m, 1, push_m);
+    if (!carved_[index] || !(piece.stiffness_n_per_m * size_of(push_m) > piece.carve->force_n)) continue;
+    if (!fall) fall = fall_of_tick(index);
+    carve(index, place_m, *fall);
+  }
+  const double size_m = size_of(sum_m);
+  return size_m > 0 ? Held{sum_of({}, 1 / size_m, sum_m), size_m} : Held{{0, 0, 1}, 0};
 }
 
-void ExactGhost::carve(std::size_t index, const SpaceMetres& place_m) {
+double ExactGhost::fall_of_tick(std::size_t index) {
   auto& [volume, lowest, uncut] = *carved_[index];
   uncut += carve_per_tick(scene_.pieces[index], volume, 1 / tick_s_) / 0x1p16;
   const double fall = std::floor(uncut);
   uncut -= fall;
+  return fall;
+}
+
+void ExactGhost::carve(std::size_t index, const SpaceMetres& place_m, double fall) {
+  auto& [volume, lowest, uncut] = *carved_[index];
   std::array<std::size_t, 3> first;
   for (std::size_t i = 0; i < 3; ++i)
     first[i] = static_cast<std::size_t>((place_m[i] + volume.half_size_m()[i]) / volume.spacing_m[i]);

@@ -81,7 +81,8 @@ class ExactGhost {
                             const SpaceMetres& speed_mps) const;
 
   Held in_volume(std::size_t piece, const SpaceMetres& hand_m, double& outside_m);
-  void carve(std::size_t piece, const SpaceMetres& place_m);
+  double fall_of_tick(std::size_t piece);
+  void carve(std::size_t piece, const SpaceMetres& place_m, double fall);
 
   const PreparedScene& scene_;
   const schema::Device& device_;
