@@ -114,6 +114,7 @@ bool value_at(const Volume& volume, const VolumePoint& place_m, VolumeValue& fou
   return true;
 }
 
+// Along each axis its square is convex in a cell: it is largest in a corner.
 double steepest_per_m(const Volume& volume, double above) {
   double most = 0;
   const std::size_t step[3] = {1, volume.samples[0], volume.samples[0] * volume.samples[1]};
@@ -129,14 +130,12 @@ double steepest_per_m(const Volume& volume, double above) {
           largest = std::max(
               largest, corner[i] = first[(i & 1) * step[0] + (i >> 1 & 1) * step[1] + (i >> 2) * step[2]]);
         if (!(largest > stored_above)) continue;
-        double square = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          int rise = 0;
-          for (std::size_t i = 0; i < 8; ++i)
-            if ((i >> axis & 1) == 0) rise = std::max(rise, std::abs(corner[i | 1U << axis] - corner[i]));
-          square += std::pow(rise * per_m[axis], 2);
+        for (std::size_t i = 0; i < 8; ++i) {
+          double square = 0;
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            square += std::pow((corner[i] - corner[i ^ 1U << axis]) * per_m[axis], 2);
+          most = std::max(most, square);
         }
-        most = std::max(most, square);
       }
   return std::sqrt(most);
 }

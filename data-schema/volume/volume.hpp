@@ -47,8 +47,7 @@ struct VolumeValue {
 /// values false.
 bool value_at(const Volume& volume, const VolumePoint& place_m, VolumeValue& found);
 
-/// A bound of the interpolant's gradient, of all cells with a value above `above`: the root of the squares of
-/// the largest differences along x, y and z.
+/// The largest gradient of the interpolant, in all cells with a value above `above`.
 double steepest_per_m(const Volume& volume, double above);
 
 /// Errors, at `where`: unsuitable: fewer than 2 or too many values, another number of them than its samples,

@@ -13,7 +13,7 @@ from scipy.ndimage import map_coordinates
 import tacto
 from tacto import error_of, run_json
 
-USAGE, NOT_FOUND, MALFORMED, UNSUITABLE = 2, 3, 4, 5
+USAGE, NOT_FOUND, MALFORMED, UNSUITABLE, UNSTABLE = 2, 3, 4, 5, 9
 STEP_M = 1e-5  # of the preset arm
 NAMES = {"i1": "signed char", "u1": "uchar", "i2": "short", "u2": "uint16", "i4": "int32", "f4": "float", "f8": "double"}
 
@@ -47,7 +47,7 @@ def ball(samples, radius, spacing, slope=1000):
 
 
 def write_scene(name, volume, place=(0, 0, 0), scene=(), **members):
-    piece = {"name": "bone", "shape": "volume", "volume": volume, "iso": 0, "value_per_m": 1e6, "place": dict(zip(("x_m", "y_m", "z_m"), place)), "stiffness_n_per_m": 400, **members}
+    piece = {"name": "bone", "shape": "volume", "volume": volume, "iso": 0, "value_per_m": 1e6, "place": dict(zip(("x_m", "y_m", "z_m"), place)), "stiffness_n_per_m": 300, **members}
     pathlib.Path(f"{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "pieces": [piece], **dict(scene)}))
 
 
@@ -192,7 +192,7 @@ def a_rendered_force_is_that_of_scipys_interpolation():
     values = (ball(samples, 8.0, spacing) + rng.integers(-60, 60, samples)).astype("i2")
     write_nrrd("v.nrrd", values, spacing="spacings: 0.9 0.9 0.9", encoding="gzip")
     run_json("import", "v.nrrd", "--unit", "mm", "-o", "v")
-    centre = np.array([0.012, -0.02, 0.005])
+    centre = np.array([0.0120037, -0.0199962, 0.0050041])  # so that no place of the hand is on the face of a cell, where the gradient jumps
     write_scene("s", "v", centre, iso=12)
     time_s, places = path_through(4, 0.0075)
     write_path("p.csv", time_s, centre + places)
@@ -209,7 +209,7 @@ def a_rendered_force_is_that_of_scipys_interpolation():
         low, high = at.copy(), at.copy()
         low[axis], high[axis] = first[axis], first[axis] + 1
         gradient[:, 2 - axis] = (map_coordinates(values.astype(float), high, order=1) - map_coordinates(values.astype(float), low, order=1)) / (spacing * 1e-3)
-    expected = -400 * (np.maximum(0, value - 12) / 1e6)[:, None] * gradient / 1e6
+    expected = -300 * (np.maximum(0, value - 12) / 1e6)[:, None] * gradient / 1e6
     largest = np.linalg.norm(expected, axis=1).max()
     assert 0.5 < largest < 20 and (value > 12).mean() > 0.3 and (value < 12).mean() > 0.1, (largest, (value > 12).mean())
     assert report["peak_limited_ticks"] == report["slew_limited_ticks"] == report["rms_limited_ticks"] == 0, report
@@ -264,17 +264,21 @@ def a_played_volume_replays_to_the_bit():
     assert again["same_to_the_bit"] is True and again["ticks_compared"] == report["ticks"], again
     said = run_json("explain", "s.scene.json", "--device", "arm")
     assert said["fits"] is True and said["block_bytes"] > 2 * 31**3 and said["pieces"][0]["values"] == 31**3, said
-    assert run_json("explain", "s.scene.json", "--device", "arm", "--board", "stm32f405")["fits"] is True
+    write_nrrd("small.nrrd", ball((17, 17, 17), 9.0, 1.5), spacing="spacings: 1.5 1.5 1.5")
+    run_json("import", "small.nrrd", "--unit", "mm", "-o", "small")
+    write_scene("small", "small")
+    said = run_json("explain", "small.scene.json", "--device", "arm", "--board", "stm32f405")
+    assert said["fits"] is True and 2 * 17**3 < said["block_bytes"] < said["device_bytes"], said
     write_nrrd("w.nrrd", ball((99, 99, 99), 9.0, 0.2))
     run_json("import", "w.nrrd", "--unit", "mm", "-o", "w")
     write_scene("w", "w")
-    said = run_json("explain", "w.scene.json", "--device", "arm", "--board", "stm32f405", code=None)
+    said = run_json("explain", "w.scene.json", "--device", "arm", "--board", "stm32f405")
     assert said["fits"] is False and "970299" in said["because"], said
     soft = run_json("design", "s.scene.json", "--device", "arm")["pieces"][0]
     assert soft["verdict"] == "stable" and soft["piece"] == "bone", soft
     # Values that are ten times as steep as value_per_m act with a hundredfold stiffness.
     write_scene("hard", "v", value_per_m=1e5)
-    assert run_json("design", "hard.scene.json", "--device", "arm", code=None)["pieces"][0]["verdict"] == "unstable"
+    assert run_json("design", "hard.scene.json", "--device", "arm", code=UNSTABLE)["pieces"][0]["verdict"] == "unstable"
     said = run_json("info", "s.scene.json")["pieces"][0]
     assert said["shape"] == "volume" and said["volume"] == "v" and said["iso"] == 0, said
     tacto.run("validate", "s.scene.json")
@@ -282,18 +286,18 @@ def a_played_volume_replays_to_the_bit():
     assert pathlib.Path("s.png").stat().st_size > 5000
 
 
-def carved_by(values, spacing, iso, counts, stiffness, force_n, per_tick):
+def carved_by(values, spacing, place, counts, stiffness, force_n, per_tick):
     """Tick by tick in NumPy: the trilinear gradient of the potential, then the fall of the eight values."""
     left, lowest, rest = values.astype(int).copy(), values.min(), 0.0
     corners = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)])
     for count in counts:
-        at = count * STEP_M / spacing + (np.array(values.shape[::-1]) - 1) / 2
+        at = (count * STEP_M - place) / spacing + (np.array(values.shape[::-1]) - 1) / 2
         first = np.floor(at).astype(int)
         if (first < 0).any() or (first > np.array(values.shape[::-1]) - 2).any():
             continue
         index = tuple((first + corners).T[::-1])
         weights = np.where(corners == 1, at - first, 1 - (at - first))
-        depth = (left[index] @ weights.prod(1) - iso) / 1e6
+        depth = left[index] @ weights.prod(1) / 1e6
         slope = [left[index] @ (np.where(corners[:, k] == 1, 1, -1) / spacing * np.delete(weights, k, 1).prod(1)) / 1e6 for k in range(3)]
         if depth > 0 and stiffness * depth * np.linalg.norm(slope) > force_n:
             rest += per_tick
@@ -306,20 +310,21 @@ def what_was_carved_replays_and_is_exported():
     values = ball((31, 31, 31), 9.0, 0.8)
     write_nrrd("v.nrrd", values, spacing="spacings: 0.8 0.8 0.8")
     run_json("import", "v.nrrd", "--unit", "mm", "-o", "v")
-    write_scene("s", "v", carve={"force_n": 0.6, "value_per_s": 20500})
+    off_the_counts = np.array([3.7e-6, -4.1e-6, 2.9e-6])  # no place of the hand is on the face of a cell
+    write_scene("s", "v", off_the_counts, carve={"force_n": 0.6, "value_per_s": 20500})
     time_s, places = path_through(2, 0.008)
     write_path("p.csv", time_s, places)
     report = run_json("play", "s.scene.json", "-d", "sim:arm", "--finger-path", "p.csv", "--onset", "0s", "-o", "played")
     assert report["lost_ticks"] == 0, report
     again = run_json("replay", "played", "--volume", "v", "-o", "carved")
-    assert again["same_to_the_bit"] is True and again["carved_values"] > 100 and again["files"] == ["carved.volume.nc"], again
+    assert again["same_to_the_bit"] is True and again["carved_values"] > 40 and again["files"] == ["carved.volume.nc"], again
     left, scale, _, spacing = values_in("carved.volume.nc")
     assert scale == 1 and np.allclose(spacing, 8e-4, rtol=1e-12) and (left <= values).all() and left.min() == values.min()
     run_json("session", "played", "-o", "played.csv")
     table = np.genfromtxt("played.csv", delimiter=",", names=True)
     counts = np.column_stack([table[f"{axis}_m"] for axis in "xyz"]) / STEP_M
     assert abs(counts - np.rint(counts)).max() < 1e-3
-    expected = carved_by(values, 8e-4, 0, np.rint(counts), 400, 0.6, 20.5)
+    expected = carved_by(values, 8e-4, off_the_counts, np.rint(counts), 300, 0.6, 20.5)
     assert (left != values).sum() == again["carved_values"] and (left != expected).sum() <= 8, (left != expected).sum()
     for arguments, code in ((("--volume", "v"), USAGE), (("-o", "w"), USAGE), (("--volume", "v", "-o", "carved"), USAGE), (("--volume", "carved", "-o", "w"), UNSUITABLE), (("--volume", "none", "-o", "w"), NOT_FOUND)):
         error_of("replay", "played", *arguments, code=code)
@@ -328,7 +333,7 @@ def what_was_carved_replays_and_is_exported():
     said = run_json("render", "s.scene.json", "--finger-path", "p.csv", "--device", "arm", "-o", "f.csv")
     assert said["largest_rounding_n"] < 1e-4 * said["force_peak_n"] and said["other_side_ticks"] <= 0.01 * said["ticks"], said
     tight = run_json("explain", "s.scene.json", "--device", "arm")
-    assert tight["live_bytes"] > 2 * 31**3 and run_json("explain", "s.scene.json", "--device", "arm", "--device-memory", str(tight["block_bytes"] + 1000), code=None)["fits"] is False, tight
+    assert tight["live_bytes"] > 2 * 31**3 and run_json("explain", "s.scene.json", "--device", "arm", "--device-memory", str(tight["block_bytes"] // 4 + 1000))["fits"] is False, tight
     write_scene("s", "v", carve={"force_n": 0.6, "value_per_s": 1e12})
     assert error_of("explain", "s.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("/carve/value_per_s")
 
