@@ -185,6 +185,8 @@ Result<Report> design_pieces(const DesignVerbOptions& o, const schema::Scene& sc
                playback::stiffness_limit_of(request.device, request.rate_hz, request.hand,
                                             judged.along.damping_n_s_per_m, true));
     }
+    if (const double energy_j = playback::most_energy_j(piece, request.device); energy_j > 0)
+      row.add("may_give_j", energy_j);
     rows.push_back(std::move(row));
   }
   Report report;

@@ -139,8 +139,14 @@ Result<Report> run_pieces(const SceneVerbOptions& o, schema::Scene scene) {
   if (!o.hand.empty() || !o.session.empty())
     return schema::fail(schema::ErrorKind::unsuitable, "sections of pieces show neither a hand nor a session",
                         o.session.empty() ? "--hand" : "--session", "leave it out");
-  PiecePicture picture{scene.name.empty() ? o.scene : scene.name, std::move(scene), {}, {}, {}};
+  PiecePicture picture{scene.name.empty() ? o.scene : scene.name, std::move(scene), {}, {}, {}, {}};
   for (const schema::Piece& piece : picture.scene.pieces) {
+    if (schema::is_raised(piece)) {
+      auto map =
+          schema::read_height_map(schema::texture_in_scene(schema::scene_path(o.scene), piece.relief->file));
+      TACTO_TRY(map);
+      picture.reliefs[piece.relief->file] = std::move(*map);
+    }
     if (piece.shape != schema::PieceShape::mesh || picture.meshes.contains(piece.mesh)) continue;
     auto mesh = schema::read_mesh(schema::texture_in_scene(schema::scene_path(o.scene), piece.mesh));
     TACTO_TRY(mesh);

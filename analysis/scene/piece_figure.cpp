@@ -43,12 +43,33 @@ double inner(const Place& a, const Place& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-bool is_solid(const Piece& piece, const Place& place_m) {
+// Over the plane, at a place from that of the piece.
+double height_m(const Piece& piece, const Place& p, const PieceReliefs& reliefs) {
+  const auto found = schema::is_raised(piece) ? reliefs.find(piece.relief->file) : reliefs.end();
+  if (found == reliefs.end()) return 0;
+  const schema::HeightMap& map = found->second;
+  const auto axes = relief_axes(piece);
+  const auto samples = [&](std::size_t axis, std::size_t count) {
+    const auto last = static_cast<double>(count - 1);
+    return std::clamp(inner(axes[axis], p) / map.pitch_m + last / 2, 0.0, last);
+  };
+  const double x = samples(0, map.columns), y = samples(1, map.rows);
+  const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
+  const double right = x - static_cast<double>(i), up = y - static_cast<double>(j);
+  const auto at = [&](std::size_t column, std::size_t row) {
+    return double{
+        map.height_m[std::min(row, map.rows - 1) * map.columns + std::min(column, map.columns - 1)]};
+  };
+  return (1 - up) * ((1 - right) * at(i, j) + right * at(i + 1, j)) +
+         up * ((1 - right) * at(i, j + 1) + right * at(i + 1, j + 1));
+}
+
+bool is_solid(const Piece& piece, const Place& place_m, const PieceReliefs& reliefs) {
   const Place p = {place_m[0] - piece.x_m, place_m[1] - piece.y_m, place_m[2] - piece.z_m};
   const double along = inner(piece.direction, p) / std::sqrt(inner(piece.direction, piece.direction));
   switch (piece.shape) {
     case PieceShape::plane:
-      return along < 0 && (piece.thickness_m == 0 || along > -piece.thickness_m);
+      return along < height_m(piece, p, reliefs) && (piece.thickness_m == 0 || along > -piece.thickness_m);
     case PieceShape::sphere:
       return inner(p, p) < piece.radius_m * piece.radius_m;
     case PieceShape::cylinder:
@@ -199,13 +220,16 @@ std::string words_of(const Piece& piece) {
   if (piece.texture)
     words += fmt::format(", texture {}{}{}", to_string(piece.texture->type),
                          piece.texture->file.empty() ? "" : " ", piece.texture->file);
+  if (piece.relief)
+    words += fmt::format(", {} {}", piece.relief->interpolated ? "normals of" : "relief", piece.relief->file);
   return words;
 }
 
 }  // namespace
 
 std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
-                                  const Place& through_m, const PieceMeshes& meshes) {
+                                  const Place& through_m, const PieceMeshes& meshes,
+                                  const PieceReliefs& reliefs) {
   const Section& section = *std::ranges::find(kSections, across, &Section::across);
   const double beside_m = 1e-6 * grid.pixel_m;  // of the section, so that it meets no vertex
   std::vector<int> solid;
@@ -221,7 +245,7 @@ std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& g
       place_m[section.right] = at.x, place_m[section.up] = at.y;
       int last = -1;
       for (std::size_t i = 0; i < scene.pieces.size(); ++i)
-        if (is_solid(scene.pieces[i], place_m)) last = static_cast<int>(i);
+        if (is_solid(scene.pieces[i], place_m, reliefs)) last = static_cast<int>(i);
       for (const auto& [i, at_m] : of_meshes)
         if ((std::ranges::lower_bound(at_m, at.x) - at_m.begin()) % 2 != 0)
           last = std::max(last, static_cast<int>(i));
@@ -274,7 +298,7 @@ schema::Result<void> PieceFigure::draw(Canvas& canvas) const {
                             spatial::typeset(schema::length_for_people(through_m_[section.across]))),
                 kSectionTitle);
     canvas.image(map.box, pixels_of(solid_in_section(picture_.scene, map.grid, section.across, through_m_,
-                                                     picture_.meshes),
+                                                     picture_.meshes, picture_.reliefs),
                                     map.grid));
     const auto count = [](double length) { return std::max(2, static_cast<int>(length / 45)); };
     canvas.frame(map.box, {});

@@ -10,6 +10,7 @@
 
 #include "analysis/scene/scene_map.hpp"
 #include "data-schema/device/device.hpp"
+#include "data-schema/height/height_map.hpp"
 #include "data-schema/mesh/mesh.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "spatial/picture/draw/heading.hpp"
@@ -20,6 +21,9 @@ namespace tacto::analysis {
 /// By the member `mesh` of the pieces.
 using PieceMeshes = std::map<std::string, schema::Mesh>;
 
+/// By the file of a relief.
+using PieceReliefs = std::map<std::string, schema::HeightMap>;
+
 /// A scene of pieces; without a device the sections show 20 mm around all pieces.
 struct PiecePicture {
   std::string name;  ///< of the scene, for the title
@@ -27,13 +31,16 @@ struct PiecePicture {
   std::optional<schema::Device> device;            ///< whose travel is shown
   std::optional<std::array<double, 3>> through_m;  ///< default: the middle of the balls, pipes and quadrics
   PieceMeshes meshes = {};
+  PieceReliefs reliefs = {};
 };
 
 /// In a section across axis `across`, 0 to 2: which piece is solid in each pixel, from 0 on, or -1. Where
 /// several are, it is the last one. Pieces are drawn as they are, without the radius of the point. A mesh
-/// with holes is not everywhere drawn as the solid that it is for the hand.
+/// with holes is not everywhere drawn as the solid that it is for the hand. The heights of a relief are drawn
+/// straight from sample to sample.
 std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
-                                  const std::array<double, 3>& through_m, const PieceMeshes& meshes = {});
+                                  const std::array<double, 3>& through_m, const PieceMeshes& meshes = {},
+                                  const PieceReliefs& reliefs = {});
 
 class PieceFigure : public spatial::Figure {
  public:

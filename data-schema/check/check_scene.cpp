@@ -83,6 +83,10 @@ std::vector<Finding> check_scene(const std::string& path, const Document& docume
         findings.push_back({fmt::format("{}#/pieces/{}/texture/file", path, i), message(map.error())});
     } else if (texture && texture->type == PieceTextureType::recording)
       check_played_texture(path, texture->file, fmt::format("{}#/pieces/{}/texture/file", path, i), findings);
+    if (const auto& relief = scene->pieces[i].relief) {
+      const auto map = read_height_map(texture_in_scene(path, relief->file));
+      if (!map) findings.push_back({fmt::format("{}#/pieces/{}/relief/file", path, i), message(map.error())});
+    }
     if (scene->pieces[i].shape != PieceShape::mesh) continue;
     const auto mesh = read_mesh(texture_in_scene(path, scene->pieces[i].mesh));
     if (!mesh) findings.push_back({fmt::format("{}#/pieces/{}/mesh", path, i), message(mesh.error())});

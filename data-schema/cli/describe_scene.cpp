@@ -125,6 +125,10 @@ cli::Report row_of(const Piece& piece) {
           .add("texture_period_v_m", texture->periods_m[1]);
     row.add("texture_gain", piece.texture_gain);
   }
+  if (piece.relief) {
+    row.add("relief", piece.relief->file);
+    row.add("normals", piece.relief->interpolated ? "interpolated" : "exact");
+  }
   return row;
 }
 

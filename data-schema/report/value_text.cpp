@@ -44,6 +44,7 @@ constexpr Suffix kSuffixes[] = {
     {"_deg", "degrees"},
     {"_db", "dB"},
     {"_f", "F"},
+    {"_j", "J"},
     {"_c", "C"},
 };
 

@@ -53,6 +53,35 @@ Result<void> check_quadric(const Piece& piece, const std::string& where) {
       "a solid is where the sum is below 0: the unit sphere is [1, 1, 1, 0, 0, 0, 0, 0, 0, -1], in metres");
 }
 
+// Of a map, whose shadow along the normal of a plane has to have an area.
+Result<void> check_axes(const Piece& piece, const std::array<std::array<double, 3>, 2>& axes, bool projected,
+                        const std::string& where) {
+  const auto& [u, v] = axes;
+  const std::array<double, 3> across = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                                        u[0] * v[1] - u[1] * v[0]};
+  const double area = std::hypot(across[0], across[1], across[2]),
+               sides = std::hypot(u[0], u[1], u[2]) * std::hypot(v[0], v[1], v[2]);
+  if (!(sides > 1e-9) || !(area > 1e-6 * sides))
+    return fail(ErrorKind::unsuitable, "the two axes have the same direction, or no length", where,
+                "give two directions, as in [[1, 0, 0], [0, 1, 0]]");
+  const auto& d = piece.direction;
+  const double along_normal = std::abs(across[0] * d[0] + across[1] * d[1] + across[2] * d[2]);
+  if (projected && !(along_normal > 1e-3 * area * std::hypot(d[0], d[1], d[2])))
+    return fail(ErrorKind::unsuitable, "the map is projected along the plane, and not on it", where,
+                "give two directions in the plane");
+  return {};
+}
+
+Result<void> check_relief(const Piece& piece, const std::string& where) {
+  if (piece.texture && piece.relief->interpolated)
+    return fail(ErrorKind::unsuitable, "a plane with interpolated normals has no texture", where + "/normals",
+                "leave `texture` or \"normals\": \"interpolated\" out");
+  if (piece.thickness_m > 0)
+    return fail(ErrorKind::unsuitable, "a plate has no relief", where,
+                "leave thickness_m out: what is below the relief is solid");
+  return check_axes(piece, piece.relief->axes, true, where + "/axes");
+}
+
 Result<void> check_piece_texture(const Piece& piece, const std::string& texture_where) {
   const bool sine = piece.texture->type == PieceTextureType::sine;
   const auto needless = [&](const char* member, const char* types) {
@@ -64,24 +93,12 @@ Result<void> check_piece_texture(const Piece& piece, const std::string& texture_
   if (!sine && piece.texture->amplitude_n > 0) return needless("amplitude_n", "sine");
   if (!sine && piece.texture->periods_m[0] > 0) return needless("periods_m", "sine");
   const std::string where = texture_where + "/axes";
-  const auto& [u, v] = piece.texture->axes;
   if (piece.texture->type == PieceTextureType::recording && piece.texture->axes != PieceTexture().axes)
     return fail(ErrorKind::unsuitable, "a recording is played along the path, not along axes", where,
                 "leave the axes out");
-  const std::array<double, 3> across = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                                        u[0] * v[1] - u[1] * v[0]};
-  const double area = std::hypot(across[0], across[1], across[2]),
-               sides = std::hypot(u[0], u[1], u[2]) * std::hypot(v[0], v[1], v[2]);
-  if (!(sides > 1e-9) || !(area > 1e-6 * sides))
-    return fail(ErrorKind::unsuitable, "the axes of the texture have the same direction, or no length", where,
-                "give two directions, as in [[1, 0, 0], [0, 1, 0]]");
-  const auto& d = piece.direction;
-  const double along_normal = std::abs(across[0] * d[0] + across[1] * d[1] + across[2] * d[2]);
-  if (piece.texture->type != PieceTextureType::recording && piece.shape == PieceShape::plane &&
-      !(along_normal > 1e-3 * area * std::hypot(d[0], d[1], d[2])))
-    return fail(ErrorKind::unsuitable, "the texture is projected along the plane, and not on it", where,
-                "give two directions in the plane");
-  return {};
+  return check_axes(piece, piece.texture->axes,
+                    piece.texture->type != PieceTextureType::recording && piece.shape == PieceShape::plane,
+                    where);
 }
 
 // An integral would press itself through a click, and a force that jumps up with the depth holds nothing.
@@ -119,6 +136,7 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
   if (piece.coefficients != Piece().coefficients && piece.shape != PieceShape::quadric)
     return refused("coefficients", "quadric");
   if (!piece.mesh.empty() && piece.shape != PieceShape::mesh) return refused("mesh", "mesh");
+  if (piece.relief && piece.shape != PieceShape::plane) return refused("relief", "plane");
   const auto& d = piece.direction;
   if (!(std::hypot(d[0], d[1], d[2]) > 1e-9))
     return fail(ErrorKind::unsuitable, "a direction of length 0", where + "/direction",
@@ -148,6 +166,7 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
                 "give `texture`, or leave texture_gain out");
   TACTO_TRY(check_travel(piece, where + "/travel"));
   if (piece.texture) TACTO_TRY(check_piece_texture(piece, where + "/texture"));
+  if (piece.relief) TACTO_TRY(check_relief(piece, where + "/relief"));
   if (piece.transient && piece.hand_surface)
     return fail(ErrorKind::unsuitable, "a piece has one transient", where + "/hand_surface",
                 "leave out `transient` or `hand_surface`");
@@ -169,14 +188,19 @@ Result<void> check_pieces(const Scene& scene, const std::string& where) {
       return fail(ErrorKind::unsuitable, fmt::format("two pieces are named '{}'", piece.name), at + "/name",
                   "give each piece its own name");
     TACTO_TRY(check_members(piece, at));
-    if (scene.point_radius_m > 0 && (piece.shape == PieceShape::quadric || piece.shape == PieceShape::mesh))
-      return fail(ErrorKind::unsuitable, "a point with a radius does not touch quadrics and meshes yet",
+    if (scene.point_radius_m > 0 &&
+        (piece.shape == PieceShape::quadric || piece.shape == PieceShape::mesh || is_raised(piece)))
+      return fail(ErrorKind::unsuitable,
+                  "a point with a radius does not touch quadrics, meshes and reliefs yet",
                   where + "#/radius_m",
                   "leave radius_m out, or make the piece larger by the radius; planes, spheres and "
                   "cylinders are exact");
     if (scene.contact == PieceContact::add && piece.shape == PieceShape::mesh)
       return fail(ErrorKind::unsuitable, "a mesh does not push to its nearest face", where + "#/contact",
                   "leave contact out: a ghost point touches meshes");
+    if (scene.contact == PieceContact::add && is_raised(piece))
+      return fail(ErrorKind::unsuitable, "a relief does not push to its nearest face", where + "#/contact",
+                  "leave contact out: a ghost point touches reliefs");
   }
   return {};
 }

@@ -55,7 +55,8 @@ struct TravelPoint {
   double depth_m = 0, force_n = 0;
 };
 
-enum class PieceTextureType { recording, bump, sine };
+/// The last one is not in a file: a relief with interpolated normals is one.
+enum class PieceTextureType { recording, bump, sine, normals };
 
 /// What a surface adds to the force of its wall.
 struct PieceTexture {
@@ -71,8 +72,20 @@ struct PieceTexture {
   double largest = 0, steepest = 0;
 };
 
+/// A plane with the heights of a map above it, along its normal; the centre of the map is at its place.
+struct PieceRelief {
+  std::string file;  ///< stem or file name of a height map, from the scene's folder
+  /// Of its columns and rows, projected on the plane.
+  std::array<std::array<double, 3>, 2> axes = {{{1, 0, 0}, {0, 1, 0}}};
+  /// The surface stays flat, and the force of its wall turns to the normal of the map (Massie 1996).
+  bool interpolated = false;
+  /// Not in the file, once it was read: the largest slope, the largest curvature, 1/m, and the difference of
+  /// the highest and the lowest height.
+  double largest = 0, steepest = 0, range_m = 0;
+};
+
 /// Unit vectors: the first axis, and the part of the second one across it. Precondition: check_pieces().
-std::array<std::array<double, 3>, 2> map_axes(const PieceTexture& texture);
+std::array<std::array<double, 3>, 2> map_axes(const std::array<std::array<double, 3>, 2>& axes);
 
 struct Piece {
   std::string name;  ///< different for each piece of a scene
@@ -101,7 +114,8 @@ struct Piece {
   /// click. Beyond the last one it grows with the stiffness. Empty: stiffness x depth.
   std::vector<TravelPoint> travel = {};
   double texture_gain = 1;
-  std::map<std::string, SliderRange> sliders = {};  ///< of kWallNumbers that change, by their names
+  std::optional<PieceRelief> relief = std::nullopt;  ///< plane
+  std::map<std::string, SliderRange> sliders = {};   ///< of kWallNumbers that change, by their names
 };
 
 struct PieceNumber {
@@ -121,6 +135,14 @@ inline constexpr PieceNumber kWallNumbers[] = {{"stiffness_n_per_m", &Piece::sti
                                                {"viscous_n_s_per_m", &Piece::viscous_n_s_per_m, true},
                                                {"texture_gain", &Piece::texture_gain, true}};
 
+/// Whether its surface is that of a height map.
+inline bool is_raised(const Piece& piece) {
+  return piece.relief && !piece.relief->interpolated;
+}
+
+/// Unit vectors in the plane. Precondition: it has a relief; check_pieces().
+std::array<std::array<double, 3>, 2> relief_axes(const Piece& plane);
+
 /// Under its name in the file, with its slider.
 NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number);
 
@@ -139,7 +161,7 @@ std::string_view to_string(PieceShape shape);
 /// "ghost", "add".
 std::string_view to_string(PieceContact contact);
 
-/// "recording", "bump", "sine".
+/// "recording", "bump", "sine", "normals".
 std::string_view to_string(PieceTextureType type);
 
 }  // namespace tacto::schema

@@ -11,7 +11,7 @@ namespace tacto::schema {
 namespace {
 
 constexpr std::array<std::string_view, 5> kShapeWords = {"plane", "sphere", "cylinder", "quadric", "mesh"};
-constexpr std::array<std::string_view, 3> kTextureWords = {"recording", "bump", "sine"};
+constexpr std::array<std::string_view, 4> kTextureWords = {"recording", "bump", "sine", "normals"};
 
 // Before the numbers of the wall; each is written if it is not 0.
 constexpr PieceNumber kShapeNumbers[] = {{"thickness_m", &Piece::thickness_m},
@@ -41,14 +41,18 @@ void write_wall(const Piece& piece, Json& body) {
   }
 }
 
+void read_axes(std::array<std::array<double, 3>, 2>& axes, const Json& body) {
+  if (!body.contains("axes")) return;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    for (std::size_t j = 0; j < 3; ++j) axes[i][j] = body["axes"][i][j];
+}
+
 PieceTexture piece_texture_from(const Json& body) {
   PieceTexture texture;
   const auto type = std::ranges::find(kTextureWords, text_or(body, "type"));
   texture.type = static_cast<PieceTextureType>(type - kTextureWords.begin());
   texture.file = text_or(body, "file");
-  if (body.contains("axes"))
-    for (std::size_t i = 0; i < texture.axes.size(); ++i)
-      for (std::size_t j = 0; j < 3; ++j) texture.axes[i][j] = body["axes"][i][j];
+  read_axes(texture.axes, body);
   if (body.contains("periods_m")) texture.periods_m = {body["periods_m"][0], body["periods_m"][1]};
   texture.amplitude_n = number_or(body, "amplitude_n", 0);
   return texture;
@@ -78,8 +82,8 @@ std::string_view to_string(PieceTextureType type) {
   return kTextureWords[static_cast<std::size_t>(type)];
 }
 
-std::array<std::array<double, 3>, 2> map_axes(const PieceTexture& texture) {
-  auto [u, v] = texture.axes;
+std::array<std::array<double, 3>, 2> map_axes(const std::array<std::array<double, 3>, 2>& axes) {
+  auto [u, v] = axes;
   const double first = std::hypot(u[0], u[1], u[2]);
   for (double& part : u) part /= first;
   const double shared = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
@@ -87,6 +91,17 @@ std::array<std::array<double, 3>, 2> map_axes(const PieceTexture& texture) {
   const double second = std::hypot(v[0], v[1], v[2]);
   for (double& part : v) part /= second;
   return {u, v};
+}
+
+std::array<std::array<double, 3>, 2> relief_axes(const Piece& plane) {
+  auto axes = plane.relief->axes;
+  const auto& d = plane.direction;
+  const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  for (auto& axis : axes) {
+    const double along = (axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2]) / square;
+    for (std::size_t i = 0; i < 3; ++i) axis[i] -= along * d[i];
+  }
+  return map_axes(axes);
 }
 
 double steepest_spring_n_per_m(const Piece& piece) {
@@ -149,6 +164,12 @@ Piece piece_from(const Json& body) {
   if (body.contains("travel"))
     for (const Json& point : body["travel"]) piece.travel.push_back({point["depth_m"], point["force_n"]});
   if (body.contains("texture")) piece.texture = piece_texture_from(body["texture"]);
+  if (body.contains("relief")) {
+    piece.relief.emplace();
+    piece.relief->file = text_or(body["relief"], "file");
+    read_axes(piece.relief->axes, body["relief"]);
+    piece.relief->interpolated = text_or(body["relief"], "normals") == "interpolated";
+  }
   return piece;
 }
 
@@ -172,6 +193,10 @@ Json piece_body(const Piece& piece) {
   for (const TravelPoint& point : piece.travel)
     body["travel"].push_back({{"depth_m", point.depth_m}, {"force_n", point.force_n}});
   if (piece.texture) body["texture"] = piece_texture_body(*piece.texture);
+  if (piece.relief)
+    body["relief"] = {{"file", piece.relief->file},
+                      {"axes", piece.relief->axes},
+                      {"normals", piece.relief->interpolated ? "interpolated" : "exact"}};
   return body;
 }
 

@@ -282,13 +282,24 @@ void add_texture(Report& row, const schema::Piece& piece, const SceneOnDevice& o
         .add("texture_zero_from_mps", core::kZeroPerTick * rate_hz / std::min(u_per_m, v_per_m));
     return;
   }
-  const bool bump = texture.type == schema::PieceTextureType::bump;
+  const bool bump = texture.type != schema::PieceTextureType::recording;
   row.add(bump ? "texture_peak_of_normal_force" : "texture_peak_n", gain * texture.largest);
   row.add("texture_stiffness_n_per_m", texture_stiffness_n_per_m(piece, on.device));
   const Relief& relief = on.scene.reliefs.of(texture);
   if (!(relief.highest_per_m > 0)) return;
   row.add("texture_whole_to_mps", relief.whole_to_mps(rate_hz));
   row.add("texture_zero_from_mps", relief.zero_from_mps(rate_hz));
+}
+
+// A hand that is deeper than the radius under a hill slides off it.
+void add_relief(Report& row, const schema::PieceRelief& relief, const SceneOnDevice& on) {
+  const Relief& surface = on.scene.reliefs.of(relief);
+  row.add("relief", relief.file).add("columns", surface.columns).add("rows", surface.rows);
+  row.add("steepest_slope", relief.largest);
+  if (relief.steepest > 0) row.add("sharpest_radius_m", 1 / relief.steepest);
+  if (!(surface.highest_per_m > 0)) return;
+  row.add("shortest_period_m", 1 / surface.highest_per_m);
+  row.add("half_rate_at_mps", 0.5 * double{on.setup.rate_hz} / surface.highest_per_m);
 }
 
 Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece) {
@@ -323,6 +334,8 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
     if (rubs && piece.*number.value > 0) row.add(number.name, piece.*number.value);
   }
   if (piece.texture) add_texture(row, piece, on);
+  if (schema::is_raised(piece)) add_relief(row, *piece.relief, on);
+  if (const double energy_j = most_energy_j(piece, on.device); energy_j > 0) row.add("may_give_j", energy_j);
   if (piece.arrest_mass_kg > 0)
     row.add("arrest_in_one_tick_to_mps",
             on.device.peak_force_n / (piece.arrest_mass_kg * double{on.setup.rate_hz}));

@@ -64,6 +64,9 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
     if (!piece.mesh.empty() &&
         !is_within(folder, schema::mesh_path(schema::texture_in_scene(path, piece.mesh))))
       return false;
+    if (piece.relief &&
+        !is_within(folder, schema::height_map_path(schema::texture_in_scene(path, piece.relief->file))))
+      return false;
     if (!piece.texture || piece.texture->file.empty()) continue;
     const std::string file = schema::texture_in_scene(path, piece.texture->file);
     if (piece.texture->type == schema::PieceTextureType::bump

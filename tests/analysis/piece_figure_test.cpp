@@ -54,6 +54,25 @@ TEST(PieceFigureTest, SectionsHaveTheAreasOfTheirShapes) {
   EXPECT_EQ(area_mm2(plate, 2, {0, 0, 0.001}), 0);
 }
 
+// Heights of |u| / 10, with the columns of the map along y: beside the half space, 2 x 30 mm x 3 mm / 2.
+TEST(PieceFigureTest, ASectionOfARaisedPlaneFollowsItsHeights) {
+  Piece raised = shape_of(PieceShape::plane, 0);
+  raised.relief.emplace();
+  raised.relief->file = "roof", raised.relief->axes = {{{0, 1, 0}, {1, 0, 0}}};
+  schema::HeightMap map;
+  map.columns = map.rows = 61, map.pitch_m = 1e-3;
+  for (int j = 0; j < 61; ++j)
+    for (int i = -30; i <= 30; ++i) map.height_m.push_back(static_cast<float>(std::abs(i)) * 1e-4F);
+  schema::Scene scene;
+  scene.pieces = {raised};
+  const auto area = [&](std::size_t across) {
+    return 0.01 * static_cast<double>(std::ranges::count(
+                      solid_in_section(scene, kAround, across, {}, {}, {{"roof", map}}), 0));
+  };
+  EXPECT_NEAR(area(0), 60 * 30 + 90, 7);
+  EXPECT_NEAR(area(1), 60 * 30, 7);
+}
+
 // A double tetrahedron with corners at 20 mm on each axis: |x| + |y| + |z| < 20 mm.
 TEST(PieceFigureTest, SectionsOfAMeshHaveTheAreaOfItsSolid) {
   schema::Mesh mesh;

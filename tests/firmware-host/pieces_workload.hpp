@@ -13,12 +13,12 @@ inline constexpr uint32_t kPiecesFingerprint = 1566845330;
 
 /// A floor, a plate on edge, a ball, a pipe, an ellipsoid and a mesh, and a hand that is pushed through them
 /// at up to 60 counts per tick; walls with dampers, arrest and integral; a recording on the floor, a bump map
-/// on the ball, a sine on the pipe, which is a button; all limits are reached.
+/// on the ball, a sine on the pipe, which is a button; a raised plane below; all limits are reached.
 class PiecesWorkload {
-  static constexpr uint32_t kPieces = 6, kWords = core::kPieceNumbers + core::kWallStateWords;
+  static constexpr uint32_t kPieces = 7, kWords = core::kPieceNumbers + core::kWallStateWords;
 
  public:
-  static constexpr uint16_t kKinds[kPieces] = {16, 16, 17, 18, 19, 20};
+  static constexpr uint16_t kKinds[kPieces] = {16, 16, 17, 18, 19, 20, 22};
   PiecesWorkload() noexcept {
     block_.header.patches = 1, block_.header.layers = kPieces;
     block_.header.numbers = kPieces * kWords;
@@ -29,8 +29,8 @@ class PiecesWorkload {
       const float wall[core::kPieceNumbers] = {2000, 4, 0.1F, 3000, 2, 0.5F, 0.6F, 0.4F, 1, 1};
       for (uint32_t j = 0; j < core::kPieceNumbers; ++j) block_.numbers[i * kWords + j] = wall[j];
     }
-    auto& [floor, plate, ball, pipe, egg, mesh] = block_.tables;
-    const void* const tables[kPieces] = {&floor, &plate, &ball, &pipe, &egg, &mesh};
+    auto& [floor, plate, ball, pipe, egg, mesh, raised] = block_.tables;
+    const void* const tables[kPieces] = {&floor, &plate, &ball, &pipe, &egg, &mesh, &raised};
     for (uint32_t i = 0; i < kPieces; ++i)
       block_.layers[i].table = static_cast<uint32_t>(static_cast<const uint32_t*>(tables[i]) -
                                                      reinterpret_cast<const uint32_t*>(&block_.tables));
@@ -56,6 +56,11 @@ class PiecesWorkload {
     for (float& coefficient : floor.coefficients)
       coefficient = static_cast<float>(height()) * (2e-5F / 32768);
     for (float& coefficient : ball.coefficients) coefficient = static_cast<float>(height()) * (3e-4F / 32768);
+    raised.table = {{{0, 0, -2500}, {}, {0, 0, 1}, {}}, {{0.8F, 0.6F, 0}, {-0.6F, 0.8F, 0}}, {}, 8e3F};
+    raised.relief = {500, 1};
+    raised.levels[0] = {{{4, 0, {}}, {4, 7, {}}}, {500, 500}, 9, 9, 0};
+    for (float& coefficient : raised.coefficients)
+      coefficient = static_cast<float>(height()) * (2e-3F / 32768);
     // A tetrahedron: a root and two leaves.
     constexpr float kSize_m = 0.015F;
     mesh.table = {{{-1200, -1500, 900}, {}, {0, 0, 1, kSize_m}, {}}, kSize_m * 0x1p-18F, 3, 4, 4};
@@ -133,6 +138,12 @@ class PiecesWorkload {
         uint32_t triangles[12] = {};
         float vertices[4][3] = {};
       } mesh;
+      struct {
+        core::ReliefPieceTable table;
+        core::ReliefTable relief;
+        core::ReliefLevelTable levels[1];
+        float coefficients[81] = {};
+      } raised;
     } tables;
   } block_;
   WorkloadRandom next_{1996};

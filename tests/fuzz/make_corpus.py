@@ -145,7 +145,7 @@ DEVICES = {
 
 
 SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP, BODY, LASSO, MOVER, FIELD, FORCE_MAP, TICK_DAMPER = range(11)
-PLANE, SPHERE, CYLINDER, QUADRIC, MESH = 16, 17, 18, 19, 20
+PLANE, SPHERE, CYLINDER, QUADRIC, MESH, RELIEF = 16, 17, 18, 19, 20, 22
 AT_REST = (0,) * 9
 
 
@@ -179,6 +179,12 @@ def mesh(size_m):
     return kind, numbers, table + struct.pack("<fIII", size_m * 2**-18, 3, 4, 4) + tree + triangles + struct.pack("<12f", *[0] * 3, size_m, 0, 0, 0, size_m, 0, 0, 0, size_m)
 
 
+def raised(origin, bend_per_m, samples_per_m, columns, rows):
+    """A plane with the relief of a map."""
+    kind, numbers, table = piece(RELIEF, origin, (0, 0.6, 0.8))
+    return kind, numbers, table + struct.pack("<9f", 1, 0, 0, 0, 0.8, -0.6, 1e-3, -1, bend_per_m) + relief_table(1000, ((0, 0, samples_per_m, columns, rows),))
+
+
 SCENES = {
     "spring": scene((3, -2, 5, 0), [(0, 0, 1, 0, 0.1, 0.1, 0, [(SPRING, (100, 0, 0))])]),
     "ice_on_soup": scene((90, 1, -70, 40), [(0, 0, 0.6, 0.8, 0.01, 0.01, 0, [(DAMPER, (0.1,))]),
@@ -204,6 +210,7 @@ SCENES = {
     "hard_pieces": scene((2**31 - 1, -70, 2**20, 40), [(0, 0, 1, 0, 1000, 1000, 1, [piece(QUADRIC, (0, 0, 0), (1e9, -1e9, 1e9, 1e9, -1e9, 0, 1e9, 0, 0, -1e9), (1e6, 1e4, 100, 1e7, 1000, 1000, 10, 10, 1e4, -1000), (-1e6, 1e6, -1.9, 0.1, -0.1, -1.9)),
                                                                                    piece(PLANE, (2**31 - 1, 0, -2**31), (1, 0, 0, 20), (1e6, 1e4, 100, 1e7, 1000, 1000, 1e-6, 10, 1e4, 1000), (0, 0, -1, 0, 0, -1), recording(1e6, 2), [(0, 1000), (0, 0), (20, 1000)])])]),
     "mesh": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [mesh(0.002), piece(PLANE, (0, 0, -90), (0, 0.6, 0.8, 0.001))])]),
+    "reliefs": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [raised((0, 0, 90), 1e7, 500, 6, 5), raised((2**31 - 1, 0, -2**31), 0, 1e8, 1, 2), piece(PLANE, (0, 0, -90), (0, 0, 1, 0.001))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,)), (TICK_DAMPER, (1e4,))])]),
 }
 

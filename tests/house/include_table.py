@@ -174,7 +174,7 @@ MAY_INCLUDE = {
         "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
         "texture}",
     "analysis/scene":
-        "data-schema/{base device mesh report scene} firmware-host/core/scene playback/{prepare/scene render/reference session} "
+        "data-schema/{base device height mesh report scene} firmware-host/core/scene playback/{prepare/scene render/reference session} "
         "spatial/{picture picture/draw}",
     "analysis/trade":
         "analysis/{page trade/offline trade/rows} data-schema/{base results texture transducer} "

@@ -7,14 +7,16 @@ import math
 import pathlib
 import subprocess
 
+import netCDF4
 import numpy as np
 import soundfile
 from scipy.integrate import solve_ivp
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, RectBivariateSpline
 from scipy.linalg import expm
 from scipy.optimize import minimize
 
 import tacto
+from plane_relief_test import import_noise
 from tacto import error_of, run, run_json
 
 USAGE, NOT_FOUND, MALFORMED, UNSUITABLE, UNSTABLE = 2, 3, 4, 5, 9
@@ -553,6 +555,65 @@ def a_recording_on_a_piece_is_played_along_the_path():
     assert "#/pieces/0/texture/file" in json.dumps(json.loads(subprocess.run([tacto.COMMAND, "validate", "wrong.scene.json", "--json"], capture_output=True, text=True, timeout=600).stdout))
 
 
+def a_relief_in_space_is_that_of_scipys_nearest_place():
+    import_noise()  # 256 x 256 heights from 0 to 200 um, 200 um apart
+    with netCDF4.Dataset("plate.height.nc") as file:
+        height = np.asarray(file["height"][:], float)
+    at_m = (np.arange(256) - 127.5) * 2e-4
+    surface = RectBivariateSpline(at_m, at_m, height)  # by y and x; ends more than 10 samples away do not matter
+    # Columns along y and rows against x, on a floor that faces along (0.2, 0, 1); 0.3 mm deep, and out again.
+    normal = np.array([0.2, 0, 1]) / np.hypot(0.2, 1)
+    u, v = np.array([0, 1, 0]), np.cross(normal, [0, 1, 0])
+    place_of = np.array([1e-3, 2e-3, -1e-3])
+    floor = piece("floor", "plane", place_of, direction=[0.2, 0, 1], relief={"file": "plate", "axes": [[0, 1, 0], [-1, 0, 0]]})
+    write_scene("raised", floor)
+    turn = 2 * np.pi * TIME_S / 2
+    write_path("path.csv", place_of + np.outer(6e-3 * np.cos(turn), u) + np.outer(5e-3 * np.sin(2 * turn), v) + np.outer(-1e-4 + 3e-4 * np.cos(5 * turn), normal))
+    report, place, force = forces("raised")
+    errors = []
+    for hand, given in list(zip(place, force))[::10]:
+        w = hand - place_of
+        a, b, c = w @ u, w @ v, w @ normal
+        if c >= surface.ev(b, a) - 1e-5:
+            continue
+        found = minimize(lambda p: ((p[0] - a)**2 + (p[1] - b)**2 + (surface.ev(p[1], p[0]) - c)**2) * 1e6, [a, b], method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-18, "initial_simplex": [[a, b], [a + 1e-5, b], [a, b + 1e-5]]}).x
+        on = place_of + found[0] * u + found[1] * v + surface.ev(found[1], found[0]) * normal
+        errors.append(np.abs(given - STIFFNESS * (on - hand)).max())
+    largest = np.abs(force).max()
+    # The issue's bound.
+    assert len(errors) > 60 and largest > 0.5 and max(errors) < 1e-5 * largest and report["largest_rounding_n"] < 1e-5 * largest and report["other_side_ticks"] == 0, (len(errors), max(errors) / largest, report)
+    print(f"relief: {max(errors) / largest:.2g} of {largest:.3g} N")
+    row = run_json("explain", "raised.scene.json", "--device", "arm")["pieces"][0]
+    assert row["relief"] == "plate" and row["columns"] == 256 and abs(row["half_rate_at_mps"] / (500 * row["shortest_period_m"]) - 1) < 1e-9 and "may_give_j" not in row, row
+    played = run_json("play", "raised.scene.json", "-d", "sim:arm", "--finger-path", "path.csv", "--onset", "0s", "-o", "raised")
+    again = run_json("replay", "raised")
+    assert played["lost_ticks"] == 0 and again["same_to_the_bit"] is True and again["ticks_compared"] == played["ticks"], again
+    run("scene", "raised.scene.json", "-o", "raised.png")
+    assert run_json("info", "raised.scene.json")["pieces"][0]["relief"] == "plate"
+    # The thesis' way: the wall's force turned to the normal of the map, over a flat surface.
+    write_scene("flat", floor | {"relief": floor["relief"] | {"normals": "interpolated"}})
+    report, place, force = forces("flat")
+    w = place - place_of
+    depth, slope_u, slope_v = -w @ normal, surface.ev(w @ v, w @ u, dy=1), surface.ev(w @ v, w @ u, dx=1)
+    turned = normal - np.outer(slope_u, u) - np.outer(slope_v, v)
+    expected = np.outer(STIFFNESS * np.maximum(depth, 0), [1]) * turned / np.linalg.norm(turned, axis=1)[:, None]
+    # 12 samples a period, and the levels for speeds above that of the first one are not asked.
+    assert np.abs(force - expected).max() < 1e-3 * np.abs(force).max() and report["largest_rounding_n"] < 1e-5, (np.abs(force - expected).max(), report)
+    row = run_json("design", "flat.scene.json", "--device", "arm", code=UNSTABLE)["pieces"][0]
+    assert row["may_give_j"] > 10 * np.ptp(height), row  # the arm's peak force is 10 N
+    for wrong, where in (({"relief": {"file": "plate", "axes": [[0, 1, 0], [0.2, 0, 1]]}}, "/relief/axes"), ({"thickness_m": 1e-3}, "/relief"),
+                         ({"relief": {"file": "plate", "normals": "interpolated"}, "texture": {"type": "bump", "file": "plate"}}, "/relief/normals")):
+        write_scene("wrong", floor | wrong)
+        assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces/0" + where), wrong
+    write_scene("wrong", piece("ball", "sphere", radius_m=0.01, relief={"file": "plate"}))
+    assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces/0/relief")
+    for members, where in (({"contact": "add"}, "#/contact"), ({"radius_m": 1e-3}, "#/radius_m")):
+        write_scene("wrong", floor, **members)
+        assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith(where), members
+    write_scene("wrong", floor | {"relief": {"file": "none"}})
+    error_of("explain", "wrong.scene.json", "--device", "arm", code=NOT_FOUND)
+
+
 def what_cannot_be_is_refused():
     write_scene("room", piece("floor", "plane"))
     said = run_json("info", "room.scene.json")
@@ -580,6 +641,6 @@ def what_cannot_be_is_refused():
 
 if __name__ == "__main__":
     for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit, a_dragged_hand_slips_and_sliders_move,
-                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, a_recording_on_a_piece_is_played_along_the_path, a_bump_map_pushes_down_its_slope, a_sine_in_a_wall_is_judged_at_twice_its_stiffness, a_button_clicks_at_its_breakpoint, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
+                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, a_recording_on_a_piece_is_played_along_the_path, a_bump_map_pushes_down_its_slope, a_sine_in_a_wall_is_judged_at_twice_its_stiffness, a_button_clicks_at_its_breakpoint, a_relief_in_space_is_that_of_scipys_nearest_place, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
                  what_cannot_be_is_refused):
         tacto.in_folder(test)

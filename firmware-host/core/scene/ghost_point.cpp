@@ -2,6 +2,7 @@
 #include "firmware-host/core/scene/ghost_point.hpp"
 
 #include "firmware-host/core/kernel/finite.hpp"
+#include "firmware-host/core/scene/piece_relief.hpp"
 #include "firmware-host/core/scene/piece_texture.hpp"
 
 namespace tacto::core {
@@ -14,6 +15,7 @@ constexpr float kRounding_m = 2e-8F;  // of a plane's place: 24 bits of 0.3 m
 constexpr float kSameSide = 0.8F;     // cosine of the largest turn of the normal in one step
 constexpr float kSameAway = 0.97F;    // cosine: ways from one edge differ by rounding
 constexpr float kLeaves_m = 1e-6F;    // over a surface, beyond what rounding is
+constexpr float kInRelief_m = 5e-7F;  // of a step along a relief
 constexpr int kPassesOut = 3;     // at the end of a tick: Newton's steps out of a surface, no way along it
 constexpr float kDeepest = 0.1F;  // of a step along a surface that bends towards it
 
@@ -186,8 +188,11 @@ SpaceVector shortened(const SceneView& scene, const Planes& planes, const Goal& 
   for (uint32_t i = 0; i < goal.count; ++i) {
     const Plane& plane = planes.at[goal.plane[i]];
     back = back - plane.distance_m * plane.normal;
+    const PieceTable& table = piece_of(scene, plane.piece);
     if (kind_of(scene, plane.piece) == SceneLayerKind::quadric)
-      bent += goal.push_m[i] * bend_of(piece_of(scene, plane.piece), plane.at, goal.way);
+      bent += goal.push_m[i] * bend_of(table, plane.at, goal.way);
+    if (kind_of(scene, plane.piece) == SceneLayerKind::relief)
+      bent += goal.push_m[i] * relief_bend(relief_piece(table), plane.at, goal.way);
   }
   if (!(bent > 0) || !(squared > 0)) return goal.way;
   const float share = squared / (squared + bent);
@@ -341,11 +346,16 @@ void GhostPoint::move(SpaceVector way, const float (&step_m)[3]) noexcept {
   const SpacePlace origin = origin_of(table);
   const SpaceVector at = difference(ghost_, origin, step_m), to = difference(hand, origin, step_m);
   SpaceVector nearest;
-  if (!nearest_on(kind, table, to, at, nearest)) return false;
+  const bool slides = kind == SceneLayerKind::relief;
+  if (slides)
+    nearest = slid_on_relief(relief_piece(table), to, at);
+  else if (!nearest_on(kind, table, to, at, nearest))
+    return false;
   const SpaceVector normal = surface_at(kind, table, nearest).normal,
                     before = surface_at(kind, table, at).normal, pull = nearest - to, way = nearest - at;
-  if (!(dot(normal, before) >= kSameSide) || !(dot(pull, normal) > 0)) return false;
-  if (!(length(pull) <= length(at - to) + kTouch_m)) return false;
+  if (!slides && !(dot(normal, before) >= kSameSide)) return false;
+  if (!slides && !(dot(pull, normal) > 0)) return false;
+  if (!(length(pull) <= length(at - to) + (slides ? kTouch_m + kInRelief_m : kTouch_m))) return false;
   for (uint32_t i = 0; i < scene.layer_count; ++i) {
     if (i == piece) continue;
     const PieceTable& other = piece_of(scene, i);
@@ -356,8 +366,10 @@ void GhostPoint::move(SpaceVector way, const float (&step_m)[3]) noexcept {
   uint32_t mesh = 0;
   if (first_triangle(scene, ghost_, way, step_m, mesh).part <= 1) return false;
   move(way, step_m);
+  // On a relief it may be on its way, also where the hand is above the plane that touches it there.
+  if (!(dot(pull, normal) > 0)) holding.count = 0;
   holding.normal[0] = normal;
-  holding.depth_m[0] = length(pull);
+  holding.depth_m[0] = slides ? dot(pull, normal) : length(pull);
   return true;
 }
 
@@ -386,7 +398,10 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
     const Goal goal = nearest_allowed(planes, straight);
     hold(planes, goal, straight, holding);
     if (nearest_m >= -kInside_m) last = ghost_, of_last = holding, outside = true;
-    if (goal.count == 1 && settle_on(scene, hand, step_m, touched, holding)) break;
+    if (goal.count == 1 && settle_on(scene, hand, step_m, touched, holding)) {
+      if (holding.count > 0) break;
+      continue;
+    }
     if (pass == kGhostPasses) break;
     const bool out = (nearest_m < -kInside_m && pass + kPassesOut >= kGhostPasses) || is_in_skin(planes);
     SpaceVector way = out ? nearest_allowed(planes, {}).way : shortened(scene, planes, goal);
@@ -410,10 +425,11 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
     for (uint32_t i = 0; i < scene.layer_count; ++i) {
       const PieceTable& table = piece_of(scene, i);
       const SpaceVector from = difference(ghost_, origin_of(table), step_m);
-      const bool touches = planes.has(i);
-      if (touches && kind_of(scene, i) != SceneLayerKind::quadric) continue;
-      const float entry =
-          touches ? return_to(table, from, way, kLeaves_m) : entry_of(kind_of(scene, i), table, from, way);
+      const bool touches = planes.has(i), relief = kind_of(scene, i) == SceneLayerKind::relief;
+      if (touches && !relief && kind_of(scene, i) != SceneLayerKind::quadric) continue;
+      const float entry = !touches ? entry_of(kind_of(scene, i), table, from, way)
+                          : relief ? relief_entry(relief_piece(table), from, way, kInRelief_m)
+                                   : return_to(table, from, way, kLeaves_m);
       if (entry <= part) part = entry, met = i;
     }
     uint32_t mesh = 0;

@@ -2,6 +2,7 @@
 #include "firmware-host/core/scene/piece.hpp"
 
 #include "firmware-host/core/kernel/finite.hpp"
+#include "firmware-host/core/scene/piece_relief.hpp"
 
 namespace tacto::core {
 namespace {
@@ -132,6 +133,7 @@ bool place_of(const float* q, SpaceVector hand, float lambda, SpaceVector& p) no
 
 PieceSurface surface_at(SceneLayerKind kind, const PieceTable& table, SpaceVector place) noexcept {
   if (kind == SceneLayerKind::mesh) return {kNoExit, {}};
+  if (kind == SceneLayerKind::relief) return relief_surface_at(relief_piece(table), place);
   if (kind == SceneLayerKind::plane) {
     const SpaceVector normal = direction_of(table);
     const float above_m = dot(normal, place), thickness_m = table.form[kPieceSize];
@@ -153,6 +155,7 @@ PieceSurface surface_at(SceneLayerKind kind, const PieceTable& table, SpaceVecto
 
 float entry_of(SceneLayerKind kind, const PieceTable& table, SpaceVector place, SpaceVector way) noexcept {
   if (kind == SceneLayerKind::mesh) return kNoEntry;
+  if (kind == SceneLayerKind::relief) return relief_entry(relief_piece(table), place, way, 0);
   if (kind == SceneLayerKind::plane) {
     const SpaceVector normal = direction_of(table);
     const float above_m = dot(normal, place), rise_m = dot(normal, way), thickness_m = table.form[kPieceSize];
@@ -197,6 +200,7 @@ float bend_of(const PieceTable& quadric, SpaceVector place, SpaceVector way) noe
 
 bool nearest_on(SceneLayerKind kind, const PieceTable& table, SpaceVector hand, SpaceVector start,
                 SpaceVector& nearest) noexcept {
+  if (kind == SceneLayerKind::relief) return false;
   if (kind == SceneLayerKind::quadric) return nearest_on_quadric(table.form, hand, start, nearest);
   if (kind == SceneLayerKind::plane) {
     const PieceSurface at = surface_at(kind, table, start);

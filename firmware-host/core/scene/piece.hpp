@@ -72,7 +72,7 @@ inline constexpr int kQuadricSteps = 8;
 
 /// The place of the surface that is nearest to the hand, in the neighbourhood of `start`: in closed form, and
 /// of a quadric by kQuadricSteps steps of Newton's method for p + lambda grad q(p) = hand, q(p) = 0. False if
-/// they did not lead to a place on the surface. Safe in the tick.
+/// they did not lead to a place on the surface; of a relief, too (slid_on_relief()). Safe in the tick.
 bool nearest_on(SceneLayerKind kind, const PieceTable& table, SpaceVector hand, SpaceVector start,
                 SpaceVector& nearest) noexcept;
 

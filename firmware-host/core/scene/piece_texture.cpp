@@ -38,14 +38,6 @@ SpaceVector axis_of(const PieceTextureTable& texture, int axis) noexcept {
   return {texture.axes[axis][0], texture.axes[axis][1], texture.axes[axis][2]};
 }
 
-Q32 fixed_point(float value) noexcept {
-  constexpr float kMost = 0x1p30F;
-  const float held = value < -kMost ? -kMost : value < kMost ? value : kMost;
-  const auto whole = static_cast<int32_t>(held);
-  const auto half_parts = static_cast<int32_t>((held - static_cast<float>(whole)) * 0x1p31F);
-  return (int64_t{whole} << 32) + int64_t{half_parts} * 2;
-}
-
 [[gnu::noinline]] SpaceVector bump_force(const PieceTextureTable& texture, float kappa_n, SpaceVector normal,
                                          SpaceVector place_m, SpaceVector speed_mps, float rate_hz) noexcept {
   const auto along = [&](SpaceVector v) { return v - dot(normal, v) * normal; };
@@ -54,10 +46,7 @@ Q32 fixed_point(float value) noexcept {
   const ReliefTable& relief = relief_of(texture);
   const PlayedLevels played = played_levels(relief, __builtin_sqrtf(u_mps * u_mps + v_mps * v_mps), rate_hz);
   const PlaneVector slope = slope_of(relief, played, [&](const ReliefLevelTable& level, int axis) -> Q32 {
-    const SceneRow& row = level.along[axis];
-    const float at_m = dot(axes[axis], place_m) + texture.origin_m[axis];
-    return static_cast<Q32>(joined(row.whole, row.part) +
-                            static_cast<uint64_t>(fixed_point(at_m * level.samples_per_m[axis])));
+    return place_from_centre(level, axis, dot(axes[axis], place_m) + texture.origin_m[axis]);
   });
   return -kappa_n * along(slope.x * axes[0] + slope.y * axes[1]);
 }
@@ -92,6 +81,11 @@ SpaceVector texture_force(const PieceTable& table, const float* number, WallStat
   if (texture.kind == static_cast<uint32_t>(PieceTextureKind::sine)) {
     normal_n = with_sine(texture, gain, normal_n, normal, place_m, speed_mps, rate_hz);
     return {};
+  }
+  if (texture.kind == static_cast<uint32_t>(PieceTextureKind::normals)) {
+    const SpaceVector tilt = bump_force(texture, gain, normal, place_m, speed_mps, rate_hz);
+    normal_n /= __builtin_sqrtf(1 + dot(tilt, tilt));
+    return normal_n * tilt;
   }
   return recording_force(texture, gain, state, normal, place_m, speed_mps, rate_hz);
 }

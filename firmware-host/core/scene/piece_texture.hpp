@@ -26,6 +26,11 @@ inline constexpr float kPathLine_m = 3e-4F;
 /// its two axes (Massie 1996). The force along the normal stays. With a constant one the work along any
 /// closed path is 0, on every shape, because h is a function of the place on the surface.
 ///
+/// Normals: the force of the wall turned to the normal of the map, of the same size: normal_n (normal - gain
+/// grad h) / |normal - gain grad h|, `normal_n` becomes its part along the normal. The surface is flat all
+/// the same, so that this is no gradient: a hand that presses harder on the way down a hill than on the way
+/// up gains energy (Massie 1996).
+///
 /// Sine: a sin(2 pi u / p) sin(2 pi v / q) is added to `normal_n`, along the same axes (Massie 1996), with
 /// the gain x amplitude a; where the force of the wall is below |a| it takes the place of |a|, so that the
 /// sum is not below 0 and begins with 0 at a contact. Frequencies above half the rate are not played

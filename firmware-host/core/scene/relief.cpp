@@ -85,6 +85,32 @@ ReliefSample relief_at(const ReliefLevel& level, Q32 x_place, Q32 y_place) noexc
   return sample;
 }
 
+CurvedSample curved_relief_at(const ReliefLevel& level, Q32 x_place, Q32 y_place) noexcept {
+  const LatticePlace x = lattice_place(x_place), y = lattice_place(y_place);
+  const Neighbours at(level, x, y);
+  const float bend_x[4] = {1 - x.part, 3 * x.part - 2, 1 - 3 * x.part, x.part},
+              bend_y[4] = {1 - y.part, 3 * y.part - 2, 1 - 3 * y.part, y.part};
+  const float near = level.coefficients[at.rows[1] + at.columns[1]];
+  CurvedSample sample;
+  sample.value = near;
+  for (int j = 0; j < 4; ++j) {
+    float value = 0, slope = 0, bend = 0;
+    for (int i = 0; i < 4; ++i) {
+      const float above = level.coefficients[at.rows[j] + at.columns[i]] - near;
+      value += at.along_x.value[i] * above;
+      slope += at.along_x.slope[i] * above;
+      bend += bend_x[i] * above;
+    }
+    sample.value += at.along_y.value[j] * value;
+    sample.by_x += at.along_y.value[j] * slope;
+    sample.by_y += at.along_y.slope[j] * value;
+    sample.by_xx += at.along_y.value[j] * bend;
+    sample.by_xy += at.along_y.slope[j] * slope;
+    sample.by_yy += bend_y[j] * value;
+  }
+  return sample;
+}
+
 PlayedLevels played_levels(const ReliefTable& table, float speed_mps, float rate_hz) noexcept {
   const float cycles_per_tick = speed_mps * table.highest_per_m / rate_hz;
   const Detail detail = detail_at(cycles_per_tick * (1 / kWholeReliefPerTick));

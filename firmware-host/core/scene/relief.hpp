@@ -31,6 +31,21 @@ struct ReliefSample {
 /// one row and column. Safe in the tick.
 ReliefSample relief_at(const ReliefLevel& level, Q32 x, Q32 y) noexcept;
 
+/// The same with the second derivatives, per sample^2. Preconditions and tick as above.
+struct CurvedSample {
+  float value = 0;
+  float by_x = 0, by_y = 0, by_xx = 0, by_xy = 0, by_yy = 0;
+};
+CurvedSample curved_relief_at(const ReliefLevel& level, Q32 x, Q32 y) noexcept;
+
+/// The place on a level, along its columns (0) or rows (1), from the centre of a map whose rows do not depend
+/// on counts. Safe in the tick.
+inline Q32 place_from_centre(const ReliefLevelTable& level, int axis, float from_centre_m) noexcept {
+  const SceneRow& row = level.along[axis];
+  return static_cast<Q32>(joined(row.whole, row.part) +
+                          static_cast<uint64_t>(fixed_point(from_centre_m * level.samples_per_m[axis])));
+}
+
 /// The values at a place of two surfaces of one size; the coefficients of the other one are `second` behind
 /// those of the level. Preconditions and tick as above.
 void values_at(const ReliefLevel& level, size_t second, Q32 x, Q32 y, float (&values)[2]) noexcept;

@@ -31,6 +31,7 @@ constexpr float kMostTransient_n_s_per_m = 1e6F;
 constexpr float kLeastLoss = 1e-6F;  // of a transient from tick to tick
 constexpr float kMostPasses_per_m = 1e6F;
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
+constexpr float kMostBend_per_m = 1e17F;  // of coefficients up to 10 m, 1e-8 m apart
 constexpr float kThinnestSkin_m = 1e-12F, kThickestSkin_m = 1e-3F;
 
 bool is_direction(float cosine, float sine) noexcept {
@@ -76,6 +77,7 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
     case SceneLayerKind::cylinder:
     case SceneLayerKind::quadric:
     case SceneLayerKind::mesh:
+    case SceneLayerKind::relief:
       return within(number[kPieceStiffness], 0, kStiffest_n_per_m) &&
              within(number[kPieceDamping], 0, kMostDamping_n_s_per_m) &&
              within(number[kPieceArrestMass], 0, kMostPiece_kg) &&
@@ -232,7 +234,7 @@ bool sound(const PieceTextureTable& table) noexcept {
       return false;
   for (const float at_m : table.origin_m)
     if (!within(at_m, -kLargestPiece_m, kLargestPiece_m)) return false;
-  return table.kind >= 1 && table.kind <= static_cast<uint32_t>(PieceTextureKind::sine) &&
+  return table.kind >= 1 && table.kind <= static_cast<uint32_t>(PieceTextureKind::normals) &&
          within(table.per_m[0], 0, kMostPasses_per_m) && within(table.per_m[1], 0, kMostPasses_per_m) &&
          within(table.amplitude_n, 0, kMostKappa_n);
 }
@@ -316,6 +318,34 @@ SceneFault check_mesh(const SceneView& view, const SceneLayer& layer, uint32_t r
   return fault == SceneFault::none ? check_texture(view, layer, room, words) : fault;
 }
 
+bool sound(const ReliefPieceTable& table) noexcept {
+  const float *const n = table.piece.form + kPieceDirection, *const u = table.axes[0],
+                     *const v = table.axes[1];
+  const auto product = [](const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  const auto across = [&](const float* a, const float* b) {
+    return within(product(a, b), -kUnitRounding, kUnitRounding);
+  };
+  const auto unit = [&](const float* a) {
+    return within(product(a, a), 1 - kUnitRounding, 1 + kUnitRounding);
+  };
+  return sound(table.piece, SceneLayerKind::relief) && across(n, u) && across(n, v) && across(u, v) &&
+         unit(u) && unit(v) && within(table.origin_m[0], -kLargestPiece_m, kLargestPiece_m) &&
+         within(table.origin_m[1], -kLargestPiece_m, kLargestPiece_m) &&
+         within(table.bend_per_m, 0, kMostBend_per_m);
+}
+
+SceneFault check_relief_piece(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                              uint32_t& words) noexcept {
+  constexpr uint32_t kHead = sizeof(ReliefPieceTable) / sizeof(uint32_t);
+  if (room < kHead) return SceneFault::structure;
+  if (!sound(table_of<ReliefPieceTable>(view, layer))) return SceneFault::value;
+  const SceneLayer behind{layer.kind, layer.first_number, layer.table + kHead};
+  SceneFault fault = check_relief(view, behind, 1, kLargestCoefficient_m, room - kHead, words);
+  words += kHead;
+  if (fault == SceneFault::none) fault = check_travel(view, layer, room, words);
+  return fault == SceneFault::none ? check_texture(view, layer, room, words) : fault;
+}
+
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,
                        uint32_t& words) noexcept {
   switch (static_cast<SceneLayerKind>(layer.kind)) {
@@ -341,6 +371,8 @@ SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t 
       return check_piece(view, layer, room, words);
     case SceneLayerKind::mesh:
       return check_mesh(view, layer, room, words);
+    case SceneLayerKind::relief:
+      return check_relief_piece(view, layer, room, words);
     case SceneLayerKind::spring:
     case SceneLayerKind::damper:
     case SceneLayerKind::tick_damper:

@@ -36,12 +36,13 @@ enum class SceneLayerKind : uint16_t {
   sphere = 17,
   cylinder = 18,
   quadric = 19,
-  mesh = 20
+  mesh = 20,
+  relief = 22
 };
 
 /// Whether a layer is a piece: a solid in space. In a block either all layers are pieces or none is.
 constexpr bool is_piece(SceneLayerKind kind) noexcept {
-  return kind >= SceneLayerKind::plane && kind <= SceneLayerKind::mesh;
+  return (kind >= SceneLayerKind::plane && kind <= SceneLayerKind::mesh) || kind == SceneLayerKind::relief;
 }
 
 constexpr bool is_known(SceneLayerKind kind) noexcept {
@@ -103,6 +104,7 @@ constexpr uint32_t changeable_numbers_of(SceneLayerKind kind) noexcept {
     case SceneLayerKind::cylinder:
     case SceneLayerKind::quadric:
     case SceneLayerKind::mesh:
+    case SceneLayerKind::relief:
       return kPieceNumbers;
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
@@ -330,9 +332,9 @@ inline const TravelTable& travel_of(const PieceTable& table) noexcept {
   return *reinterpret_cast<const TravelTable*>(reinterpret_cast<const uint32_t*>(&table) + table.travel);
 }
 
-enum class PieceTextureKind : uint32_t { recording = 1, bump = 2, sine = 3 };
+enum class PieceTextureKind : uint32_t { recording = 1, bump = 2, sine = 3, normals = 4 };
 
-/// Behind all other words of a piece, and before the relief of a recording or bump (ReliefTable).
+/// Behind all other words of a piece, and, but of a sine, before a relief (ReliefTable).
 struct PieceTextureTable {
   uint32_t kind = 0;      ///< PieceTextureKind
   float per_m[2] = {};    ///< of a recording: how often a path plays it forth and back; of a sine: periods
@@ -349,6 +351,19 @@ inline const PieceTextureTable& texture_of(const PieceTable& table) noexcept {
 }
 inline const ReliefTable& relief_of(const PieceTextureTable& texture) noexcept {
   return *reinterpret_cast<const ReliefTable*>(&texture + 1);
+}
+
+/// A plane that a height map raises along its normal: this, then the map (ReliefTable) of one level.
+struct ReliefPieceTable {
+  PieceTable piece;                           ///< of its form the normal of the plane
+  float axes[2][3] = {{1, 0, 0}, {0, 1, 0}};  ///< of the map, unit vectors across each other and the normal
+  float origin_m[2] = {};                     ///< on the map: the origin of the piece
+  float bend_per_m = 0;  ///< at least the largest second derivative of the heights, in any direction
+};
+static_assert(sizeof(ReliefPieceTable) == 132);
+
+inline const ReliefTable& relief_of(const ReliefPieceTable& table) noexcept {
+  return *reinterpret_cast<const ReliefTable*>(&table + 1);
 }
 
 /// A block that was read; it points into its memory.

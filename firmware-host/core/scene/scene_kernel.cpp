@@ -297,6 +297,7 @@ PlaneVector SceneKernel::force_in(const ScenePatch& patch, const Hand& hand) noe
       case SceneLayerKind::cylinder:
       case SceneLayerKind::quadric:
       case SceneLayerKind::mesh:
+      case SceneLayerKind::relief:
         break;  // in space: GhostPoint
     }
     sum.x += force.x;

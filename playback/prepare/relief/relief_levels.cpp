@@ -314,6 +314,15 @@ schema::Result<Relief> relief_levels(const schema::HeightMap& map, double rate_h
   return levels_of(heights, size, highest_frequency(heights, size), map.pitch_m, rate_hz, fastest_mps, where);
 }
 
+Relief surface_relief(const schema::HeightMap& map) {
+  const GridSize size{map.columns, map.rows};
+  const std::vector<double> heights(map.height_m.begin(), map.height_m.end());
+  Relief relief{map.columns, map.rows, map.pitch_m,
+                highest_frequency(above_mean(heights), size) / map.pitch_m, 0};
+  relief.levels.push_back({map.columns, map.rows, relief_coefficients(heights, map.columns, map.rows)});
+  return relief;
+}
+
 schema::Result<Relief> texture_levels(const schema::SpaceSignal& force_n, double rate_hz, double fastest_mps,
                                       const std::string& where) {
   std::vector<double> slope;

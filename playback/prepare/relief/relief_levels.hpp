@@ -75,6 +75,9 @@ struct ForceRelief {
 schema::Result<Relief> relief_levels(const schema::HeightMap& map, double rate_hz, double fastest_mps,
                                      const std::string& where);
 
+/// One level with the heights as they are, for a surface in space.
+Relief surface_relief(const schema::HeightMap& map);
+
 /// A texture as a map of one row: the slope of its first level is minus the force (in N, as m/m),
 /// interpolated between the samples by a quadratic B-spline. Its middle is that of the texture; beyond the
 /// ends the slope is 0. Precondition: at least 2 samples. Errors: as relief_levels.

@@ -60,6 +60,7 @@ Meeting meeting_of_planes(const Piece& a, const Piece& b, double radius_m) {
 }
 
 Meeting meeting_of(const Piece& a, const Piece& b, double radius_m) {
+  if (schema::is_raised(a) || schema::is_raised(b)) return Meeting::other;
   if (a.shape == PieceShape::plane && b.shape == PieceShape::plane) return meeting_of_planes(a, b, radius_m);
   if (b.shape == PieceShape::plane) return meeting_of(b, a, radius_m);
   if (b.shape != PieceShape::sphere) return Meeting::other;
@@ -192,6 +193,13 @@ double texture_stiffness_n_per_m(const Piece& piece, const schema::Device& devic
   const bool round = piece.shape == PieceShape::sphere || piece.shape == PieceShape::cylinder;
   return gain * device.peak_force_n *
          (piece.texture->steepest + (round ? piece.texture->largest / piece.radius_m : 0));
+}
+
+double most_energy_j(const Piece& piece, const schema::Device& device) {
+  if (!piece.texture || piece.texture->type != schema::PieceTextureType::normals) return 0;
+  const double most_n = device.peak_force_n, held = 1 - 1 / std::hypot(1, piece.texture->largest);
+  const double stored_j = most_n * most_n / (2 * piece.stiffness_n_per_m);
+  return most_n * piece.relief->range_m + (piece.stiffness_n_per_m > 0 ? held * stored_j : 0);
 }
 
 double wall_growth(const Piece& piece, const schema::Device& device, double rate_hz,

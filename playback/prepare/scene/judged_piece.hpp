@@ -41,6 +41,12 @@ schema::Piece steepest_wall(const schema::Piece& piece);
 /// quadrics and meshes is left out. `piece`: of read_reliefs().
 double texture_stiffness_n_per_m(const schema::Piece& piece, const schema::Device& device);
 
+/// Interpolated normals: the most energy that one way down the relief with the peak force of the device and
+/// back up without one can give the hand: force x range of the heights, and what of the energy in the spring
+/// a hand that goes in on the steepest slope and out on a flat place gains. 0 of other pieces. `piece`: of
+/// read_reliefs().
+double most_energy_j(const schema::Piece& piece, const schema::Device& device);
+
 /// A piece with all that may act at the same place, at the worst of the ends of all sliders (slider_ends()).
 /// `contact: add`: planes of the same direction add up, from the highest one down to the depth at which they
 /// grow the most; with pieces that may overlap in another way a stable sum is not known. `ghost`: stiffnesses

@@ -143,13 +143,46 @@ core::PieceTextureKind kind_of_texture(schema::PieceTextureType type) {
       return core::PieceTextureKind::recording;
     case schema::PieceTextureType::bump:
       return core::PieceTextureKind::bump;
+    case schema::PieceTextureType::normals:
+      return core::PieceTextureKind::normals;
     case schema::PieceTextureType::sine:
       break;
   }
   return core::PieceTextureKind::sine;
 }
 
-// The same.
+// Of a map whose centre is at the place of the piece.
+void set_axes(const std::array<std::array<double, 3>, 2>& from, const Piece& piece, const PlaneSteps& steps,
+              const core::PieceTable& table, float (&axes)[2][3], float (&at_m)[2]) {
+  const double step_m[3] = {steps.x_m, steps.y_m, steps.z_m}, place_m[3] = {piece.x_m, piece.y_m, piece.z_m};
+  for (std::size_t i = 0; i < 2; ++i) {
+    double origin_m = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      axes[i][j] = static_cast<float>(from[i][j]);
+      origin_m += from[i][j] * (table.origin[j] * step_m[j] + double{table.rest_m[j]} - place_m[j]);
+    }
+    at_m[i] = static_cast<float>(origin_m);
+  }
+}
+
+// The largest second derivative is computed at the samples and halfway between them.
+constexpr double kBendMargin = 1.25;
+
+// What is behind the PieceTable of a raised plane.
+void append_relief(const Piece& piece, const Reliefs& reliefs, const PlaneSteps& steps,
+                   std::vector<std::uint32_t>& words) {
+  if (!is_raised(piece)) return;
+  core::ReliefPieceTable table;
+  static_assert(offsetof(core::ReliefPieceTable, piece) == 0);
+  std::memcpy(static_cast<void*>(&table.piece), words.data(), sizeof table.piece);
+  set_axes(relief_axes(piece), piece, steps, table.piece, table.axes, table.origin_m);
+  table.bend_per_m = static_cast<float>(kBendMargin * piece.relief->steepest);
+  words.clear();
+  append_words(words, std::vector{table});
+  append_words(words, relief_table(reliefs.of(*piece.relief), 0, {}, {0, 0}));
+}
+
+// Behind the other words of its piece.
 void append_texture(const Piece& piece, const Reliefs& reliefs, const PlaneSteps& steps,
                     std::vector<std::uint32_t>& words) {
   if (!piece.texture) return;
@@ -159,18 +192,9 @@ void append_texture(const Piece& piece, const Reliefs& reliefs, const PlaneSteps
   std::memcpy(words.data(), &table, sizeof table);
   const schema::PieceTextureType type = piece.texture->type;
   core::PieceTextureTable texture;
-  const double step_m[3] = {steps.x_m, steps.y_m, steps.z_m}, place_m[3] = {piece.x_m, piece.y_m, piece.z_m};
-  const auto axes = map_axes(*piece.texture);
-  for (std::size_t i = 0; i < 2; ++i) {
-    double origin_m = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      texture.axes[i][j] = static_cast<float>(axes[i][j]);
-      origin_m += axes[i][j] * (table.origin[j] * step_m[j] + double{table.rest_m[j]} - place_m[j]);
-    }
-    texture.origin_m[i] = static_cast<float>(origin_m);
-    if (type == schema::PieceTextureType::sine)
-      texture.per_m[i] = static_cast<float>(1 / piece.texture->periods_m[i]);
-  }
+  set_axes(schema::map_axes(piece.texture->axes), piece, steps, table, texture.axes, texture.origin_m);
+  for (std::size_t i = 0; i < 2 && type == schema::PieceTextureType::sine; ++i)
+    texture.per_m[i] = static_cast<float>(1 / piece.texture->periods_m[i]);
   texture.amplitude_n = static_cast<float>(piece.texture->amplitude_n);
   texture.kind = static_cast<std::uint32_t>(kind_of_texture(type));
   if (type == schema::PieceTextureType::sine) {
@@ -250,8 +274,9 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
     for (const Piece& end : slider_ends(piece)) TACTO_TRY(check_wall(end, device, rate_hz, hand, at));
     const auto transient = transient_table(piece, rate_hz, at);
     TACTO_TRY(transient);
-    layers.push_back({static_cast<std::uint16_t>(kind_of_piece(piece.shape)),
-                      static_cast<std::uint16_t>(numbers.size()), static_cast<std::uint32_t>(tables.size())});
+    const SceneLayerKind kind = is_raised(piece) ? SceneLayerKind::relief : kind_of_piece(piece.shape);
+    layers.push_back({static_cast<std::uint16_t>(kind), static_cast<std::uint16_t>(numbers.size()),
+                      static_cast<std::uint32_t>(tables.size())});
     append_numbers(piece, numbers);
     if (piece.shape == PieceShape::mesh) {
       auto words = words_of_mesh(piece, *base.meshes.at(piece.mesh), base.steps, *transient, at);
@@ -266,6 +291,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
     table->transient = *transient;
     std::vector<std::uint32_t> words;
     append_words(words, std::vector{*table});
+    append_relief(piece, base.reliefs, base.steps, words);
     append_travel(piece, words);
     append_texture(piece, base.reliefs, base.steps, words);
     append_words(tables, words);

@@ -380,7 +380,8 @@ std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLa
 
 std::string PreparedScene::remedy_for(std::size_t room) const {
   if (!meshes.empty()) return remedy_for_meshes(*this, room);
-  if (!pieces.empty() && reliefs.textures.empty() && reliefs.height_maps.empty()) return {};
+  if (!pieces.empty() && reliefs.textures.empty() && reliefs.height_maps.empty() && reliefs.surfaces.empty())
+    return {};
   if (!pieces.empty()) return "make its textures shorter, or give its height maps a larger pitch";
   std::size_t maps = 0, textures = 0;
   for (const schema::Patch& patch : patches)
@@ -397,6 +398,27 @@ std::string PreparedScene::remedy_for(std::size_t room) const {
   return fmt::format("give its height and force maps a pitch {:.2f} times as large",
                      std::ceil(100 * factor) / 100);
 }
+
+namespace {
+
+Result<void> read_relief(schema::Piece& piece, const std::string& where, Reliefs& reliefs) {
+  schema::PieceRelief& of = *piece.relief;
+  const auto map = schema::read_height_map(schema::texture_in_scene(where, of.file));
+  TACTO_TRY(map);
+  const schema::HeightFigures figures = schema::figures_of(*map);
+  of.range_m = figures.highest_m - figures.lowest_m;
+  if (of.interpolated) {
+    piece.texture = schema::PieceTexture{schema::PieceTextureType::normals, of.file, relief_axes(piece)};
+    return {};
+  }
+  auto& surface = reliefs.surfaces[of.file];
+  if (!surface) surface = std::make_shared<const Relief>(surface_relief(*map));
+  of.largest = surface->largest_slope();
+  of.steepest = surface->curvature_per_m(INFINITY, INFINITY);
+  return {};
+}
+
+}  // namespace
 
 Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, double rate_hz) {
   Reliefs reliefs;
@@ -450,9 +472,10 @@ Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, dou
     return {};
   };
   for (schema::Piece& piece : scene.pieces) {
+    if (piece.relief) TACTO_TRY(read_relief(piece, where, reliefs));
     if (!piece.texture || piece.texture->type == schema::PieceTextureType::sine) continue;
     const std::string file = schema::texture_in_scene(where, piece.texture->file);
-    const bool bump = piece.texture->type == schema::PieceTextureType::bump;
+    const bool bump = piece.texture->type != schema::PieceTextureType::recording;
     auto& relief = (bump ? reliefs.height_maps : reliefs.textures)[piece.texture->file];
     if (!relief) {
       auto levels = bump ? levels_of_map(file, rate_hz) : levels_of_texture(file, rate_hz, true);

@@ -37,12 +37,15 @@ inline constexpr double kFastestHandMps = 10;
 /// The height maps, textures, atoms and force maps of a scene, by the names in their layers.
 struct Reliefs {
   std::map<std::string, std::shared_ptr<const Relief>> height_maps, textures;
+  std::map<std::string, std::shared_ptr<const Relief>> surfaces = {};  ///< of planes: surface_relief()
   std::map<std::string, std::shared_ptr<const ForceRelief>> force_maps;
   std::map<std::string, std::shared_ptr<const std::vector<schema::Atom>>> atoms;
 
   const Relief& of(const schema::PieceTexture& texture) const {
-    return *(texture.type == schema::PieceTextureType::bump ? height_maps : textures).at(texture.file);
+    const bool recording = texture.type == schema::PieceTextureType::recording;
+    return *(recording ? textures : height_maps).at(texture.file);
   }
+  const Relief& of(const schema::PieceRelief& relief) const { return *surfaces.at(relief.file); }
   const Relief& of(const schema::HeightMapLayer& layer) const { return *height_maps.at(layer.file); }
   const Relief& of(const schema::TextureForceLayer& layer) const { return *textures.at(layer.file); }
   const ForceRelief& of(const schema::ForceMapLayer& layer) const { return *force_maps.at(layer.file); }
@@ -95,7 +98,8 @@ schema::Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, con
 
 /// Reads the height maps, textures, atoms and force maps of all layers and pieces, and sets their curvature,
 /// steepest_n_per_m, stiffest_n_per_m and slopes. Textures fade at their ends as on a tray
-/// (TextureLookup); those of pieces are less their mean, with the sign of a stroke that goes forth. `where`
+/// (TextureLookup); those of pieces are less their mean, with the sign of a stroke that goes forth; a relief
+/// with interpolated normals becomes a texture of the type normals. `where`
 /// is the scene's file. Errors: as read_height_map, relief_levels, read_texture, check_playable, read_atoms,
 /// check_section, read_force_grid, force_levels; unsuitable: a texture whose mean force is too large for its
 /// length.

@@ -73,7 +73,14 @@ ExactGhost::Surface ExactGhost::surface_at(const Piece& piece, const SpaceMetres
     const SpaceMetres n = unit_of(piece.direction);
     const double above_m = inner(n, p), below_m = -piece.thickness_m - above_m;
     if (piece.thickness_m > 0 && below_m > above_m) return {below_m - radius_m, sum_of({}, -1, n)};
-    return {above_m - radius_m, n};
+    if (!schema::is_raised(piece)) return {above_m - radius_m, n};
+    const Relief& relief = scene_.reliefs.of(*piece.relief);
+    const auto [u, v] = relief_axes(piece);
+    const SplineValue at =
+        spline_of(relief.levels.front(), place_on_level(relief, relief.levels.front(), 0, inner(u, p)),
+                  place_on_level(relief, relief.levels.front(), 1, inner(v, p)));
+    const SpaceMetres slope = sum_of(sum_of(n, -at.by_x / relief.pitch_m, u), -at.by_y / relief.pitch_m, v);
+    return {(above_m - at.value) / size_of(slope), unit_of(slope)};
   }
   if (piece.shape == PieceShape::quadric) {
     const auto& c = piece.coefficients;
@@ -342,7 +349,7 @@ SpaceMetres ExactGhost::texture_force(const Piece& piece, Wall& wall, double& no
   if (!piece.texture || !(normal_n > 0)) return {};
   const auto along = [&](const SpaceMetres& v) { return sum_of(v, -inner(v, normal), normal); };
   if (piece.texture->type != schema::PieceTextureType::recording) {
-    const auto [u, v] = map_axes(*piece.texture);
+    const auto [u, v] = schema::map_axes(piece.texture->axes);
     const SpaceMetres at_m = sum_of(place_m, -1, {piece.x_m, piece.y_m, piece.z_m}),
                       passed_mps = along(speed_mps);
     if (piece.texture->type == schema::PieceTextureType::sine) {
@@ -357,8 +364,10 @@ SpaceMetres ExactGhost::texture_force(const Piece& piece, Wall& wall, double& no
     }
     const auto slope = exact_slope(scene_.reliefs.of(*piece.texture), inner(u, at_m), inner(v, at_m),
                                    std::hypot(inner(u, passed_mps), inner(v, passed_mps)), 1 / tick_s_);
-    return sum_of({}, -piece.texture_gain * normal_n,
-                  along(sum_of(sum_of({}, slope.along_columns, u), slope.along_rows, v)));
+    const SpaceMetres tilt = sum_of({}, -piece.texture_gain,
+                                    along(sum_of(sum_of({}, slope.along_columns, u), slope.along_rows, v)));
+    if (piece.texture->type == schema::PieceTextureType::normals) normal_n /= std::hypot(1, size_of(tilt));
+    return sum_of({}, normal_n, tilt);
   }
   const SpaceMetres way = along(sum_of(place_m, -1, wall.last_m)), before = along(wall.line);
   const double by = (inner(way, before) < 0 ? -1 : 1) / double{core::kPathLine_m};
