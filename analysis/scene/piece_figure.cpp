@@ -220,6 +220,8 @@ std::string words_of(const Piece& piece) {
   if (piece.texture)
     words += fmt::format(", texture {}{}{}", to_string(piece.texture->type),
                          piece.texture->file.empty() ? "" : " ", piece.texture->file);
+  if (piece.slide)
+    words += fmt::format(", slides {:g} to {:g} mm", 1e3 * piece.slide->from_m, 1e3 * piece.slide->to_m);
   if (piece.relief)
     words += fmt::format(", {} {}", piece.relief->interpolated ? "normals of" : "relief", piece.relief->file);
   return words;

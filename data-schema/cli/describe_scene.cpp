@@ -125,6 +125,9 @@ cli::Report row_of(const Piece& piece) {
           .add("texture_period_v_m", texture->periods_m[1]);
     row.add("texture_gain", piece.texture_gain);
   }
+  if (piece.slide)
+    for (const auto& [name, value] : kSlideNumbers)
+      if ((*piece.slide).*value != 0) row.add(std::string("slide_") + name, (*piece.slide).*value);
   if (piece.relief) {
     row.add("relief", piece.relief->file);
     row.add("normals", piece.relief->interpolated ? "interpolated" : "exact");

@@ -82,6 +82,21 @@ Result<void> check_relief(const Piece& piece, const std::string& where) {
   return check_axes(piece, piece.relief->axes, true, where + "/axes");
 }
 
+Result<void> check_slide(const PieceSlide& slide, const std::string& where) {
+  const auto& d = slide.direction;
+  if (!(std::hypot(d[0], d[1], d[2]) > 1e-9))
+    return fail(ErrorKind::unsuitable, "a direction of length 0", where + "/direction",
+                "give a vector of any length, as in [1, 0, 0]");
+  if (!(slide.from_m < slide.to_m))
+    return fail(ErrorKind::unsuitable, "the piece cannot move: its two stops are at one place",
+                where + "/to_m", "give stops below and above its place: from_m at most 0, to_m at least 0");
+  if (slide.detent_n > 0 != slide.detent_m > 0)
+    return fail(ErrorKind::unsuitable, "detents have a force and a distance",
+                where + (slide.detent_n > 0 ? "/detent_n" : "/detent_m"),
+                "give both detent_n and detent_m, or neither");
+  return {};
+}
+
 Result<void> check_piece_texture(const Piece& piece, const std::string& texture_where) {
   const bool sine = piece.texture->type == PieceTextureType::sine;
   const auto needless = [&](const char* member, const char* types) {
@@ -167,6 +182,7 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
   TACTO_TRY(check_travel(piece, where + "/travel"));
   if (piece.texture) TACTO_TRY(check_piece_texture(piece, where + "/texture"));
   if (piece.relief) TACTO_TRY(check_relief(piece, where + "/relief"));
+  if (piece.slide) TACTO_TRY(check_slide(*piece.slide, where + "/slide"));
   if (piece.transient && piece.hand_surface)
     return fail(ErrorKind::unsuitable, "a piece has one transient", where + "/hand_surface",
                 "leave out `transient` or `hand_surface`");

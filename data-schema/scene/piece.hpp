@@ -84,6 +84,28 @@ struct PieceRelief {
   double largest = 0, steepest = 0, range_m = 0;
 };
 
+/// A piece that moves along one direction, from its place on, between two stops: a mass with viscous and dry
+/// friction, and detents, which are sine-shaped: -detent_n sin(2 pi place / detent_m).
+struct PieceSlide {
+  std::array<double, 3> direction = {1, 0, 0};
+  double from_m = 0, to_m = 0;
+  double mass_kg = 0, viscous_n_s_per_m = 0, friction_n = 0;
+  double detent_n = 0, detent_m = 0;
+};
+
+struct SlideNumber {
+  const char* name;
+  double PieceSlide::*value;
+};
+inline constexpr SlideNumber kSlideNumbers[] = {
+    {"from_m", &PieceSlide::from_m},         {"to_m", &PieceSlide::to_m},
+    {"mass_kg", &PieceSlide::mass_kg},       {"viscous_n_s_per_m", &PieceSlide::viscous_n_s_per_m},
+    {"friction_n", &PieceSlide::friction_n}, {"detent_n", &PieceSlide::detent_n},
+    {"detent_m", &PieceSlide::detent_m}};
+
+/// Of the detents around their places of rest.
+double detent_stiffness_n_per_m(const PieceSlide& slide);
+
 /// Unit vectors: the first axis, and the part of the second one across it. Precondition: check_pieces().
 std::array<std::array<double, 3>, 2> map_axes(const std::array<std::array<double, 3>, 2>& axes);
 
@@ -115,7 +137,8 @@ struct Piece {
   std::vector<TravelPoint> travel = {};
   double texture_gain = 1;
   std::optional<PieceRelief> relief = std::nullopt;  ///< plane
-  std::map<std::string, SliderRange> sliders = {};   ///< of kWallNumbers that change, by their names
+  std::optional<PieceSlide> slide = std::nullopt;
+  std::map<std::string, SliderRange> sliders = {};  ///< of kWallNumbers that change, by their names
 };
 
 struct PieceNumber {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "data-schema/json/json_document.hpp"
 
@@ -104,6 +105,10 @@ std::array<std::array<double, 3>, 2> relief_axes(const Piece& plane) {
   return map_axes(axes);
 }
 
+double detent_stiffness_n_per_m(const PieceSlide& slide) {
+  return slide.detent_m > 0 ? 2 * std::numbers::pi * slide.detent_n / slide.detent_m : 0;
+}
+
 double steepest_spring_n_per_m(const Piece& piece) {
   double steepest = piece.stiffness_n_per_m;
   TravelPoint last;
@@ -164,6 +169,11 @@ Piece piece_from(const Json& body) {
   if (body.contains("travel"))
     for (const Json& point : body["travel"]) piece.travel.push_back({point["depth_m"], point["force_n"]});
   if (body.contains("texture")) piece.texture = piece_texture_from(body["texture"]);
+  if (body.contains("slide")) {
+    piece.slide.emplace();
+    for (std::size_t i = 0; i < 3; ++i) piece.slide->direction[i] = body["slide"]["direction"][i];
+    for (const auto& [name, value] : kSlideNumbers) (*piece.slide).*value = number_or(body["slide"], name, 0);
+  }
   if (body.contains("relief")) {
     piece.relief.emplace();
     piece.relief->file = text_or(body["relief"], "file");
@@ -193,6 +203,11 @@ Json piece_body(const Piece& piece) {
   for (const TravelPoint& point : piece.travel)
     body["travel"].push_back({{"depth_m", point.depth_m}, {"force_n", point.force_n}});
   if (piece.texture) body["texture"] = piece_texture_body(*piece.texture);
+  if (piece.slide) {
+    body["slide"]["direction"] = piece.slide->direction;
+    for (const auto& [name, value] : kSlideNumbers) body["slide"][name] = (*piece.slide).*value;
+    if (!(piece.slide->detent_n > 0)) body["slide"].erase("detent_n"), body["slide"].erase("detent_m");
+  }
   if (piece.relief)
     body["relief"] = {{"file", piece.relief->file},
                       {"axes", piece.relief->axes},

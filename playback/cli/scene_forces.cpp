@@ -26,6 +26,7 @@
 #include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
+#include "playback/prepare/scene/slide_table.hpp"
 #include "playback/render/plane_render.hpp"
 
 namespace tacto::playback {
@@ -109,6 +110,7 @@ std::string table_of(const PlaneRendering& rendering) {
   for (const PlaneAxisRun* axis : axes) fmt::format_to(out, ",force_{}_n", axis->name);
   for (const PlaneAxisRun* axis : axes)
     if (!axis->hand_m.empty()) fmt::format_to(out, ",hand_{}_m", axis->name);
+  for (const SlideRun& slide : rendering.slides) fmt::format_to(out, ",slide_{}_m", slide.piece);
   fmt::format_to(out, "\n");
   for (std::size_t i = 0; i < rendering.time_s.size(); ++i) {
     fmt::format_to(out, "{}", rendering.time_s[i]);
@@ -116,6 +118,7 @@ std::string table_of(const PlaneRendering& rendering) {
     for (const PlaneAxisRun* axis : axes) fmt::format_to(out, ",{}", axis->force_n[i]);
     for (const PlaneAxisRun* axis : axes)
       if (!axis->hand_m.empty()) fmt::format_to(out, ",{}", axis->hand_m[i]);
+    for (const SlideRun& slide : rendering.slides) fmt::format_to(out, ",{}", slide.place_m[i]);
     fmt::format_to(out, "\n");
   }
   return fmt::to_string(text);
@@ -334,6 +337,10 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
     if (rubs && piece.*number.value > 0) row.add(number.name, piece.*number.value);
   }
   if (piece.texture) add_texture(row, piece, on);
+  if (piece.slide)
+    row.add("slide_from_m", piece.slide->from_m)
+        .add("slide_to_m", piece.slide->to_m)
+        .add("slide_stiffest_n_per_m", stiffest_slide_n_per_m(piece, on.scene.steps.tick_s));
   if (schema::is_raised(piece)) add_relief(row, *piece.relief, on);
   if (const double energy_j = most_energy_j(piece, on.device); energy_j > 0) row.add("may_give_j", energy_j);
   if (piece.arrest_mass_kg > 0)

@@ -71,6 +71,8 @@ void run_kernel(PlaneRendering& rendering, const PreparedScene& scene, const cor
   std::vector<float> live(scene.view().live_words());
   kernel.set(scene.view(), setup, live.data());
   ExactScene exact(scene, device, rendering.rate_hz);
+  for (std::uint32_t i = 0; i < scene.pieces.size(); ++i)
+    if (scene.pieces[i].slide) rendering.slides.push_back({scene.pieces[i].name, i, {}});
   std::vector<std::int32_t> counts(device.axes.size());
   std::vector<double> force_n(device.axes.size());
   for (std::size_t tick = 0; tick < rendering.time_s.size(); ++tick) {
@@ -94,6 +96,7 @@ void run_kernel(PlaneRendering& rendering, const PreparedScene& scene, const cor
     else
       rendering.largest_rounding_n = std::max(rendering.largest_rounding_n, most_rounding_n);
     rendering.largest_force_n = std::max(rendering.largest_force_n, std::sqrt(square));
+    for (SlideRun& slide : rendering.slides) slide.place_m.push_back(double{kernel.slid_m(slide.layer)});
     motion.move_on(tick, force_n);
   }
 }

@@ -23,6 +23,13 @@ struct PlaneAxisRun {
   std::vector<float> force_n;   ///< on the hand
 };
 
+/// A piece that slides: its place along its direction after the tick.
+struct SlideRun {
+  std::string piece;
+  std::uint32_t layer = 0;
+  std::vector<double> place_m;
+};
+
 struct PlaneRendering {
   double rate_hz = 0;
   bool in_space = false;       ///< of pieces: the axis z has a force, too
@@ -34,6 +41,7 @@ struct PlaneRendering {
   /// places are as near, rounding decides, and the ghost points then hold the hand on different sides.
   std::size_t other_side_ticks = 0;
   double largest_force_n = 0;  ///< of the vector
+  std::vector<SlideRun> slides = {};
 };
 
 /// The names of the device's axes in the plane: those of which the path has a column.

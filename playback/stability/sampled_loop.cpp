@@ -133,9 +133,11 @@ SquareMatrix state_matrix(const ScaledLoop& loop) {
   }
 
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const auto& [mass, own, coupling, coupling_damping, may_rest] = bodies[i];
+    const auto& [mass, own, coupling, coupling_damping, may_rest, semi_implicit] = bodies[i];
     const std::size_t way = kFirstBody + 2 * i, moves = way + 1;
-    const auto [by_place, by_speed] = after_one(mass, own, 0, 1);
+    const double at_end = 1 / (mass + own);
+    const auto [by_place, by_speed] =
+        semi_implicit ? PlaceAndSpeed{at_end, at_end} : after_one(mass, own, 0, 1);
     double* const row = matrix.row(moves);
     row[way] = by_speed * coupling;
     row[kStep] = by_speed * coupling_damping;

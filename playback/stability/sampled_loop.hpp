@@ -14,6 +14,8 @@ struct CoupledBody {
   double own_damping_n_s_per_m = 0;  ///< of its motion in the patch
   double stiffness_n_per_m = 0, damping_n_s_per_m = 0;
   bool may_rest = false;  ///< static friction holds it against small forces
+  /// Moves as core::push_slide() instead: s <- (s + F T / m) / (1 + c T / m), p <- p + T s.
+  bool semi_implicit = false;
 };
 
 /// What a device computes once a tick, along one axis.

@@ -9,11 +9,12 @@
 
 namespace tacto::tests {
 
-inline constexpr uint32_t kPiecesFingerprint = 1566845330;
+inline constexpr uint32_t kPiecesFingerprint = 2827787309;
 
 /// A floor, a plate on edge, a ball, a pipe, an ellipsoid and a mesh, and a hand that is pushed through them
 /// at up to 60 counts per tick; walls with dampers, arrest and integral; a recording on the floor, a bump map
-/// on the ball, a sine on the pipe, which is a button; a raised plane below; all limits are reached.
+/// on the ball, a sine on the pipe, which is a button; a raised plane below; the plate slides; all limits are
+/// reached.
 class PiecesWorkload {
   static constexpr uint32_t kPieces = 7, kWords = core::kPieceNumbers + core::kWallStateWords;
 
@@ -35,10 +36,12 @@ class PiecesWorkload {
       block_.layers[i].table = static_cast<uint32_t>(static_cast<const uint32_t*>(tables[i]) -
                                                      reinterpret_cast<const uint32_t*>(&block_.tables));
     floor.table = {{0, 0, -2000}, {1e-6F, 0, -3e-6F}, {0.28F, 0, 0.96F}, {}};
-    plate = {{1500, 0, 0}, {}, {1, 0, 0, 0.001F}, {}};
+    plate.table = {{1500, 0, 0}, {}, {1, 0, 0, 0.001F}, {}};
     ball.table = {{-1000, 500, 0}, {}, {0, 0, 1, 0.01F}, {}};
     pipe.table = {{0, -2500, 500}, {}, {0.6F, 0, 0.8F, 0.008F}, {}};
     egg = {{300, 2000, 700}, {}, {1e4F, 2e4F, 4e4F, 1e3F, 0, 0, 0, 2, 0, -1}, {}};
+    plate.table.slide = sizeof(core::PieceTable) / sizeof(uint32_t);
+    plate.slide = {{1, 0, 0}, -0.01F, 0.01F, 0.01F, 0.95F, 0.2F, 0.5F, 400};
     floor.table.texture = ball.table.texture = pipe.table.travel =
         sizeof(core::PieceTable) / sizeof(uint32_t);
     pipe.table.texture = pipe.table.travel + 7;
@@ -117,7 +120,10 @@ class PiecesWorkload {
         core::ReliefLevelTable levels[2];
         float coefficients[90] = {};
       } floor;
-      core::PieceTable plate;
+      struct {
+        core::PieceTable table;
+        core::SlideTable slide;
+      } plate;
       struct {
         core::PieceTable table;
         core::PieceTextureTable texture;

@@ -149,12 +149,13 @@ PLANE, SPHERE, CYLINDER, QUADRIC, MESH, RELIEF = 16, 17, 18, 19, 20, 22
 AT_REST = (0,) * 9
 
 
-def piece(kind, origin, form, wall=(2000, 4, 0.15, 5000, 2, 0.5, 0.6, 0.4, 2, 1), transient=(0, 33, -0.045, 0.284, -0.284, -0.22), texture=b"", travel=()):
+def piece(kind, origin, form, wall=(2000, 4, 0.15, 5000, 2, 0.5, 0.6, 0.4, 2, 1), transient=(0, 33, -0.045, 0.284, -0.284, -0.22), texture=b"", travel=(), slide=b""):
     """A layer of a scene in space: the numbers of its wall with a state of zeros, and its table, with what is behind it of its texture."""
     points = struct.pack(f"<I{2 * len(travel)}f", len(travel), *(number for point in travel for number in point)) if travel else b""
-    behind = 24 + len(points) // 4
-    table = struct.pack("<3i3f10f6fII", *origin, 1e-6, 0, -2e-6, *form, *(0,) * (10 - len(form)), *transient, 24 if travel else 0, behind if texture else 0)
-    return kind, (*wall, *(0,) * 15), table + points + texture
+    at = 25 + len(points) // 4
+    table = struct.pack("<3i3f10f6fIII", *origin, 1e-6, 0, -2e-6, *form, *(0,) * (10 - len(form)), *transient, 25 if travel else 0,
+                        at + len(slide) // 4 if texture else 0, at if slide else 0)
+    return kind, (*wall, *(0,) * 17), table + points + slide + texture
 
 
 def recording(passes_per_m, columns):
@@ -166,6 +167,10 @@ def bump(origin_m, columns, rows):
 
 
 SINE = struct.pack("<I3f6f2f", 3, 1e6, 300, 1000, 0, 0, 1, 0, 1, 0, 20, -20)
+
+
+SLIDE = struct.pack("<10f", 0, 0.6, 0.8, -0.01, 0.02, 0.01, 0.9, 0.1, 0.5, 200)
+HARD_SLIDE = struct.pack("<10f", 1, 0, 0, -20, 20, 1e9, 1, 0, 1000, 1e6)
 
 
 def mesh(size_m):
@@ -205,10 +210,10 @@ SCENES = {
                                     (0, 0, 1, 0, 1000, 1000, 1, [(FIELD, (1e15, -10), field_table(1e17, 0.25, ((2**31 - 1, -2**31, 1e10, 7e19, 1, 1), (0, 0, 0, 1, 1, -1))))])]),
     "force_map": scene((3, -2, 50, 7), [(0, 0, 0.6, 0.8, 0.1, 0.1, 0, [(FORCE_MAP, (2,), force_table(1000, ((2**25, -2**24, 1e3, 6, 4), (2**24, -2**23, 500, 3, 2))))]),
                                         (0, 0, 1, 0, 1000, 1000, 1, [(FORCE_MAP, (-1000,), force_table(0, ((2**40, 7, 1e8, 2, 1),)))])]),
-    "pieces": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [piece(PLANE, (0, 0, 90), (0, 0.6, 0.8, 0.001), texture=recording(25, 20), travel=[(1e-4, 2), (1e-4, 1), (3e-4, 2)]), piece(SPHERE, (40, 9, 0), (0, 0, 1, 0.002), texture=bump(1e-3, 6, 4)),
+    "pieces": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [piece(PLANE, (0, 0, 90), (0, 0.6, 0.8, 0.001), texture=recording(25, 20), travel=[(1e-4, 2), (1e-4, 1), (3e-4, 2)]), piece(SPHERE, (40, 9, 0), (0, 0, 1, 0.002), texture=bump(1e-3, 6, 4), slide=SLIDE),
                                                                   piece(CYLINDER, (-90, 1, 7), (0.6, 0, 0.8, 0.001), texture=SINE), piece(QUADRIC, (5, 1, 300), (1e6, 1e5, 1e6, 0, 10, 0, 0, 1, 0, -1))])]),
     "hard_pieces": scene((2**31 - 1, -70, 2**20, 40), [(0, 0, 1, 0, 1000, 1000, 1, [piece(QUADRIC, (0, 0, 0), (1e9, -1e9, 1e9, 1e9, -1e9, 0, 1e9, 0, 0, -1e9), (1e6, 1e4, 100, 1e7, 1000, 1000, 10, 10, 1e4, -1000), (-1e6, 1e6, -1.9, 0.1, -0.1, -1.9)),
-                                                                                   piece(PLANE, (2**31 - 1, 0, -2**31), (1, 0, 0, 20), (1e6, 1e4, 100, 1e7, 1000, 1000, 1e-6, 10, 1e4, 1000), (0, 0, -1, 0, 0, -1), recording(1e6, 2), [(0, 1000), (0, 0), (20, 1000)])])]),
+                                                                                   piece(PLANE, (2**31 - 1, 0, -2**31), (1, 0, 0, 20), (1e6, 1e4, 100, 1e7, 1000, 1000, 1e-6, 10, 1e4, 1000), (0, 0, -1, 0, 0, -1), recording(1e6, 2), [(0, 1000), (0, 0), (20, 1000)], HARD_SLIDE)])]),
     "mesh": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [mesh(0.002), piece(PLANE, (0, 0, -90), (0, 0.6, 0.8, 0.001))])]),
     "reliefs": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [raised((0, 0, 90), 1e7, 500, 6, 5), raised((2**31 - 1, 0, -2**31), 0, 1e8, 1, 2), piece(PLANE, (0, 0, -90), (0, 0, 1, 0.001))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,)), (TICK_DAMPER, (1e4,))])]),

@@ -230,6 +230,16 @@ def growth_per_tick(stiffness, damping, integral=0, delay_ticks=0, hand=(0, 0, 0
     return np.abs(np.linalg.eigvals(motion)).max()
 
 
+def growth_of_slide(stiffness, damping, mass, viscous):
+    """A mass whose place follows its new speed, coupled to the arm; states: distance, speed of the arm, its last step, speed of the mass."""
+    tick = 1 / RATE_HZ
+    arm = expm(tick * np.array([[0, 1, 0], [0, -0.5 / 0.15, 1 / 0.15], [0, 0, 0]]))
+    force = np.array([stiffness, 0, damping / tick, -damping])
+    step = arm[0, 1] * np.eye(4)[1] - arm[0, 2] * force
+    speed = (np.eye(4)[3] + tick / mass * force) / (1 + viscous * tick / mass)
+    return np.abs(np.linalg.eigvals([np.eye(4)[0] + step - tick * speed, arm[1, 1] * np.eye(4)[1] - arm[1, 2] * force, step, speed])).max()
+
+
 def growth_along(viscous):
     """Of a damper alone: of the speed and the last step, because no force depends on the place."""
     mass, tick = 0.15, 1 / RATE_HZ
@@ -476,7 +486,7 @@ def friction_of_several_pieces_adds_up():
 def explain_and_design_judge_walls():
     write_scene("walls", piece("soft", "plane", damping_n_s_per_m=4))
     said = run_json("explain", "walls.scene.json", "--device", "arm")
-    assert said["fits"] is True and said["pieces"][0]["piece"] == "soft" and said["block_bytes"] == 20 + 32 + 8 + 25 * 4 + 96, said
+    assert said["fits"] is True and said["pieces"][0]["piece"] == "soft" and said["block_bytes"] == 20 + 32 + 8 + 27 * 4 + 100, said
     soft = run_json("design", "walls.scene.json", "--device", "arm")["pieces"][0]
     assert soft["verdict"] == "stable" and abs(soft["decay_time_s"] / decay_time_s(STIFFNESS, 4) - 1) < 1e-6, soft
     write_scene("walls", piece("steady", "plane", damping_n_s_per_m=4, integral_n_per_m_s=5000, integral_bound_n=5))
@@ -614,6 +624,52 @@ def a_relief_in_space_is_that_of_scipys_nearest_place():
     error_of("explain", "wrong.scene.json", "--device", "arm", code=NOT_FOUND)
 
 
+def a_slide_is_that_of_its_differential_equation():
+    mass, viscous, dry, detent_n, detent_m = 0.1, 4, 0.3, 0.4, 5e-3
+    slide = {"direction": [3, 0, 0], "from_m": -1e-3, "to_m": 0.03, "mass_kg": mass, "viscous_n_s_per_m": viscous, "friction_n": dry, "detent_n": detent_n, "detent_m": detent_m}
+    block = piece("block", "plane", direction=[-1, 0, 0], slide=slide)
+    write_scene("block", block)
+    # A hand that pushes the block 22 mm along x, waits, and comes back.
+    hand = lambda t: -1e-3 + 0.023 * np.clip(t - 0.1, 0, 1) - 0.02 * np.clip(t - 1.4, 0, 0.5)
+    write_row_a_tick(2, hand, lambda t: 0 * t, lambda t: 0 * t)
+    report, place, force = forces("block")
+    slid = np.genfromtxt("f.csv", delimiter=",", names=True)["slide_block_m"]
+
+    def motion(t, state):
+        s, v = state
+        push = STIFFNESS * max(0, hand(t) - s)
+        return [v, (push - viscous * v - detent_n * np.sin(2 * np.pi * s / detent_m) - dry * np.tanh(v / 1e-6)) / mass]  # a larger speed lets it creep
+
+    ticks = np.arange(len(slid)) / RATE_HZ
+    solved = solve_ivp(motion, (0, ticks[-1] + 1 / RATE_HZ), [0, 0], method="Radau", rtol=1e-7, atol=1e-9, max_step=1e-3, t_eval=ticks + 1 / RATE_HZ)
+    fastest = np.abs(solved.y[1]).max()
+    error = np.abs(slid - solved.y[0]).max()
+    # First order in the tick: the way of a tick at the largest speed.
+    assert slid.max() > 0.02 and error < fastest / RATE_HZ + STEP_M, (error, fastest)
+    assert np.abs(np.diff(slid[1700:])).max() == 0 and np.abs(force[1900:]).max() == 0, "left alone it rests"
+    print(f"slide: {1e6 * error:.2g} um, at most {fastest:.2g} m/s")
+    played = run_json("play", "block.scene.json", "-d", "sim:arm", "--finger-path", "path.csv", "--onset", "0s", "-o", "block")
+    again = run_json("replay", "block")
+    assert played["lost_ticks"] == 0 and again["same_to_the_bit"] is True and again["ticks_compared"] == played["ticks"], again
+    row = run_json("explain", "block.scene.json", "--device", "arm")["pieces"][0]
+    stiffest = 4 * mass * RATE_HZ**2 - 2 * np.pi * detent_n / detent_m
+    assert row["slide_to_m"] == 0.03 and abs(row["slide_stiffest_n_per_m"] / stiffest - 1) < 1e-9, row
+    assert run_json("info", "block.scene.json")["pieces"][0]["slide_mass_kg"] == mass
+    run("scene", "block.scene.json", "-o", "block.png")
+    # design: the wall at a stop, and the free mass that it couples to the arm, without its friction.
+    for damping, of_slide, code in ((4, {}, 0), (4, {"viscous_n_s_per_m": 0}, 0), (0.2, {"viscous_n_s_per_m": 0}, UNSTABLE)):
+        write_scene("judged", block | {"damping_n_s_per_m": damping, "slide": slide | of_slide})
+        row = run_json("design", "judged.scene.json", "--device", "arm", code=code)["pieces"][0]
+        growth = max(growth_per_tick(STIFFNESS, damping), growth_of_slide(STIFFNESS, damping, mass, of_slide.get("viscous_n_s_per_m", viscous)))
+        assert row["verdict"] == ("unstable" if code else "stable") and (growth > 1) == bool(code), (row, growth)
+        assert abs(row["growth_time_s" if code else "decay_time_s"] * RATE_HZ * abs(np.log(growth)) - 1) < 1e-6, (row, growth)
+    for wrong, where in (({"mass_kg": 4e-4}, "/slide/mass_kg"), ({"from_m": 0, "to_m": 0}, "/slide/to_m"), ({"detent_n": 0}, "/slide/detent_m"), ({"direction": [0, 0, 0]}, "/slide/direction")):
+        write_scene("wrong", block | {"slide": slide | wrong})
+        assert error_of("explain", "wrong.scene.json", "--device", "arm", code=UNSUITABLE)["where"].endswith("#/pieces/0" + where), wrong
+    write_scene("wrong", block | {"slide": slide | {"to_m": -1e-3}})
+    error_of("explain", "wrong.scene.json", "--device", "arm", code=MALFORMED)
+
+
 def what_cannot_be_is_refused():
     write_scene("room", piece("floor", "plane"))
     said = run_json("info", "room.scene.json")
@@ -641,6 +697,6 @@ def what_cannot_be_is_refused():
 
 if __name__ == "__main__":
     for test in (a_rendered_force_is_that_of_scipys_nearest_place, a_ghost_holds_where_add_lets_go, a_played_scene_replays_to_the_bit, a_dragged_hand_slips_and_sliders_move,
-                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, a_recording_on_a_piece_is_played_along_the_path, a_bump_map_pushes_down_its_slope, a_sine_in_a_wall_is_judged_at_twice_its_stiffness, a_button_clicks_at_its_breakpoint, a_relief_in_space_is_that_of_scipys_nearest_place, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
+                 a_transient_is_that_of_its_differential_equation, what_a_device_cuts_of_a_transient_is_said, explain_and_design_judge_walls, a_recording_on_a_piece_is_played_along_the_path, a_bump_map_pushes_down_its_slope, a_sine_in_a_wall_is_judged_at_twice_its_stiffness, a_button_clicks_at_its_breakpoint, a_relief_in_space_is_that_of_scipys_nearest_place, a_slide_is_that_of_its_differential_equation, design_of_a_wall_is_that_of_numpy, viscous_friction_alone_is_judged, the_lower_end_of_a_stiffness_is_judged_with_an_integral, design_adds_up_what_acts_together, friction_of_several_pieces_adds_up,
                  what_cannot_be_is_refused):
         tacto.in_folder(test)

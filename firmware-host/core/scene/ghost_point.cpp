@@ -3,6 +3,7 @@
 
 #include "firmware-host/core/kernel/finite.hpp"
 #include "firmware-host/core/scene/piece_relief.hpp"
+#include "firmware-host/core/scene/piece_slide.hpp"
 #include "firmware-host/core/scene/piece_texture.hpp"
 
 namespace tacto::core {
@@ -35,9 +36,19 @@ const MeshTable& mesh_of(const SceneView& scene, uint32_t piece) noexcept {
   return table_of<MeshTable>(scene, scene.layers[piece]);
 }
 
-SpacePlace origin_of(const PieceTable& table) noexcept {
-  return {{table.origin[0], table.origin[1], table.origin[2]},
-          {table.rest_m[0], table.rest_m[1], table.rest_m[2]}};
+const WallState& state_of(const SceneView& scene, uint32_t piece) noexcept {
+  const float* const number = scene.numbers + scene.layers[piece].first_number;
+  return *reinterpret_cast<const WallState*>(number + changeable_numbers_of(kind_of(scene, piece)));
+}
+
+// Where it is now: the numbers of the scene are the live ones.
+SpacePlace origin_of(const SceneView& scene, uint32_t piece) noexcept {
+  const PieceTable& table = piece_of(scene, piece);
+  SpacePlace origin{{table.origin[0], table.origin[1], table.origin[2]},
+                    {table.rest_m[0], table.rest_m[1], table.rest_m[2]}};
+  if (table.slide != 0)
+    origin.rest_m = origin.rest_m + state_of(scene, piece).slid_m * axis_of(slide_of(table));
+  return origin;
 }
 
 // A plane that a point has to stay above: normal u >= -distance, for its way u.
@@ -209,7 +220,7 @@ SpaceVector shortened(const SceneView& scene, const Planes& planes, const Goal& 
   for (uint32_t i = 0; i < touched.count; ++i) {
     const uint32_t piece = touched.piece[i], triangle = touched.triangle[i];
     const MeshTable& mesh = mesh_of(scene, piece);
-    const SpaceVector from = difference(ghost, origin_of(mesh.piece), step_m);
+    const SpaceVector from = difference(ghost, origin_of(scene, piece), step_m);
     const TriangleSide side = side_of(mesh, triangle, from);
     if (!is_held_by(mesh, side)) continue;
     touched.piece[kept] = piece, touched.triangle[kept++] = triangle;
@@ -259,7 +270,7 @@ void touch(GhostPoint::TouchedTriangles& touched, uint32_t piece, uint32_t trian
   for (uint32_t i = 0; i < scene.layer_count; ++i) {
     if (!is_mesh(scene, i)) continue;
     const MeshTable& mesh = mesh_of(scene, i);
-    const MeshHit hit = first_hit(mesh, difference(ghost, origin_of(mesh.piece), step_m), way);
+    const MeshHit hit = first_hit(mesh, difference(ghost, origin_of(scene, i), step_m), way);
     if (hit.part < first.part) first = hit, piece = i;
   }
   return first;
@@ -312,7 +323,7 @@ float settled_on_meshes(const SceneView& scene) noexcept {
 bool is_inside(const SceneView& scene, const SpacePlace& place, const float (&step_m)[3]) noexcept {
   for (uint32_t i = 0; i < scene.layer_count; ++i) {
     const PieceTable& table = piece_of(scene, i);
-    if (surface_at(kind_of(scene, i), table, difference(place, origin_of(table), step_m)).distance_m <
+    if (surface_at(kind_of(scene, i), table, difference(place, origin_of(scene, i), step_m)).distance_m <
         -kInside_m)
       return true;
   }
@@ -343,7 +354,7 @@ void GhostPoint::move(SpaceVector way, const float (&step_m)[3]) noexcept {
   const SceneLayerKind kind = kind_of(scene, piece);
   if (kind == SceneLayerKind::plane || kind == SceneLayerKind::mesh) return false;
   const PieceTable& table = piece_of(scene, piece);
-  const SpacePlace origin = origin_of(table);
+  const SpacePlace origin = origin_of(scene, piece);
   const SpaceVector at = difference(ghost_, origin, step_m), to = difference(hand, origin, step_m);
   SpaceVector nearest;
   const bool slides = kind == SceneLayerKind::relief;
@@ -359,7 +370,7 @@ void GhostPoint::move(SpaceVector way, const float (&step_m)[3]) noexcept {
   for (uint32_t i = 0; i < scene.layer_count; ++i) {
     if (i == piece) continue;
     const PieceTable& other = piece_of(scene, i);
-    const SpaceVector from = difference(ghost_, origin_of(other), step_m);
+    const SpaceVector from = difference(ghost_, origin_of(scene, i), step_m);
     if (surface_at(kind_of(scene, i), other, from + way).distance_m < -kRounding_m) return false;
     if ((touched >> i & 1) == 0 && entry_of(kind_of(scene, i), other, from, way) <= 1) return false;
   }
@@ -388,7 +399,7 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
     for (uint32_t i = 0; i < scene.layer_count; ++i) {
       if (is_mesh(scene, i)) continue;
       const PieceTable& table = piece_of(scene, i);
-      const SpaceVector from = difference(ghost_, origin_of(table), step_m);
+      const SpaceVector from = difference(ghost_, origin_of(scene, i), step_m);
       const PieceSurface at = surface_at(kind_of(scene, i), table, from);
       nearest_m = at.distance_m < nearest_m ? at.distance_m : nearest_m;
       if (at.distance_m <= kTouch_m) touched |= UINT32_C(1) << i;
@@ -412,9 +423,9 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
       for (uint32_t i = 0; i < planes.count; ++i) {
         const uint32_t piece = planes.at[i].piece;
         const PieceTable& table = piece_of(scene, piece);
-        const float distance_m =
-            surface_at(kind_of(scene, piece), table, difference(ghost_, origin_of(table), step_m) + way)
-                .distance_m;
+        const float distance_m = surface_at(kind_of(scene, piece), table,
+                                            difference(ghost_, origin_of(scene, piece), step_m) + way)
+                                     .distance_m;
         deepest_m = distance_m < deepest_m ? distance_m : deepest_m;
       }
       if (-deepest_m <= kTouch_m + kDeepest * length(way)) break;
@@ -424,7 +435,7 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
     uint32_t met = scene.layer_count;
     for (uint32_t i = 0; i < scene.layer_count; ++i) {
       const PieceTable& table = piece_of(scene, i);
-      const SpaceVector from = difference(ghost_, origin_of(table), step_m);
+      const SpaceVector from = difference(ghost_, origin_of(scene, i), step_m);
       const bool touches = planes.has(i), relief = kind_of(scene, i) == SceneLayerKind::relief;
       if (touches && !relief && kind_of(scene, i) != SceneLayerKind::quadric) continue;
       const float entry = !touches ? entry_of(kind_of(scene, i), table, from, way)
@@ -454,15 +465,68 @@ SpaceVector GhostPoint::push_of(const Holding& holding, uint32_t piece) noexcept
   return push;
 }
 
-SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHand& hand,
+// The part of a way that the ghost is free to go with a piece that takes it along; a piece that it touches
+// stops it only where the way leads into it.
+[[gnu::noinline]] float GhostPoint::free_part(const SceneView& scene, uint32_t moved, SpaceVector way,
+                                              const float (&step_m)[3]) const noexcept {
+  constexpr float kInto = 1e-3F;  // sine of the least angle: less is rounding, or a bend
+  float free = 1;
+  for (uint32_t i = 0; i < scene.layer_count; ++i) {
+    if (i == moved) continue;
+    const PieceTable& table = piece_of(scene, i);
+    const SpaceVector from = difference(ghost_, origin_of(scene, i), step_m);
+    const PieceSurface at = surface_at(kind_of(scene, i), table, from);
+    float part = 1;
+    if (is_mesh(scene, i))
+      part = first_hit(mesh_of(scene, i), from, way).part;
+    else if (at.distance_m > kTouch_m)
+      part = entry_of(kind_of(scene, i), table, from, way);
+    else if (dot(at.normal, way) < -kInto * length(way))
+      part = 0;
+    free = part < free ? part : free;
+  }
+  return free;
+}
+
+// The pieces that slide go on by a tick. One that would pass the ghost takes it along, and stops where
+// another piece holds the ghost back: so the ghost is never in it.
+[[gnu::noinline]] void GhostPoint::move_slides(const SceneView& scene, float* live, bool follows,
+                                               const float (&step_m)[3], float tick_s) noexcept {
+  for (uint32_t i = 0; i < scene.layer_count; ++i) {
+    const PieceTable& table = piece_of(scene, i);
+    if (table.slide == 0) continue;
+    float* const number = live + scene.layers[i].first_number;
+    auto& state = *reinterpret_cast<WallState*>(number + changeable_numbers_of(kind_of(scene, i)));
+    const SpaceVector axis = axis_of(slide_of(table));
+    float way_m = slide_way(slide_of(table), state, tick_s), meets = 1;
+    const bool stops = way_m != tick_s * state.slid_mps;
+    if (follows && way_m != 0) {
+      const SpaceVector from = difference(ghost_, origin_of(scene, i), step_m), back = -way_m * axis;
+      meets = is_mesh(scene, i) ? first_hit(mesh_of(scene, i), from, back).part
+                                : entry_of(kind_of(scene, i), table, from, back);
+    }
+    float free = 1;
+    if (meets < 1) {
+      const SpaceVector carried = (1 - meets) * way_m * axis;
+      free = free_part(scene, i, carried, step_m);
+      move(free * carried, step_m);
+      way_m *= meets + free * (1 - meets);
+    }
+    state.slid_m += way_m;
+    if (stops || free < 1) state.slid_mps = 0;
+  }
+}
+
+SpaceVector GhostPoint::force(const SceneView& block, float* live, const SpaceHand& hand,
                               const float (&step_m)[3], const ForceSetup& setup) noexcept {
+  SceneView scene = block;
+  scene.numbers = live;
   const SpacePlace place{{hand.counts[0], hand.counts[1], hand.counts[2]}, {}};
   const auto far = [&](const SpacePlace& a, const SpacePlace& b) {
     return !(length(difference(a, b, step_m)) <= kFarthestInSpace_m);
   };
   bool beyond = false;
-  for (uint32_t i = 0; i < scene.layer_count; ++i)
-    beyond = beyond || far(place, origin_of(piece_of(scene, i)));
+  for (uint32_t i = 0; i < scene.layer_count; ++i) beyond = beyond || far(place, origin_of(scene, i));
   const bool arrives = !placed_ || beyond || far(place, ghost_);
   if (arrives) ghost_ = place, touched_.count = 0;
   placed_ = true;
@@ -470,9 +534,10 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
   Holding holding;
   if (!beyond && !adds) holding = follow(scene, place, step_m);
   SpaceVector sum;
+  bool slides = false;
   for (uint32_t i = 0; i < scene.layer_count; ++i) {
     const PieceTable& table = piece_of(scene, i);
-    const SpaceVector from = difference(place, origin_of(table), step_m);
+    const SpaceVector from = difference(place, origin_of(scene, i), step_m);
     const PieceSurface at = surface_at(kind_of(scene, i), table, beyond ? SpaceVector{} : from);
     WallTouch touch{0, beyond ? kFarthestInSpace_m : at.distance_m, 0, 0, 0, 1 / setup.rate_hz};
     SpaceVector normal = at.normal;
@@ -495,20 +560,27 @@ SpaceVector GhostPoint::force(const SceneView& scene, float* live, const SpaceHa
       touch.depth_m = found ? length(nearest - from) : quadric ? 0 : -at.distance_m;
       if (found && touch.depth_m > 0) normal = (1 / touch.depth_m) * (nearest - from);
     }
-    touch.speed_mps = dot(hand.speed_mps, normal);
+    SpaceVector speed_mps = hand.speed_mps;
+    if (table.slide != 0) speed_mps = speed_mps - state.slid_mps * axis_of(slide_of(table));
+    touch.speed_mps = dot(speed_mps, normal);
     touch.most_force_n = most_force_n(setup, normal);
     touch.grain_m =
         size_of(normal.x) * step_m[0] + size_of(normal.y) * step_m[1] + size_of(normal.z) * step_m[2];
     float normal_n = wall_force(number, table, state, touch);
     const SpaceVector on =
-        adds ? from + touch.depth_m * normal : difference(ghost_, origin_of(table), step_m);
+        adds ? from + touch.depth_m * normal : difference(ghost_, origin_of(scene, i), step_m);
     if (arrives)
       state.anchor_m = state.last_m = on;  // a hand that begins in a piece is not held from elsewhere
     const SpaceVector of_texture =
-        texture_force(table, number, state, normal_n, normal, on, hand.speed_mps, setup.rate_hz);
-    sum = sum + normal_n * normal + of_texture +
-          friction_force(number, state, normal_n, normal, on, hand.speed_mps);
+        texture_force(table, number, state, normal_n, normal, on, speed_mps, setup.rate_hz);
+    const SpaceVector own =
+        normal_n * normal + of_texture + friction_force(number, state, normal_n, normal, on, speed_mps);
+    sum = sum + own;
+    if (table.slide == 0) continue;
+    push_slide(slide_of(table), state, -dot(own, axis_of(slide_of(table))));
+    slides = true;
   }
+  if (slides) move_slides(scene, live, !beyond && !adds, step_m, 1 / setup.rate_hz);
   return sum;
 }
 

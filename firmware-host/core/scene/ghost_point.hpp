@@ -35,7 +35,9 @@ struct SpaceHand {
 /// give the force. Of a mesh each triangle is a piece of its own: one that the ghost met holds it as long as
 /// it is within one and a half skins (first_hit()); the force is that of a ghost without a skin, along the
 /// sum of the pushes of all its triangles. A hand that begins in a mesh touches nothing until it has left it.
-/// Along each piece that holds it come texture_force() and friction_force(). `contact: add`: each piece by
+/// Along each piece that holds it come texture_force() and friction_force(). Their sum of a piece that slides
+/// pushes it (push_slide()); where it passes the ghost it takes it along at the end of the tick, and it stops
+/// where another piece holds the ghost. `contact: add`: each piece by
 /// itself, from its nearest face.
 class GhostPoint {
  public:
@@ -64,6 +66,10 @@ class GhostPoint {
   Holding follow(const SceneView& scene, const SpacePlace& hand, const float (&step_m)[3]) noexcept;
   bool settle_on(const SceneView& scene, const SpacePlace& hand, const float (&step_m)[3], uint32_t touched,
                  Holding& holding) noexcept;
+  float free_part(const SceneView& scene, uint32_t moved, SpaceVector way,
+                  const float (&step_m)[3]) const noexcept;
+  void move_slides(const SceneView& scene, float* live, bool follows, const float (&step_m)[3],
+                   float tick_s) noexcept;
   static SpaceVector push_of(const Holding& holding, uint32_t piece) noexcept;
   void move(SpaceVector way, const float (&step_m)[3]) noexcept;
 

@@ -278,7 +278,7 @@ float spring_force(const PieceTable& table, float stiffness, float depth_m) noex
 float wall_force(const float* number, const PieceTable& table, WallState& state,
                  const WallTouch& touch) noexcept {
   if (!(touch.depth_m > 0) && touch.outside_m > kLetGo_m)
-    state = {0, 0, 0, 0, 0, {}, {}, state.line, state.path};
+    state = {0, 0, 0, 0, 0, {}, {}, state.line, state.path, state.slid_m, state.slid_mps};
   const TransientTable& transient = table.transient;
   const float s = state.transient_n, c = state.turning_n, *const step = transient.step;
   const bool ended = s * s + c * c < kTransientEnd_n * kTransientEnd_n;

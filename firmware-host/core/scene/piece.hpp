@@ -89,6 +89,7 @@ struct WallState {
   SpaceVector anchor_m, last_m;          ///< of the friction, and the place of the last tick
   SpaceVector line;                      ///< of the path, a unit vector; 0 before the first way
   uint32_t path = 0;                     ///< along a recorded texture: 2^32 is once forth and back
+  float slid_m = 0, slid_mps = 0;        ///< of a piece with a SlideTable
 };
 static_assert(sizeof(WallState) == kWallStateWords * sizeof(float));
 

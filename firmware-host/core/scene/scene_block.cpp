@@ -259,6 +259,26 @@ SceneFault check_travel(const SceneView& view, const SceneLayer& layer, uint32_t
   return SceneFault::none;
 }
 
+bool sound(const SlideTable& table) noexcept {
+  const float* const a = table.axis;
+  return within(a[0] * a[0] + a[1] * a[1] + a[2] * a[2], 1 - kUnitRounding, 1 + kUnitRounding) &&
+         within(table.from_m, -kLargestPiece_m, 0) && within(table.to_m, 0, kLargestPiece_m) &&
+         within(table.speed_by_force_s_per_kg, kHeaviest_per_kg, kLightest_per_kg) &&
+         within(table.kept, 0, 1) && within(table.friction_n, 0, kMostFriction_n) &&
+         within(table.detent_n, 0, kMostKappa_n) && within(table.detents_per_m, 0, kMostPeriods_per_m);
+}
+
+// The same.
+SceneFault check_slide(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                       uint32_t& words) noexcept {
+  const auto& piece = table_of<PieceTable>(view, layer);
+  if (piece.slide == 0) return SceneFault::none;
+  constexpr uint32_t kOwn = sizeof(SlideTable) / sizeof(uint32_t);
+  if (piece.slide != words || room - words < kOwn) return SceneFault::structure;
+  words += kOwn;
+  return sound(slide_of(piece)) ? SceneFault::none : SceneFault::value;
+}
+
 // The same.
 SceneFault check_texture(const SceneView& view, const SceneLayer& layer, uint32_t room,
                          uint32_t& words) noexcept {
@@ -276,14 +296,20 @@ SceneFault check_texture(const SceneView& view, const SceneLayer& layer, uint32_
   return fault;
 }
 
+SceneFault check_behind(const SceneView& view, const SceneLayer& layer, uint32_t room,
+                        uint32_t& words) noexcept {
+  SceneFault fault = check_travel(view, layer, room, words);
+  if (fault == SceneFault::none) fault = check_slide(view, layer, room, words);
+  return fault == SceneFault::none ? check_texture(view, layer, room, words) : fault;
+}
+
 SceneFault check_piece(const SceneView& view, const SceneLayer& layer, uint32_t room,
                        uint32_t& words) noexcept {
   words = sizeof(PieceTable) / sizeof(uint32_t);
   if (words > room) return SceneFault::structure;
   if (!sound(table_of<PieceTable>(view, layer), static_cast<SceneLayerKind>(layer.kind)))
     return SceneFault::value;
-  const SceneFault fault = check_travel(view, layer, room, words);
-  return fault == SceneFault::none ? check_texture(view, layer, room, words) : fault;
+  return check_behind(view, layer, room, words);
 }
 
 bool sound(const MeshNode& node, uint32_t place, const MeshTable& table) noexcept {
@@ -314,8 +340,7 @@ SceneFault check_mesh(const SceneView& view, const SceneLayer& layer, uint32_t r
     if (triangles_of(table)[i] >= table.vertices) return SceneFault::structure;
   for (uint64_t i = 0; i < uint64_t{3} * table.vertices; ++i)
     if (!within(vertices_of(table)[i], -kLargestPiece_m, kLargestPiece_m)) return SceneFault::value;
-  const SceneFault fault = check_travel(view, layer, room, words);
-  return fault == SceneFault::none ? check_texture(view, layer, room, words) : fault;
+  return check_behind(view, layer, room, words);
 }
 
 bool sound(const ReliefPieceTable& table) noexcept {
@@ -340,10 +365,9 @@ SceneFault check_relief_piece(const SceneView& view, const SceneLayer& layer, ui
   if (room < kHead) return SceneFault::structure;
   if (!sound(table_of<ReliefPieceTable>(view, layer))) return SceneFault::value;
   const SceneLayer behind{layer.kind, layer.first_number, layer.table + kHead};
-  SceneFault fault = check_relief(view, behind, 1, kLargestCoefficient_m, room - kHead, words);
+  const SceneFault fault = check_relief(view, behind, 1, kLargestCoefficient_m, room - kHead, words);
   words += kHead;
-  if (fault == SceneFault::none) fault = check_travel(view, layer, room, words);
-  return fault == SceneFault::none ? check_texture(view, layer, room, words) : fault;
+  return fault == SceneFault::none ? check_behind(view, layer, room, words) : fault;
 }
 
 SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,

@@ -78,7 +78,7 @@ enum PieceNumber : uint32_t {
   kPieceNumbers = 10
 };
 /// Behind these numbers of a piece: its state (WallState), 0 in a block.
-inline constexpr uint32_t kWallStateWords = 15;
+inline constexpr uint32_t kWallStateWords = 17;
 enum FieldNumber : uint32_t { kFieldScale = 0, kFieldZ = 1 };
 enum ForceMapNumber : uint32_t { kForceMapGain = 0 };
 
@@ -280,8 +280,9 @@ struct PieceTable {
   TransientTable transient = {};
   uint32_t travel = 0;   ///< words from its beginning to its TravelTable; 0: none
   uint32_t texture = 0;  ///< the same of its PieceTextureTable
+  uint32_t slide = 0;    ///< the same of its SlideTable
 };
-static_assert(sizeof(PieceTable) == 96);
+static_assert(sizeof(PieceTable) == 100);
 
 /// A triangle mesh: this, then the nodes, the triangles as three vertices each (u32), counter-clockwise from
 /// outside, and the vertices as three coordinates each (f32, m, from the origin of the piece).
@@ -290,7 +291,7 @@ struct MeshTable {
   float skin_m = 0;  ///< distance that the ghost keeps from the triangles; half of it is never undercut
   uint32_t nodes = 0, triangles = 0, vertices = 0;
 };
-static_assert(sizeof(MeshTable) == 112);
+static_assert(sizeof(MeshTable) == 116);
 
 inline constexpr uint32_t kMostLeafTriangles = 7;
 
@@ -332,6 +333,22 @@ inline const TravelTable& travel_of(const PieceTable& table) noexcept {
   return *reinterpret_cast<const TravelTable*>(reinterpret_cast<const uint32_t*>(&table) + table.travel);
 }
 
+/// A piece that moves along an axis, between two stops; behind its travel.
+struct SlideTable {
+  float axis[3] = {1, 0, 0};          ///< unit vector
+  float from_m = 0, to_m = 0;         ///< stops, from where it begins: from <= 0 <= to
+  float speed_by_force_s_per_kg = 1;  ///< T / m
+  float kept = 1;        ///< share of a speed after a tick of viscous friction: 1 / (1 + T b / m)
+  float friction_n = 0;  ///< dry
+  float detent_n = 0, detents_per_m = 0;  ///< force -detent_n sin(2 pi detents_per_m place)
+};
+static_assert(sizeof(SlideTable) == 40);
+
+/// Precondition: it has one.
+inline const SlideTable& slide_of(const PieceTable& table) noexcept {
+  return *reinterpret_cast<const SlideTable*>(reinterpret_cast<const uint32_t*>(&table) + table.slide);
+}
+
 enum class PieceTextureKind : uint32_t { recording = 1, bump = 2, sine = 3, normals = 4 };
 
 /// Behind all other words of a piece, and, but of a sine, before a relief (ReliefTable).
@@ -360,7 +377,7 @@ struct ReliefPieceTable {
   float origin_m[2] = {};                     ///< on the map: the origin of the piece
   float bend_per_m = 0;  ///< at least the largest second derivative of the heights, in any direction
 };
-static_assert(sizeof(ReliefPieceTable) == 132);
+static_assert(sizeof(ReliefPieceTable) == 136);
 
 inline const ReliefTable& relief_of(const ReliefPieceTable& table) noexcept {
   return *reinterpret_cast<const ReliefTable*>(&table + 1);

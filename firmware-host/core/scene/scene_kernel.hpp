@@ -64,6 +64,12 @@ class SceneKernel {
   /// Whether a body or lasso is this layer and acted in the last tick; then sets its place in the plane, in
   /// m.
   bool body_place(uint32_t patch, uint32_t layer, PlaneVector& place_m) const noexcept;
+  /// Of a layer that is a piece with a SlideTable: its place along its axis.
+  float slid_m(uint32_t layer) const noexcept {
+    const auto kind = static_cast<SceneLayerKind>(scene_.layers[layer].kind);
+    const float* const number = live_ + scene_.layers[layer].first_number;
+    return reinterpret_cast<const WallState*>(number + changeable_numbers_of(kind))->slid_m;
+  }
   float rate_hz() const noexcept { return setup_.rate_hz; }
   bool at_rest() const noexcept { return envelope_.at_rest() && limiter_.at_rest(); }
 

@@ -205,18 +205,24 @@ double most_energy_j(const Piece& piece, const schema::Device& device) {
 double wall_growth(const Piece& piece, const schema::Device& device, double rate_hz,
                    const std::optional<schema::Hand>& hand) {
   const schema::Hand held = hand.value_or(schema::Hand());
+  std::vector<SampledLoad> loads = {{piece.stiffness_n_per_m,
+                                     piece.damping_n_s_per_m,
+                                     {},
+                                     piece.integral_n_per_m_s,
+                                     piece.integral_leak_per_s}};
+  if (piece.slide)
+    loads.push_back({0,
+                     0,
+                     {{piece.slide->mass_kg, piece.slide->viscous_n_s_per_m, piece.stiffness_n_per_m,
+                       piece.damping_n_s_per_m, false, true}}});
   double most = 0;
   for (const schema::DeviceAxis& axis : device.axes)
-    if (axis.mass_kg > 0)
-      most = std::max(
-          most, growth_per_tick({axis.mass_kg + held.mass_kg, axis.viscous_n_s_per_m + held.damping_n_s_per_m,
-                                 held.stiffness_n_per_m},
-                                {1 / rate_hz, device.delay_s * rate_hz},
-                                {piece.stiffness_n_per_m,
-                                 piece.damping_n_s_per_m,
-                                 {},
-                                 piece.integral_n_per_m_s,
-                                 piece.integral_leak_per_s}));
+    for (const SampledLoad& load : loads)
+      if (axis.mass_kg > 0)
+        most = std::max(
+            most, growth_per_tick({axis.mass_kg + held.mass_kg,
+                                   axis.viscous_n_s_per_m + held.damping_n_s_per_m, held.stiffness_n_per_m},
+                                  {1 / rate_hz, device.delay_s * rate_hz}, load));
   return most;
 }
 

@@ -28,7 +28,9 @@ struct JudgedPiece {
 
 /// growth_per_tick() of this wall on an axis of the device, above 1 it is unstable: with spring, integral and
 /// a damper that acts on the difference of two places. A hand adds its mass, damping and stiffness. Coulomb
-/// friction is left out, and the force limit. Of all axes the largest; 0 if the device states no mass.
+/// friction is left out, and the force limit. A piece that slides is judged at a stop, and as a mass that its
+/// wall couples to the hand, without detents, dry friction and integral. Of all axes the largest; 0 if the
+/// device states no mass.
 double wall_growth(const schema::Piece& piece, const schema::Device& device, double rate_hz,
                    const std::optional<schema::Hand>& hand);
 

@@ -14,6 +14,7 @@
 #include "playback/prepare/scene/contact_transient.hpp"
 #include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/mesh_block.hpp"
+#include "playback/prepare/scene/slide_table.hpp"
 
 namespace tacto::playback {
 
@@ -151,6 +152,17 @@ core::PieceTextureKind kind_of_texture(schema::PieceTextureType type) {
   return core::PieceTextureKind::sine;
 }
 
+// The same.
+Result<void> append_slide(const Piece& piece, double tick_s, const std::string& where,
+                          std::vector<std::uint32_t>& words) {
+  if (!piece.slide) return {};
+  const auto table = slide_table(piece, tick_s, where);
+  TACTO_TRY(table);
+  words[offsetof(core::PieceTable, slide) / sizeof(std::uint32_t)] = static_cast<std::uint32_t>(words.size());
+  append_words(words, std::vector{*table});
+  return {};
+}
+
 // Of a map whose centre is at the place of the piece.
 void set_axes(const std::array<std::array<double, 3>, 2>& from, const Piece& piece, const PlaneSteps& steps,
               const core::PieceTable& table, float (&axes)[2][3], float (&at_m)[2]) {
@@ -282,6 +294,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
       auto words = words_of_mesh(piece, *base.meshes.at(piece.mesh), base.steps, *transient, at);
       TACTO_TRY(words);
       append_travel(piece, *words);
+      TACTO_TRY(append_slide(piece, base.steps.tick_s, at, *words));
       append_texture(piece, base.reliefs, base.steps, *words);
       append_words(tables, *words);
       continue;
@@ -293,6 +306,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
     append_words(words, std::vector{*table});
     append_relief(piece, base.reliefs, base.steps, words);
     append_travel(piece, words);
+    TACTO_TRY(append_slide(piece, base.steps.tick_s, at, words));
     append_texture(piece, base.reliefs, base.steps, words);
     append_words(tables, words);
   }

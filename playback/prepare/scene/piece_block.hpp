@@ -11,8 +11,8 @@
 namespace tacto::playback {
 
 /// The block of the pieces for one device. `where` is the scene's file. Errors: unsuitable, by JSON pointer:
-/// a place beyond 2^30 counts; a wall whose integral is unstable (wall_growth()); transient_table(); as
-/// schema::read_mesh() and read_reliefs().
+/// a place beyond 2^30 counts; a wall whose integral is unstable (wall_growth()); transient_table(),
+/// slide_table(); as schema::read_mesh() and read_reliefs().
 schema::Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& where,
                                              const schema::Device& device, double rate_hz,
                                              const std::optional<schema::Hand>& hand);

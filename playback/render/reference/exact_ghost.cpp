@@ -57,7 +57,11 @@ double spring_n(const Piece& piece, double depth_m) {
 }  // namespace
 
 ExactGhost::ExactGhost(const PreparedScene& scene, const schema::Device& device, double rate_hz)
-    : scene_(scene), device_(device), tick_s_(1 / rate_hz), walls_(scene.pieces.size()) {
+    : scene_(scene),
+      device_(device),
+      tick_s_(1 / rate_hz),
+      walls_(scene.pieces.size()),
+      pieces_(scene.pieces) {
   for (const Piece& piece : scene.pieces)
     meshes_.push_back(piece.shape == PieceShape::mesh
                           ? std::optional<ExactMesh>(std::in_place, scene.meshes.at(piece.mesh),
@@ -122,7 +126,8 @@ double ExactGhost::entry_of(const Piece& piece, const SpaceMetres& from_m, const
 void ExactGhost::add_triangles(std::vector<Touch>& touches) {
   std::vector<Touch> beside;
   std::erase_if(triangles_, [&](const TouchedTriangle& touched) {
-    const auto side = meshes_[touched.piece]->side_of(touched.triangle, ghost_m_);
+    const auto side =
+        meshes_[touched.piece]->side_of(touched.triangle, sum_of(ghost_m_, -1, offset_of(touched.piece)));
     if (side.distance_m > (side.beside ? 1.125 : 1.5) * kExactSkin_m ||
         side.above_m < -0.05 * side.distance_m)
       return true;
@@ -139,7 +144,7 @@ void ExactGhost::add_triangles(std::vector<Touch>& touches) {
 
 // Hildreth 1957: min |way - straight|^2, normal way >= -distance, one plane after the other.
 std::vector<ExactGhost::Held> ExactGhost::follow(const SpaceMetres& hand_m) {
-  const auto& pieces = scene_.pieces;
+  const auto& pieces = pieces_;
   std::vector<Touch> touches;
   std::vector<bool> touched(pieces.size());
   const auto way_with = [&](const SpaceMetres& straight, double skins) {
@@ -183,7 +188,7 @@ std::vector<ExactGhost::Held> ExactGhost::follow(const SpaceMetres& hand_m) {
     std::optional<TouchedTriangle> triangle;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       if (!meshes_[i]) continue;
-      const auto hit = meshes_[i]->first_hit(ghost_m_, way);
+      const auto hit = meshes_[i]->first_hit(sum_of(ghost_m_, -1, offset_of(i)), way);
       if (hit && hit->part <= part) part = hit->part, met = i, triangle = {i, hit->triangle};
     }
     if (triangle)
@@ -282,6 +287,7 @@ double ExactGhost::wall_force(const Piece& piece, Wall& wall, const Held& held, 
     if (outside_m > double{core::kLetGo_m}) {
       Wall next;
       next.line = wall.line, next.path_m = wall.path_m;
+      next.slid_m = wall.slid_m, next.slid_mps = wall.slid_mps;
       wall = next;
     }
     return 0;
@@ -386,6 +392,50 @@ SpaceMetres ExactGhost::texture_force(const Piece& piece, Wall& wall, double& no
   return sum_of({}, piece.texture_gain * slope, wall.line);
 }
 
+SpaceMetres ExactGhost::offset_of(std::size_t piece) const {
+  const auto& slide = scene_.pieces[piece].slide;
+  return slide ? sum_of({}, walls_[piece].slid_m, unit_of(slide->direction)) : SpaceMetres{};
+}
+
+// The contract of core::push_slide, and of the ghost that a piece takes along.
+void ExactGhost::move_slide(std::size_t piece, double push_n) {
+  const schema::PieceSlide& slide = *scene_.pieces[piece].slide;
+  Wall& wall = walls_[piece];
+  const double by_force = tick_s_ / slide.mass_kg, kept = 1 / (1 + by_force * slide.viscous_n_s_per_m);
+  const double turn = slide.detent_m > 0 ? 2 * std::numbers::pi * wall.slid_m / slide.detent_m : 0;
+  const double speed = kept * (wall.slid_mps + by_force * (push_n - slide.detent_n * std::sin(turn)));
+  wall.slid_mps = std::copysign(std::max(0.0, std::abs(speed) - kept * by_force * slide.friction_n), speed);
+  const double end_m = wall.slid_m + tick_s_ * wall.slid_mps,
+               way_m = std::clamp(end_m, slide.from_m, slide.to_m) - wall.slid_m;
+  if (end_m < slide.from_m || end_m > slide.to_m) wall.slid_mps = 0;
+  const SpaceMetres way = sum_of({}, way_m, unit_of(slide.direction));
+  const auto meets = [&](std::size_t i, const SpaceMetres& along) {
+    if (!meshes_[i]) return entry_of(pieces_[i], ghost_m_, along);
+    const auto hit = meshes_[i]->first_hit(sum_of(ghost_m_, -1, offset_of(i)), along);
+    return hit ? hit->part : 2;
+  };
+  double own = 1, free = 1;
+  if (scene_.contact == schema::PieceContact::ghost && way_m != 0)
+    own = std::min(1.0, meets(piece, sum_of({}, -1, way)));
+  const SpaceMetres carried = sum_of({}, 1 - own, way);
+  for (std::size_t i = 0; i < pieces_.size() && own < 1; ++i) {
+    if (i == piece) continue;
+    const Surface at = surface_at(pieces_[i], ghost_m_);
+    const bool touches = !meshes_[i] && at.distance_m <= kNear_m;
+    if (!touches)
+      free = std::min(free, meets(i, carried));
+    else if (inner(at.normal, carried) < -1e-3 * size_of(carried))
+      free = 0;
+  }
+  ghost_m_ = sum_of(ghost_m_, free, carried);
+  if (free < 1) wall.slid_mps = 0;
+  wall.slid_m += way_m * (own + free * (1 - own));
+  const SpaceMetres offset = offset_of(piece);
+  const Piece& begin = scene_.pieces[piece];
+  pieces_[piece].x_m = begin.x_m + offset[0], pieces_[piece].y_m = begin.y_m + offset[1];
+  pieces_[piece].z_m = begin.z_m + offset[2];
+}
+
 SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {
   const bool arrives = !placed_;
   if (arrives) ghost_m_ = hand_m;
@@ -394,18 +444,27 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
   std::vector<Held> held(scene_.pieces.size());
   if (!adds) held = follow(hand_m);
   SpaceMetres sum = {};
+  std::vector<double> push_n(scene_.pieces.size());
   for (std::size_t i = 0; i < scene_.pieces.size(); ++i) {
-    const Piece& piece = scene_.pieces[i];
+    const Piece& piece = pieces_[i];
     if (adds) held[i] = nearest_face(piece, hand_m);
     double outside_m = surface_at(piece, hand_m).distance_m;
-    if (meshes_[i] && walls_[i].touched) outside_m = meshes_[i]->distance_m(hand_m);
-    double force_n = wall_force(piece, walls_[i], held[i], outside_m, inner(held[i].normal, speed_mps));
-    const SpaceMetres on = adds ? sum_of(hand_m, held[i].depth_m, held[i].normal) : ghost_m_;
+    const SpaceMetres offset = offset_of(i);
+    if (meshes_[i] && walls_[i].touched) outside_m = meshes_[i]->distance_m(sum_of(hand_m, -1, offset));
+    SpaceMetres relative_mps = speed_mps;
+    if (piece.slide) relative_mps = sum_of(speed_mps, -walls_[i].slid_mps, unit_of(piece.slide->direction));
+    double force_n = wall_force(piece, walls_[i], held[i], outside_m, inner(held[i].normal, relative_mps));
+    const SpaceMetres on =
+        sum_of(adds ? sum_of(hand_m, held[i].depth_m, held[i].normal) : ghost_m_, -1, offset);
     if (arrives) walls_[i].anchor_m = walls_[i].last_m = on;
-    sum = sum_of(sum, 1, texture_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
-    sum = sum_of(sum, force_n, held[i].normal);
-    sum = sum_of(sum, 1, friction_force(piece, walls_[i], force_n, held[i].normal, on, speed_mps));
+    SpaceMetres own = texture_force(scene_.pieces[i], walls_[i], force_n, held[i].normal, on, relative_mps);
+    own = sum_of(own, force_n, held[i].normal);
+    own = sum_of(own, 1, friction_force(piece, walls_[i], force_n, held[i].normal, on, relative_mps));
+    sum = sum_of(sum, 1, own);
+    if (piece.slide) push_n[i] = -inner(own, unit_of(piece.slide->direction));
   }
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    if (pieces_[i].slide) move_slide(i, push_n[i]);
   return sum;
 }
 

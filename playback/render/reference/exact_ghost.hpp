@@ -38,6 +38,7 @@ class ExactGhost {
     SpaceMetres anchor_m = {}, last_m = {};
     SpaceMetres line = {};
     double path_m = 0;
+    double slid_m = 0, slid_mps = 0;
   };
   struct Surface {
     double distance_m = 0;
@@ -73,12 +74,16 @@ class ExactGhost {
                             const SpaceMetres& normal, const SpaceMetres& place_m,
                             const SpaceMetres& speed_mps) const;
 
+  SpaceMetres offset_of(std::size_t piece) const;
+  void move_slide(std::size_t piece, double push_n);
+
   const PreparedScene& scene_;
   const schema::Device& device_;
   double tick_s_;
   bool placed_ = false;
   SpaceMetres ghost_m_ = {};
   std::vector<Wall> walls_;
+  std::vector<schema::Piece> pieces_;             // where they are now
   std::vector<std::optional<ExactMesh>> meshes_;  // of each piece
   std::vector<TouchedTriangle> triangles_;        // that the ghost met and is still near
 };
