@@ -9,7 +9,7 @@
 
 namespace tacto::tests {
 
-inline constexpr uint32_t kPiecesFingerprint = 1566845330;
+inline constexpr uint32_t kPiecesFingerprint = 2827787309;
 
 /// A floor, a plate on edge, a ball, a pipe, an ellipsoid and a mesh, and a hand that is pushed through them
 /// at up to 60 counts per tick; walls with dampers, arrest and integral; a recording on the floor, a bump map

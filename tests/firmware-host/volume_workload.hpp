@@ -10,7 +10,7 @@
 
 namespace tacto::tests {
 
-inline constexpr uint32_t kVolumeFingerprint = 2941962613;
+inline constexpr uint32_t kVolumeFingerprint = 1657481873;
 
 /// A volume that a tool of three points carves, and a second one around it, with a wall's damper and
 /// friction.

@@ -590,8 +590,8 @@ def a_relief_in_space_is_that_of_scipys_nearest_place():
         on = place_of + found[0] * u + found[1] * v + surface.ev(found[1], found[0]) * normal
         errors.append(np.abs(given - STIFFNESS * (on - hand)).max())
     largest = np.abs(force).max()
-    # The bound; a place that is found to 1e-8 m by its squared distance is along the surface, the force across it.
-    assert len(errors) > 60 and largest > 0.5 and max(errors) < 2e-5 * largest and report["largest_rounding_n"] < 1e-5 * largest and report["other_side_ticks"] == 0, (len(errors), max(errors) / largest, report)
+    # The bound.
+    assert len(errors) > 60 and largest > 0.5 and max(errors) < 1e-5 * largest and report["largest_rounding_n"] < 1e-5 * largest and report["other_side_ticks"] == 0, (len(errors), max(errors) / largest, report)
     print(f"relief: {max(errors) / largest:.2g} of {largest:.3g} N")
     row = run_json("explain", "raised.scene.json", "--device", "arm")["pieces"][0]
     assert row["relief"] == "plate" and row["columns"] == 256 and abs(row["half_rate_at_mps"] / (500 * row["shortest_period_m"]) - 1) < 1e-9 and "may_give_j" not in row, row
@@ -638,7 +638,7 @@ def a_slide_is_that_of_its_differential_equation():
     def motion(t, state):
         s, v = state
         push = STIFFNESS * max(0, hand(t) - s)
-        return [v, (push - viscous * v - detent_n * np.sin(2 * np.pi * s / detent_m) - dry * np.tanh(v / 1e-5)) / mass]
+        return [v, (push - viscous * v - detent_n * np.sin(2 * np.pi * s / detent_m) - dry * np.tanh(v / 1e-6)) / mass]  # a larger speed lets it creep
 
     ticks = np.arange(len(slid)) / RATE_HZ
     solved = solve_ivp(motion, (0, ticks[-1] + 1 / RATE_HZ), [0, 0], method="Radau", rtol=1e-7, atol=1e-9, max_step=1e-3, t_eval=ticks + 1 / RATE_HZ)

@@ -370,7 +370,7 @@ void GhostPoint::move(SpaceVector way, const float (&step_m)[3]) noexcept {
   const SpaceVector normal = surface_at(kind, table, nearest).normal,
                     before = surface_at(kind, table, at).normal, pull = nearest - to, way = nearest - at;
   if (!slides && !(dot(normal, before) >= kSameSide)) return false;
-  if (!(dot(pull, normal) > 0)) return false;
+  if (!slides && !(dot(pull, normal) > 0)) return false;
   if (!(length(pull) <= length(at - to) + (slides ? kTouch_m + kInRelief_m : kTouch_m))) return false;
   for (uint32_t i = 0; i < scene.layer_count; ++i) {
     if (i == piece) continue;
@@ -382,8 +382,10 @@ void GhostPoint::move(SpaceVector way, const float (&step_m)[3]) noexcept {
   uint32_t mesh = 0;
   if (first_triangle(scene, ghost_, way, step_m, mesh).part <= 1) return false;
   move(way, step_m);
+  // On a relief it may be on its way, also where the hand is above the plane that touches it there.
+  if (!(dot(pull, normal) > 0)) holding.count = 0;
   holding.normal[0] = normal;
-  holding.depth_m[0] = slides ? dot(pull, normal) : length(pull);  // on a relief it may be on its way
+  holding.depth_m[0] = slides ? dot(pull, normal) : length(pull);
   return true;
 }
 
@@ -412,7 +414,10 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
     const Goal goal = nearest_allowed(planes, straight);
     hold(planes, goal, straight, holding);
     if (nearest_m >= -kInside_m) last = ghost_, of_last = holding, outside = true;
-    if (goal.count == 1 && settle_on(scene, hand, step_m, touched, holding)) break;
+    if (goal.count == 1 && settle_on(scene, hand, step_m, touched, holding)) {
+      if (holding.count > 0) break;
+      continue;
+    }
     if (pass == kGhostPasses) break;
     const bool out = (nearest_m < -kInside_m && pass + kPassesOut >= kGhostPasses) || is_in_skin(planes);
     SpaceVector way = out ? nearest_allowed(planes, {}).way : shortened(scene, planes, goal);
