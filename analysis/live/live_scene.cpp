@@ -111,8 +111,8 @@ std::array<double, 3> free_place(const LiveScene& live) {
   const PixelGrid& grid = live.space->map(kFrontSection).grid;
   std::array<double, 3> place_m = live.space->through_m();
   const spatial::Point middle{place_m[right], place_m[up]};
-  const auto solid =
-      solid_in_section(live.pieces.scene, grid, across, place_m, live.pieces.meshes, live.pieces.reliefs);
+  const auto solid = solid_in_section(live.pieces.scene, grid, across, place_m, live.pieces.meshes,
+                                      live.pieces.reliefs, live.pieces.volumes);
   double nearest_m = INFINITY;
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
@@ -194,9 +194,9 @@ spatial::Pixels scene_pixels(const LiveScene& scene, std::size_t section, double
   std::array<double, 3> place_m = scene.space->through_m();
   const std::size_t across = kPieceSections[section].across;
   place_m.at(across) = through_m;
-  return section_pixels(
-      solid_in_section(scene.pieces.scene, grid, across, place_m, scene.pieces.meshes, scene.pieces.reliefs),
-      grid);
+  return section_pixels(solid_in_section(scene.pieces.scene, grid, across, place_m, scene.pieces.meshes,
+                                         scene.pieces.reliefs, scene.pieces.volumes),
+                        grid);
 }
 
 std::string scene_json(std::size_t made, const LiveScene& scene) {

@@ -78,7 +78,7 @@ class LiveScenes {
 
   std::string folder_;
   std::vector<Listed> listed_;  // by index
-  NewestValues<LiveScene, kMostMade> made_;
+  LastUsed<LiveScene, kMostMade> made_;
 };
 
 }  // namespace tacto::analysis

@@ -66,6 +66,8 @@ Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file
       return add_height_map(path, file);
     case FileKind::mesh:
       return add_mesh(path, file);
+    case FileKind::volume:
+      return add_volume(path, file);
     case FileKind::trade:
       return add_trade_table(path, file);
     case FileKind::corpus:

@@ -25,6 +25,7 @@ schema::Result<void> add_session(const std::string& path, ProjectFile& file, con
 schema::Result<void> add_session_table(const std::string& path, ProjectFile& file);
 schema::Result<void> add_height_map(const std::string& path, ProjectFile& file);
 schema::Result<void> add_mesh(const std::string& path, ProjectFile& file);
+schema::Result<void> add_volume(const std::string& path, ProjectFile& file);
 schema::Result<void> add_results(const std::string& path, ProjectFile& file);
 schema::Result<void> add_trade_table(const std::string& path, ProjectFile& file);
 schema::Result<void> add_corpus_plan(const std::string& path, ProjectFile& file);

@@ -19,6 +19,7 @@
 #include "data-schema/texture/description.hpp"
 #include "data-schema/texture/formants.hpp"
 #include "data-schema/transducer/transducer.hpp"
+#include "data-schema/volume/volume.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -223,6 +224,24 @@ Result<void> add_mesh(const std::string& path, ProjectFile& file) {
   file.figures = {{"triangles", fmt::format("{}", mesh->triangles.size())},
                   {"size", fmt::format("{}, {}, {}", size(0), size(1), size(2))},
                   {"longest edge", for_people(figures.longest_edge_m, Dimension::length)}};
+  return {};
+}
+
+Result<void> add_volume(const std::string& path, ProjectFile& file) {
+  const auto volume = schema::read_volume(path);
+  TACTO_TRY(volume);
+  file.date = volume->created;
+  file.origin = volume->source;
+  const auto each = [](const schema::VolumePoint& lengths_m) {
+    return fmt::format("{}, {}, {}", for_people(lengths_m[0], Dimension::length),
+                       for_people(lengths_m[1], Dimension::length),
+                       for_people(lengths_m[2], Dimension::length));
+  };
+  const auto [half_x, half_y, half_z] = volume->half_size_m();
+  file.figures = {
+      {"values", fmt::format("{} x {} x {}", volume->samples[0], volume->samples[1], volume->samples[2])},
+      {"spacing", each(volume->spacing_m)},
+      {"size", each({2 * half_x, 2 * half_y, 2 * half_z})}};
   return {};
 }
 

@@ -56,7 +56,8 @@ double height_m(const Piece& piece, const Place& p, const PieceReliefs& reliefs)
          up * ((1 - right) * at(i, j + 1) + right * at(i + 1, j + 1));
 }
 
-bool is_solid(const Piece& piece, const Place& place_m, const PieceReliefs& reliefs) {
+bool is_solid(const Piece& piece, const Place& place_m, const PieceReliefs& reliefs,
+              const PieceVolumes& volumes) {
   const Place p = {place_m[0] - piece.x_m, place_m[1] - piece.y_m, place_m[2] - piece.z_m};
   const double along = inner(piece.direction, p) / std::sqrt(inner(piece.direction, piece.direction));
   switch (piece.shape) {
@@ -69,7 +70,12 @@ bool is_solid(const Piece& piece, const Place& place_m, const PieceReliefs& reli
     case PieceShape::quadric:
       break;
     case PieceShape::mesh:
-      return false;  // add_mesh()
+      return false;  // crossings()
+    case PieceShape::volume: {
+      schema::VolumeValue at;
+      const auto found = volumes.find(piece.volume);
+      return found != volumes.end() && value_at(found->second, p, at) && at.value > piece.iso;
+    }
   }
   const auto& c = piece.coefficients;
   const auto [x, y, z] = p;
@@ -154,9 +160,12 @@ PlaneRange range_of(const PiecePicture& picture, const PieceSection& section) {
                    at[section.up] + end_m[section.up] + around_m});
       continue;
     }
-    const double around_m = piece.radius_m + kAround_m;
-    range.add({at[section.right] - around_m, at[section.up] - around_m});
-    range.add({at[section.right] + around_m, at[section.up] + around_m});
+    Place half_m = {piece.radius_m, piece.radius_m, piece.radius_m};
+    if (const auto volume = picture.volumes.find(piece.volume); volume != picture.volumes.end())
+      half_m = volume->second.half_size_m();
+    for (const double side : {-1.0, 1.0})
+      range.add({at[section.right] + side * (half_m[section.right] + kAround_m),
+                 at[section.up] + side * (half_m[section.up] + kAround_m)});
   }
   return range;
 }
@@ -186,6 +195,7 @@ std::string words_of(const Piece& piece) {
     add(each.name, number.value);
     if (number.slider) words += fmt::format(" (slider {:g} to {:g})", number.slider->from, number.slider->to);
   }
+  if (piece.shape == PieceShape::volume) words += fmt::format(", {} above {:g}", piece.volume, piece.iso);
   if (piece.transient || piece.hand_surface) words += ", contact transient";
   if (!piece.travel.empty()) words += fmt::format(", travel of {} points", piece.travel.size());
   if (piece.texture)
@@ -210,6 +220,11 @@ schema::Result<PiecePicture> read_piece_picture(schema::Scene scene, const std::
       auto map = schema::read_height_map(schema::texture_in_scene(where, piece.relief->file));
       TACTO_TRY(map);
       picture.reliefs[piece.relief->file] = std::move(*map);
+    }
+    if (piece.shape == PieceShape::volume && !picture.volumes.contains(piece.volume)) {
+      auto volume = schema::read_volume(schema::texture_in_scene(where, piece.volume));
+      TACTO_TRY(volume);
+      picture.volumes[piece.volume] = std::move(*volume);
     }
     if (piece.shape != PieceShape::mesh || picture.meshes.contains(piece.mesh)) continue;
     auto mesh = schema::read_mesh(schema::texture_in_scene(where, piece.mesh));
@@ -245,7 +260,7 @@ spatial::Pixels section_pixels(const std::vector<int>& solid, const PixelGrid& g
 
 std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
                                   const Place& through_m, const PieceMeshes& meshes,
-                                  const PieceReliefs& reliefs) {
+                                  const PieceReliefs& reliefs, const PieceVolumes& volumes) {
   const PieceSection& section = *std::ranges::find(kPieceSections, across, &PieceSection::across);
   const double beside_m = 1e-6 * grid.pixel_m;  // of the section, so that it meets no vertex
   std::vector<int> solid;
@@ -261,7 +276,7 @@ std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& g
       place_m[section.right] = at.x, place_m[section.up] = at.y;
       int last = -1;
       for (std::size_t i = 0; i < scene.pieces.size(); ++i)
-        if (is_solid(scene.pieces[i], place_m, reliefs)) last = static_cast<int>(i);
+        if (is_solid(scene.pieces[i], place_m, reliefs, volumes)) last = static_cast<int>(i);
       for (const auto& [i, at_m] : of_meshes)
         if ((std::ranges::lower_bound(at_m, at.x) - at_m.begin()) % 2 != 0)
           last = std::max(last, static_cast<int>(i));
@@ -313,9 +328,10 @@ schema::Result<void> PieceFigure::draw(Canvas& canvas) const {
                 fmt::format("{}, through {} = {}", section.from, kAxes[section.across],
                             spatial::typeset(schema::length_for_people(through_m_[section.across]))),
                 kSectionTitle);
-    canvas.image(map.box, section_pixels(solid_in_section(picture_.scene, map.grid, section.across,
-                                                          through_m_, picture_.meshes, picture_.reliefs),
-                                         map.grid));
+    canvas.image(map.box,
+                 section_pixels(solid_in_section(picture_.scene, map.grid, section.across, through_m_,
+                                                 picture_.meshes, picture_.reliefs, picture_.volumes),
+                                map.grid));
     const auto count = [](double length) { return std::max(2, static_cast<int>(length / 45)); };
     canvas.frame(map.box, {});
     draw_axis(canvas, map.box, spatial::Side::bottom, map.x, ticks_of(map.x, count(map.box.width)));

@@ -13,6 +13,7 @@
 #include "data-schema/height/height_map.hpp"
 #include "data-schema/mesh/mesh.hpp"
 #include "data-schema/scene/scene.hpp"
+#include "data-schema/volume/volume.hpp"
 #include "spatial/picture/draw/heading.hpp"
 #include "spatial/picture/figure.hpp"
 
@@ -20,6 +21,8 @@ namespace tacto::analysis {
 
 /// By the member `mesh` of the pieces.
 using PieceMeshes = std::map<std::string, schema::Mesh>;
+/// By the member `volume`.
+using PieceVolumes = std::map<std::string, schema::Volume>;
 
 /// By the file of a relief.
 using PieceReliefs = std::map<std::string, schema::HeightMap>;
@@ -32,6 +35,7 @@ struct PiecePicture {
   std::optional<std::array<double, 3>> through_m;  ///< default: the middle of the balls, pipes and quadrics
   PieceMeshes meshes = {};
   PieceReliefs reliefs = {};
+  PieceVolumes volumes = {};
 };
 
 /// Axes, 0 to 2, to the right and up on the page, and across it.
@@ -42,8 +46,8 @@ struct PieceSection {
 inline constexpr PieceSection kPieceSections[] = {
     {0, 1, 2, "from above"}, {0, 2, 1, "from the front"}, {1, 2, 0, "from the side"}};
 
-/// Adds the meshes, which are found beside the scene's file `where`, and the device, if it has a name.
-/// Errors: as read_mesh and read_device.
+/// Adds the meshes, reliefs and volumes, which are found beside the scene's file `where`, and the device, if
+/// it has a name. Errors: as read_mesh, read_height_map, read_volume and read_device.
 schema::Result<PiecePicture> read_piece_picture(schema::Scene scene, const std::string& where,
                                                 const std::string& device);
 
@@ -53,7 +57,7 @@ schema::Result<PiecePicture> read_piece_picture(schema::Scene scene, const std::
 /// straight from sample to sample.
 std::vector<int> solid_in_section(const schema::Scene& scene, const PixelGrid& grid, std::size_t across,
                                   const std::array<double, 3>& through_m, const PieceMeshes& meshes = {},
-                                  const PieceReliefs& reliefs = {});
+                                  const PieceReliefs& reliefs = {}, const PieceVolumes& volumes = {});
 
 /// Solid pieces in a light colour, as solid_in_section() gives them; pixels at their borders in the full one.
 spatial::Pixels section_pixels(const std::vector<int>& solid, const PixelGrid& grid);

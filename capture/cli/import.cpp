@@ -16,6 +16,7 @@
 #include "capture/import/height_profile.hpp"
 #include "capture/import/import_plan.hpp"
 #include "capture/import/mesh_import.hpp"
+#include "capture/import/volume_import.hpp"
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/height/height_map.hpp"
 #include "data-schema/report/progress.hpp"
@@ -43,12 +44,12 @@ void declare_data(CLI::App& app, ImportRequest& request) {
                  "without other options lists what it has), sound "
                  "file that libsndfile reads (WAV, FLAC, OGG ...), a measured profile "
                  "(XML, X3P), a height "
-                 "map (greyscale PNG with 16 bits), or a triangle mesh (STL, OBJ, PLY)")
+                 "map (greyscale PNG with 16 bits), a triangle mesh (STL, OBJ, PLY), or a volume (NRRD)")
       ->required();
   app.add_option("-o,--output", request.name,
                  "Name of the recording: NAME.wav and NAME.json; of a height map: NAME.height.nc, also from "
                  "a profile or a whole X3P surface if "
-                 "written in full; of a mesh: NAME.mesh.nc");
+                 "written in full; of a mesh: NAME.mesh.nc; of a volume: NAME.volume.nc");
   app.add_option("--channel", request.channels,
                  "A channel, QUANTITY=COLUMN*SCALE+OFFSET and a unit (default: that of the column); repeat "
                  "for each. COLUMN: header name or number from 1, of a MATLAB file data.force or 'acc(:,2)'; "
@@ -83,7 +84,7 @@ void declare_data(CLI::App& app, ImportRequest& request) {
            if (!unit) throw CLI::ValidationError("--unit", schema::message(unit.error()));
            request.unit_m = *unit;
          },
-         "Of a mesh: its unit of length, mm, um or m; obligatory")
+         "Of a mesh, and of a volume whose file states none: its unit of length, mm, um or m; obligatory")
       ->type_name("UNIT");
   app.add_flag(
       "--repair", request.repair,
@@ -254,6 +255,19 @@ schema::Result<cli::Report> run_mesh(const ImportRequest& request) {
   return report.add("next", fmt::format("tactograph info {}", cli::shell_word(imported->path)));
 }
 
+schema::Result<cli::Report> run_volume(const ImportRequest& request) {
+  const auto imported = import_volume(request);
+  TACTO_TRY(imported);
+  cli::Report report;
+  report.add("source", request.file);
+  schema::add_volume(report, imported->read.volume);
+  if (imported->read.rounding > 0) report.add("rounded_by_at_most", imported->read.rounding);
+  if (imported->read.mirrored)
+    report.add("turned_round", "the third axis: those of the file are left-handed");
+  report.add("files", std::vector{imported->path});
+  return report.add("next", fmt::format("tactograph info {}", cli::shell_word(imported->path)));
+}
+
 // What an XDF file has, and a command for its first stream of numbers.
 schema::Result<cli::Report> list_streams(const Source& source) {
   std::vector<cli::Report> rows;
@@ -285,8 +299,8 @@ schema::Result<cli::Report> list_streams(const Source& source) {
 // What a MATLAB or XDF file has; no other file is opened without an output.
 schema::Result<cli::Report> list_contents(const ImportRequest& request) {
   const auto source = open_source(request.file);
-  const bool has_own_reader =
-      is_profile_request(request) || is_height_map_request(request) || is_mesh_request(request);
+  const bool has_own_reader = is_profile_request(request) || is_height_map_request(request) ||
+                              is_mesh_request(request) || is_volume_request(request);
   if (!source && (!has_own_reader || source.error().kind == schema::ErrorKind::not_found))
     return schema::forward_error(source);
   if (!source || !(source->mat || source->xdf) || !request.channels.empty() || !request.stream.empty())
@@ -309,9 +323,11 @@ schema::Result<cli::Report> list_contents(const ImportRequest& request) {
 schema::Result<cli::Report> run_import(const ImportRequest& request) {
   if (request.name.empty()) return list_contents(request);
   if (is_mesh_request(request)) return run_mesh(request);
+  if (is_volume_request(request)) return run_volume(request);
   if (request.unit_m || request.repair || request.open)
     return schema::fail(schema::ErrorKind::usage,
-                        "--unit, --repair and --open are for an STL, OBJ or PLY file", request.file);
+                        "--unit is for an STL, OBJ, PLY or NRRD file, --repair and --open for a mesh",
+                        request.file);
   if (is_height_map_request(request)) return run_height_map(request);
   if (request.full_height_m || request.allow_8bit)
     return schema::fail(schema::ErrorKind::usage, "--height and --allow-8bit are for a PNG", request.file);
@@ -340,7 +356,7 @@ cli::Action declare_import(CLI::App& app) {
 const cli::Verb kImportVerb{
     "import",
     "Convert a file of another program to a recording, a height profile to a texture, a PNG or a surface to "
-    "a height map, STL, OBJ or PLY to a mesh",
+    "a height map, STL, OBJ or PLY to a mesh, NRRD to a volume",
     "tactograph import trial.csv -o trial --rate 10kHz --channel tangential_force=lateral_V*0.444444N"
     " --channel position=encoder_count*0.5um\n"
     "  tactograph import trial.csv -o trial --rate 10kHz --channel normal_force=2*-0.31+1.6647N --speed "
@@ -355,7 +371,8 @@ const cli::Verb kImportVerb{
     "  tactograph import surface.x3p --row 120 -o surface\n"
     "  tactograph import surface.x3p -o surface.height.nc\n"
     "  tactograph import plate.png --pitch 50um --height 200um -o plate\n"
-    "  tactograph import part.stl --unit mm -o part",
+    "  tactograph import part.stl --unit mm -o part\n"
+    "  tactograph import ct.nrrd -o ct",
     declare_import};
 
 }  // namespace tacto::capture

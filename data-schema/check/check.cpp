@@ -14,6 +14,7 @@
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/session/session_netcdf.hpp"
 #include "data-schema/transducer/transducer.hpp"
+#include "data-schema/volume/volume.hpp"
 #include "data-schema/wiring/wiring.hpp"
 
 namespace tacto::schema {
@@ -113,6 +114,10 @@ Result<Checked> check_file(const StoredFile& file, const Progress& progress) {
   if (file.kind == FileKind::mesh) {
     const auto mesh = read_mesh(file.path);
     return mesh ? Checked{{}, mesh->newer_version, {}} : judged(mesh.error());
+  }
+  if (file.kind == FileKind::volume) {
+    const auto volume = read_volume(file.path);
+    return volume ? Checked{{}, volume->newer_version, {}} : judged(volume.error());
   }
   if (file.kind != FileKind::spectrogram) return check_document(file, progress);
   auto checked = check_spectrogram(file.path);

@@ -9,6 +9,7 @@
 #include "data-schema/scene/force_grid.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture.hpp"
+#include "data-schema/volume/volume.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -86,6 +87,11 @@ std::vector<Finding> check_scene(const std::string& path, const Document& docume
     if (const auto& relief = scene->pieces[i].relief) {
       const auto map = read_height_map(texture_in_scene(path, relief->file));
       if (!map) findings.push_back({fmt::format("{}#/pieces/{}/relief/file", path, i), message(map.error())});
+    }
+    if (scene->pieces[i].shape == PieceShape::volume) {
+      const auto volume = read_volume(texture_in_scene(path, scene->pieces[i].volume));
+      if (!volume)
+        findings.push_back({fmt::format("{}#/pieces/{}/volume", path, i), message(volume.error())});
     }
     if (scene->pieces[i].shape != PieceShape::mesh) continue;
     const auto mesh = read_mesh(texture_in_scene(path, scene->pieces[i].mesh));

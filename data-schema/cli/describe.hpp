@@ -11,6 +11,7 @@
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/report/report.hpp"
 #include "data-schema/texture/transform.hpp"
+#include "data-schema/volume/volume.hpp"
 
 namespace tacto::schema {
 
@@ -28,6 +29,7 @@ Result<cli::Report> describe_session(const std::string& path);
 Result<cli::Report> describe_session_table(const std::string& path);
 Result<cli::Report> describe_height_map(const std::string& path);
 Result<cli::Report> describe_mesh(const std::string& path);
+Result<cli::Report> describe_volume(const std::string& path);
 Result<cli::Report> describe_results(const std::string& path);
 Result<cli::Report> describe_trade(const std::string& path);
 Result<cli::Report> describe_device(const std::string& path);
@@ -48,6 +50,9 @@ void add_transform(cli::Report& report, const TextureTransform& transform);
 
 /// Triangles, vertices, size, longest edge; the volume if it is closed, otherwise the edges of its holes.
 void add_mesh(cli::Report& report, const Mesh& mesh);
+
+/// Values along each axis, spacing, size, smallest and largest value, steepest slope.
+void add_volume(cli::Report& report, const Volume& volume);
 
 /// Adds the text if there is one.
 void add_text(cli::Report& report, const char* key, const std::string& text);

@@ -94,6 +94,10 @@ cli::Report row_of(const Piece& piece) {
     if (value > 0) row.add(key, value);
   };
   if (!piece.mesh.empty()) row.add("mesh", piece.mesh);
+  if (!piece.volume.empty())
+    row.add("volume", piece.volume).add("iso", piece.iso).add("value_per_m", piece.value_per_m);
+  if (piece.carve)
+    row.add("carve_force_n", piece.carve->force_n).add("carve_value_per_s", piece.carve->value_per_s);
   add_above_0("radius_m", piece.radius_m);
   add_above_0("thickness_m", piece.thickness_m);
   row.add("stiffness_n_per_m", piece.stiffness_n_per_m);
@@ -141,6 +145,7 @@ void add_pieces(cli::Report& report, const Scene& scene) {
   for (const Piece& piece : scene.pieces) rows.push_back(row_of(piece));
   report.add("contact", to_string(scene.contact)).add("pieces", std::move(rows));
   if (scene.point_radius_m > 0) report.add("radius_m", scene.point_radius_m);
+  if (!scene.tool_m.empty()) report.add("tool_points", scene.tool_m.size());
 }
 
 }  // namespace

@@ -43,6 +43,8 @@ Result<cli::Report> describe(const StoredFile& file) {
       return describe_height_map(file.path);
     case FileKind::mesh:
       return describe_mesh(file.path);
+    case FileKind::volume:
+      return describe_volume(file.path);
     case FileKind::corpus:
       return describe_corpus(file.path);
     case FileKind::protocol:

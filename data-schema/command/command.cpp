@@ -393,7 +393,7 @@ const Heading kHeadings[] = {
      {"interpolation", "inverse", "reconstruction", "cutoff", "hold", "keep-hysteresis", "no-look-ahead",
       "engine", "encoder-step", "rate", "loop", "onset", "target", "displacement"}},
     {"Limits", {"energy-limit", "energy-window", "over-limit", "contact", "contact-off"}},
-    {"Mesh", {"unit", "repair", "open"}},
+    {"Mesh or volume", {"unit", "repair", "open"}},
     {"Stored in the file", {"subject", "finger", "surface", "notes", "humidity", "date", "calibrated"}},
     {"Calibration", {"calibration", "no-calibration", "stale-after"}},
     {"Measuring and tables",

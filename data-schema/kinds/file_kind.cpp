@@ -13,14 +13,15 @@
 #include "data-schema/json/named_document.hpp"
 #include "data-schema/mesh/mesh.hpp"
 #include "data-schema/session/session_netcdf.hpp"
+#include "data-schema/volume/volume.hpp"
 
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 20> kNames = {
+constexpr std::array<std::string_view, 21> kNames = {
     "recording",  "texture", "transducer", "spectrogram",  "formants", "descriptions", "calibration",
     "scene",      "session", "results",    "trade",        "device",   "hand",         "session_table",
-    "height_map", "corpus",  "protocol",   "protocol_key", "wiring",   "mesh"};
+    "height_map", "corpus",  "protocol",   "protocol_key", "wiring",   "mesh",         "volume"};
 
 struct Ending {
   FileKind kind;
@@ -34,6 +35,7 @@ constexpr Ending kEndings[] = {
     {FileKind::spectrogram, ".nc"},
     {FileKind::height_map, ".height.nc"},
     {FileKind::mesh, ".mesh.nc"},
+    {FileKind::volume, ".volume.nc"},
     {FileKind::formants, ".formants.json"},
     {FileKind::descriptions, ".descriptions.json"},
     {FileKind::calibration, ".calibration.json"},
@@ -67,6 +69,7 @@ Result<StoredFile> by_content(const std::string& path) {
 FileKind netcdf_kind(const std::string& path) {
   if (is_height_map(path)) return FileKind::height_map;
   if (is_mesh(path)) return FileKind::mesh;
+  if (is_volume(path)) return FileKind::volume;
   return is_session_netcdf(path) ? FileKind::session_table : FileKind::spectrogram;
 }
 

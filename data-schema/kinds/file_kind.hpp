@@ -30,7 +30,8 @@ enum class FileKind {
   protocol,
   protocol_key,  ///< which stimulus has which code
   wiring,        ///< which sensor is wired to which input of a card
-  mesh
+  mesh,
+  volume  ///< values on a grid in space
 };
 
 /// "recording", "texture", ... as in the files' own member `kind`.

@@ -138,6 +138,26 @@ Result<void> check_travel(const Piece& piece, const std::string& where) {
   return {};
 }
 
+Result<void> check_volume_members(const Piece& piece, const std::string& where) {
+  const bool is_volume = piece.shape == PieceShape::volume;
+  const std::pair<const char*, bool> members[] = {{"volume", !piece.volume.empty()},
+                                                  {"iso", piece.iso != 0},
+                                                  {"value_per_m", piece.value_per_m != 0},
+                                                  {"carve", piece.carve.has_value()}};
+  for (const auto& [member, given] : members)
+    if (given && !is_volume)
+      return fail(ErrorKind::unsuitable, fmt::format("a {} has no {}", to_string(piece.shape), member),
+                  fmt::format("{}/{}", where, member), "it belongs to: volume");
+  if (!is_volume) return {};
+  for (const auto& [member, given] :
+       {std::pair{"travel", !piece.travel.empty()}, std::pair{"texture", piece.texture.has_value()},
+        std::pair{"slide", piece.slide.has_value()}})
+    if (given)
+      return fail(ErrorKind::unsuitable, fmt::format("a volume has no {}", member),
+                  fmt::format("{}/{}", where, member), "leave it out");
+  return {};
+}
+
 Result<void> check_members(const Piece& piece, const std::string& where) {
   const bool round = piece.shape == PieceShape::sphere || piece.shape == PieceShape::cylinder;
   const auto refused = [&](const char* member, const char* shapes) {
@@ -152,6 +172,7 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
     return refused("coefficients", "quadric");
   if (!piece.mesh.empty() && piece.shape != PieceShape::mesh) return refused("mesh", "mesh");
   if (piece.relief && piece.shape != PieceShape::plane) return refused("relief", "plane");
+  TACTO_TRY(check_volume_members(piece, where));
   const auto& d = piece.direction;
   if (!(std::hypot(d[0], d[1], d[2]) > 1e-9))
     return fail(ErrorKind::unsuitable, "a direction of length 0", where + "/direction",
@@ -204,13 +225,17 @@ Result<void> check_pieces(const Scene& scene, const std::string& where) {
       return fail(ErrorKind::unsuitable, fmt::format("two pieces are named '{}'", piece.name), at + "/name",
                   "give each piece its own name");
     TACTO_TRY(check_members(piece, at));
-    if (scene.point_radius_m > 0 &&
-        (piece.shape == PieceShape::quadric || piece.shape == PieceShape::mesh || is_raised(piece)))
+    if (scene.point_radius_m > 0 && (piece.shape == PieceShape::quadric || piece.shape == PieceShape::mesh ||
+                                     piece.shape == PieceShape::volume || is_raised(piece)))
       return fail(ErrorKind::unsuitable,
-                  "a point with a radius does not touch quadrics, meshes and reliefs yet",
+                  "a point with a radius does not touch quadrics, meshes, reliefs and volumes yet",
                   where + "#/radius_m",
                   "leave radius_m out, or make the piece larger by the radius; planes, spheres and "
                   "cylinders are exact");
+    if (!scene.tool_m.empty() && piece.shape != PieceShape::volume)
+      return fail(ErrorKind::unsuitable,
+                  fmt::format("a tool of points does not touch a {}", to_string(piece.shape)),
+                  where + "#/tool_m", "it touches volumes; leave it out, or the other pieces");
     if (scene.contact == PieceContact::add && piece.shape == PieceShape::mesh)
       return fail(ErrorKind::unsuitable, "a mesh does not push to its nearest face", where + "#/contact",
                   "leave contact out: a ghost point touches meshes");

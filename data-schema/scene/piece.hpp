@@ -14,7 +14,7 @@
 
 namespace tacto::schema {
 
-enum class PieceShape { plane, sphere, cylinder, quadric, mesh };
+enum class PieceShape { plane, sphere, cylinder, quadric, mesh, volume };
 
 /// How pieces act: a ghost point stays on their surfaces (Zilles and Salisbury 1995), or each piece pushes to
 /// its nearest face, and the forces add up.
@@ -53,6 +53,11 @@ inline constexpr HandSurfaceNumber kHandSurfaceNumbers[] = {
 /// A breakpoint of the force of a wall's spring.
 struct TravelPoint {
   double depth_m = 0, force_n = 0;
+};
+
+/// Above this force of its spring the values of a volume around the point fall.
+struct Carving {
+  double force_n = 0, value_per_s = 0;
 };
 
 /// The last one is not in a file: a relief with interpolated normals is one.
@@ -112,7 +117,8 @@ std::array<std::array<double, 3>, 2> map_axes(const std::array<std::array<double
 struct Piece {
   std::string name;  ///< different for each piece of a scene
   PieceShape shape = PieceShape::plane;
-  double x_m = 0, y_m = 0, z_m = 0;             ///< a point of a plane or an axis, a centre, a mesh's origin
+  double x_m = 0, y_m = 0,
+         z_m = 0;  ///< a point of a plane or an axis, a centre, a mesh's origin, a volume's middle
   std::array<double, 3> direction = {0, 0, 1};  ///< plane: out of the solid; cylinder: its axis
   double thickness_m = 0;                       ///< plane: of the plate below it; 0: without an end
   double radius_m = 0;                          ///< sphere, cylinder
@@ -139,6 +145,12 @@ struct Piece {
   std::optional<PieceRelief> relief = std::nullopt;  ///< plane
   std::optional<PieceSlide> slide = std::nullopt;
   std::map<std::string, SliderRange> sliders = {};  ///< of kWallNumbers that change, by their names
+  std::string volume = {};                          ///< volume: the stem of its file, or the file
+  double iso = 0;                                   ///< volume: solid where its value is above this one
+  double value_per_m = 0;                           ///< volume: depth = (value - iso) / value_per_m
+  std::optional<Carving> carve = std::nullopt;      ///< volume: how the point removes material
+  /// Not in the file, once its volume was read: the largest slope of the depth, squared.
+  double steepness = 1;
 };
 
 struct PieceNumber {
@@ -175,10 +187,10 @@ NamedLayerNumber named_number(const Piece& piece, const PieceNumber& number);
 std::vector<Piece> slider_ends(const Piece& piece);
 
 /// The steepest part of its spring: the stiffness, or of a travel the largest slope, at its end the
-/// stiffness.
+/// stiffness; of a volume the stiffness x its steepness.
 double steepest_spring_n_per_m(const Piece& piece);
 
-/// "plane", "sphere", "cylinder", "quadric", "mesh".
+/// "plane", "sphere", "cylinder", "quadric", "mesh", "volume".
 std::string_view to_string(PieceShape shape);
 
 /// "ghost", "add".

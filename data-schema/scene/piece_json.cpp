@@ -11,7 +11,8 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 5> kShapeWords = {"plane", "sphere", "cylinder", "quadric", "mesh"};
+constexpr std::array<std::string_view, 6> kShapeWords = {"plane",   "sphere", "cylinder",
+                                                         "quadric", "mesh",   "volume"};
 constexpr std::array<std::string_view, 4> kTextureWords = {"recording", "bump", "sine", "normals"};
 
 // Before the numbers of the wall; each is written if it is not 0.
@@ -110,7 +111,7 @@ double detent_stiffness_n_per_m(const PieceSlide& slide) {
 }
 
 double steepest_spring_n_per_m(const Piece& piece) {
-  double steepest = piece.stiffness_n_per_m;
+  double steepest = piece.steepness * piece.stiffness_n_per_m;
   TravelPoint last;
   for (const TravelPoint& point : piece.travel) {
     if (point.depth_m > last.depth_m)
@@ -155,6 +156,10 @@ Piece piece_from(const Json& body) {
   if (body.contains("coefficients"))
     for (std::size_t i = 0; i < kQuadricTerms; ++i) piece.coefficients[i] = body["coefficients"][i];
   piece.mesh = text_or(body, "mesh");
+  piece.volume = text_or(body, "volume");
+  piece.iso = number_or(body, "iso", 0);
+  piece.value_per_m = number_or(body, "value_per_m", 0);
+  if (body.contains("carve")) piece.carve = {body["carve"]["force_n"], body["carve"]["value_per_s"]};
   for (const auto& [name, value, changes] : kShapeNumbers) piece.*value = number_or(body, name, 0);
   read_wall(piece, body);
   if (body.contains("transient")) {
@@ -190,6 +195,10 @@ Json piece_body(const Piece& piece) {
     body["direction"] = piece.direction;
   if (piece.shape == PieceShape::quadric) body["coefficients"] = piece.coefficients;
   if (piece.shape == PieceShape::mesh) body["mesh"] = piece.mesh;
+  if (piece.shape == PieceShape::volume)
+    body["volume"] = piece.volume, body["iso"] = piece.iso, body["value_per_m"] = piece.value_per_m;
+  if (piece.carve)
+    body["carve"] = {{"force_n", piece.carve->force_n}, {"value_per_s", piece.carve->value_per_s}};
   for (const auto& [name, value, changes] : kShapeNumbers)
     if (piece.*value != 0) body[name] = piece.*value;
   write_wall(piece, body);

@@ -46,6 +46,8 @@ struct Scene {
   std::string extra_json;
   std::string newer_version;  ///< with which it is written again
   std::vector<std::string> unknown_members = {};
+  std::vector<std::array<double, 3>> tool_m =
+      {};  ///< points that touch volumes, from the hand; empty: the hand
 };
 
 /// "stop", "mirror", "loop".

@@ -102,6 +102,8 @@ void read_pieces(const Document& document, Scene& scene) {
   for (const Json& body : document.body["pieces"]) scene.pieces.push_back(piece_from(body));
   scene.point_radius_m = number_or(document.body, "radius_m", 0);
   scene.contact = contact_from(document.body);
+  if (!document.body.contains("tool_m")) return;
+  for (const Json& point : document.body["tool_m"]) scene.tool_m.push_back({point[0], point[1], point[2]});
 }
 
 // Layers, patches and choices keep their own.
@@ -144,6 +146,7 @@ Json scene_body(const Scene& scene) {
   if (scene.pieces.empty()) return body;
   body["contact"] = to_string(scene.contact);
   if (scene.point_radius_m > 0) body["radius_m"] = scene.point_radius_m;
+  for (const auto& point : scene.tool_m) body["tool_m"].push_back(point);
   for (const Piece& piece : scene.pieces) body["pieces"].push_back(piece_body(piece));
   return body;
 }

@@ -124,6 +124,15 @@ int NetcdfWriter::indices(const char* name, const Blocks& blocks, const std::str
   return id;
 }
 
+int NetcdfWriter::shorts(const char* name, const Blocks& blocks, double scale, double offset,
+                         const std::string& long_name) {
+  const int id = define(name, NC_SHORT, blocks, true);
+  describe(id, "", long_name);
+  if (sound()) status_ = nc()->put_att_double(file_, id, "scale_factor", NC_DOUBLE, 1, &scale);
+  if (sound()) status_ = nc()->put_att_double(file_, id, "add_offset", NC_DOUBLE, 1, &offset);
+  return id;
+}
+
 int NetcdfWriter::flags(const char* name, const Blocks& blocks, const std::string& meanings,
                         const std::string& long_name) {
   constexpr signed char kValues[] = {0, 1};
@@ -206,12 +215,16 @@ std::string NetcdfReader::units(const char* name) {
   return there ? text_of(id, "units") : "";
 }
 
-double NetcdfReader::number(const char* name) {
+double NetcdfReader::number(const char* name, const char* variable) {
   std::size_t length = 0;
   nc_type type = NC_NAT;
   double value = std::numeric_limits<double>::quiet_NaN();
-  if (status_ != NC_NOERR || nc()->inq_att(file_, NC_GLOBAL, name, &type, &length) != NC_NOERR) return value;
-  if (length == 1 && type != NC_CHAR) status_ = nc()->get_att_double(file_, NC_GLOBAL, name, &value);
+  int of = NC_GLOBAL;
+  if (status_ != NC_NOERR) return value;
+  // One call a statement: each has the library to itself until its end.
+  if (variable != nullptr && nc()->inq_varid(file_, variable, &of) != NC_NOERR) return value;
+  if (nc()->inq_att(file_, of, name, &type, &length) != NC_NOERR) return value;
+  if (length == 1 && type != NC_CHAR) status_ = nc()->get_att_double(file_, of, name, &value);
   return value;
 }
 

@@ -43,6 +43,9 @@ class NetcdfWriter {
             const std::string& long_name);
   /// Whole numbers of 32 bits, deflated; put as doubles.
   int indices(const char* name, const Blocks& blocks, const std::string& long_name);
+  /// Whole numbers of 16 bits, deflated; put as doubles. Programs that know CF read number x scale + offset.
+  int shorts(const char* name, const Blocks& blocks, double scale, double offset,
+             const std::string& long_name);
   /// Bytes that are 0 or 1, deflated, with the names of both values ("unknown known").
   int flags(const char* name, const Blocks& blocks, const std::string& meanings,
             const std::string& long_name);
@@ -74,11 +77,12 @@ class NetcdfReader {
   NetcdfReader& operator=(const NetcdfReader&) = delete;
   ~NetcdfReader();
 
-  /// An attribute of the whole file; empty or NaN where there is none (which is no failure).
+  /// An attribute of the whole file, or of a variable; empty or NaN where there is none (which is no
+  /// failure).
   std::string text(const char* name);
   /// A variable's attribute `units`; empty where there is none.
   std::string units(const char* name);
-  double number(const char* name);
+  double number(const char* name, const char* variable = nullptr);
   /// A dimension's length; 0 where there is none.
   std::size_t length(const char* name);
   std::vector<double> axis(const char* name);

@@ -310,6 +310,7 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
   one.pieces = {piece};
   one.point_radius_m = on.scene.point_radius_m;
   one.contact = on.scene.contact;
+  one.tool_m = on.scene.tool_m;
   const auto alone = prepare_pieces(one, on.file, on.device, double{on.setup.rate_hz}, std::nullopt);
   TACTO_TRY(alone);
   Report row;
@@ -330,6 +331,9 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
         .add("steepest_n_per_m", steepest_spring_n_per_m(piece));
     if (click_n > 0) row.add("click_n", click_n);
   }
+  if (piece.shape == schema::PieceShape::volume)
+    row.add("values", on.scene.reliefs.volumes.at(piece.volume)->stored.size())
+        .add("steepest_n_per_m", steepest_spring_n_per_m(alone->pieces.front()));
   for (const schema::PieceNumber& number : schema::kWallNumbers) {
     const bool rubs = number.value == &schema::Piece::static_friction ||
                       number.value == &schema::Piece::kinetic_friction ||
@@ -372,10 +376,10 @@ Result<std::vector<Report>> rows_of_pieces(const SceneOnDevice& on) {
 // What keeps the scene from fitting; empty: it fits. `too_slow`: in words, or empty.
 void add_fit(Report& report, const PreparedScene& scene, std::optional<std::size_t> room,
              const std::string& too_slow) {
-  const std::size_t bytes = scene.bytes();
+  const std::size_t bytes = scene.room_bytes();
   const bool small = !room || bytes <= *room;
   report.add("fits", small && too_slow.empty());
-  if (!room && !scene.meshes.empty())
+  if (!room && !(scene.meshes.empty() && scene.reliefs.volumes.empty()))
     report.add("memory", "not compared: --device-memory or --board gives the room of the device");
   if (!small) {
     const std::string remedy = scene.remedy_for(*room);

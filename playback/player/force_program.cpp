@@ -119,11 +119,11 @@ Result<ForceProgram> make_force_program(const ForceRequest& request, const schem
   }
   const auto limits = limits_for(request, device, own, rate_hz);
   TACTO_TRY(limits);
-  if (prepared->bytes() > own.scene_bytes)
+  if (prepared->room_bytes() > own.scene_bytes)
     return fail(
         ErrorKind::unsuitable,
-        fmt::format("the scene needs {} bytes, the device has {}", prepared->bytes(), own.scene_bytes), file,
-        prepared->remedy_for(own.scene_bytes));
+        fmt::format("the scene needs {} bytes, the device has {}", prepared->room_bytes(), own.scene_bytes),
+        file, prepared->remedy_for(own.scene_bytes));
   auto notes = limits_of_device(*prepared, device, *setup, hand);
   return ForceProgram{std::move(*prepared), *limits, header_of(file, own, rate_hz), std::move(notes),
                       std::move(held)};

@@ -10,6 +10,7 @@
 #include "data-schema/mesh/mesh.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture_wav.hpp"
+#include "data-schema/volume/volume.hpp"
 #include "playback/player/placed_textures.hpp"
 
 namespace tacto::playback {
@@ -66,6 +67,9 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
       return false;
     if (piece.relief &&
         !is_within(folder, schema::height_map_path(schema::texture_in_scene(path, piece.relief->file))))
+      return false;
+    if (!piece.volume.empty() &&
+        !is_within(folder, schema::volume_path(schema::texture_in_scene(path, piece.volume))))
       return false;
     if (!piece.texture || piece.texture->file.empty()) continue;
     const std::string file = schema::texture_in_scene(path, piece.texture->file);

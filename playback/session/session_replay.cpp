@@ -73,6 +73,7 @@ class SessionPlayer {
   bool is_over() const { return refused_.has_value() || outcome_.first_difference || outcome_.lost_at; }
   const std::optional<std::string>& refused() const { return refused_; }
   const ReplayOutcome& outcome() const { return outcome_; }
+  const core::SceneKernel& scene() const { return board_.scene(); }
 
  private:
   void obey(const SessionCommand& command) {
@@ -161,7 +162,8 @@ Result<void> check_replayable(const Overview& seen, const schema::SessionReader&
 }  // namespace
 
 Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress,
-                                     const UnlimitedListener& listener, const SceneListener& scene_listener) {
+                                     const UnlimitedListener& listener, const SceneListener& scene_listener,
+                                     const SceneListener& at_end) {
   const auto seen = overview_of(name);
   TACTO_TRY(seen);
   auto reader = schema::SessionReader::open(name);
@@ -183,6 +185,7 @@ Result<ReplayOutcome> replay_session(const std::string& name, const std::functio
   outcome.ending = seen->ending;
   outcome.damaged_at = seen->damaged_at;
   if (!player.is_over() && outcome.lost > 0) outcome.lost_at = outcome.ticks;  // after the last one
+  if (at_end && outcome.same()) at_end(player.scene());
   return outcome;
 }
 

@@ -50,12 +50,14 @@ using SceneListener = std::function<void(const core::SceneKernel& scene)>;
 /// not the force. Only the session is read. Errors: unsuitable, if there are no ticks, if a part of what is
 /// sent up to arming is missing; malformed, if a command in it is not a frame; unsuitable, if the core
 /// refuses one, with its reason. `progress` receives fractions; `listener` doubles the cost, because a second
-/// device, without limits, is replayed too. This one comes to rest a little earlier if the slew limit delayed
-/// the other, by at most drive limit / slew limit, and then accepts a count that was unseen that much
-/// earlier.
+/// device, without limits, is replayed too. `at_end` receives
+/// the kernel of a scene after the last tick, if all were the same. This one comes to rest a little earlier
+/// if the slew limit delayed the other, by at most drive limit / slew limit, and then accepts a count that
+/// was unseen that much earlier.
 schema::Result<ReplayOutcome> replay_session(const std::string& name,
                                              const std::function<void(double)>& progress = {},
                                              const UnlimitedListener& listener = {},
-                                             const SceneListener& scene_listener = {});
+                                             const SceneListener& scene_listener = {},
+                                             const SceneListener& at_end = {});
 
 }  // namespace tacto::playback

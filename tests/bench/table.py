@@ -153,6 +153,10 @@ def print_table(ours, theirs, used, corpus):
         print(f"{title:64} median {mesh['median_ns'] / 1e3:.2f} us, p99 {mesh['p99_ns'] / 1e3:.2f} us (at most {most})")
     print(f"  force within {mesh['worst_angle_mrad']:.1f} mrad of the ball's normal (half angle of a facet: 14.0); along the motion, without friction, of 1 N: "
           f"{abs(mesh['tangential_mean']):.5f} N in the mean (at most 0.001), {mesh['tangential_ripple']:.4f} N from tick to tick")
+    for points, most, ticks in ((1, 0.3, 200000), (1000, 20, 20000)):
+        volume = ours[f"TouchVolume/{points}/iterations:{ticks}"]
+        title = f"volume of 256^3 values, {points} point" + "s" * (points > 1)
+        print(f"{title:64} median {volume['median_ns'] / 1e3:.2f} us, p99 {volume['p99_ns'] / 1e3:.2f} us (median at most {most})")
     clock = {jobs: rate for jobs, (rate, _) in corpus.items()}
     print(f"\ncorpus run, spatial, {CORPUS} recordings of 2 s at 10 kHz: {clock[1]:.0f} a second by one job (at least 60), {clock[2]:.0f} by two, "
           f"{clock[2] / clock[1]:.2f} times (at least 1.9); a second of CPU makes {corpus[1][1]:.0f}, with two jobs {corpus[2][1]:.0f}")

@@ -11,6 +11,7 @@
 #include "tests/firmware-host/kernel_workload.hpp"
 #include "tests/firmware-host/pieces_workload.hpp"
 #include "tests/firmware-host/seccomp.hpp"
+#include "tests/firmware-host/volume_workload.hpp"
 
 namespace tacto::core {
 namespace {
@@ -78,7 +79,8 @@ TEST(Scenes, TheWorkloadsHaveAllKindsOfLayers) {
     return std::find(std::begin(kinds), std::end(kinds), kind) != std::end(kinds);
   };
   for (std::uint16_t kind = 0; kind < 1000; ++kind)
-    EXPECT_EQ(has(tests::SceneWorkload::kKinds, kind) || has(tests::PiecesWorkload::kKinds, kind),
+    EXPECT_EQ(has(tests::SceneWorkload::kKinds, kind) || has(tests::PiecesWorkload::kKinds, kind) ||
+                  has(tests::VolumeWorkload::kKinds, kind),
               is_known(static_cast<SceneLayerKind>(kind)))
         << kind;
 }
@@ -91,6 +93,7 @@ TEST(Scenes, UnderSeccompASystemCallEndsTheProcess) {
 TEST(Scenes, NoTickOfTheKernelAllocatesOrCallsTheSystem) {
   expect_ticks_without_calls<tests::SceneWorkload>(tests::kSceneFingerprint);
   expect_ticks_without_calls<tests::PiecesWorkload>(tests::kPiecesFingerprint);
+  expect_ticks_without_calls<tests::VolumeWorkload>(tests::kVolumeFingerprint);
 }
 
 TEST(Scenes, NoTickOrPollOfTheFirmwareAllocatesOrCallsTheSystem) {

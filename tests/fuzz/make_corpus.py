@@ -145,7 +145,7 @@ DEVICES = {
 
 
 SPRING, DAMPER, GROOVES, NOISE, HEIGHT_MAP, BODY, LASSO, MOVER, FIELD, FORCE_MAP, TICK_DAMPER = range(11)
-PLANE, SPHERE, CYLINDER, QUADRIC, MESH, RELIEF = 16, 17, 18, 19, 20, 22
+PLANE, SPHERE, CYLINDER, QUADRIC, MESH, RELIEF, VOLUME = 16, 17, 18, 19, 20, 22, 24
 AT_REST = (0,) * 9
 
 
@@ -190,6 +190,16 @@ def raised(origin, bend_per_m, samples_per_m, columns, rows):
     return kind, numbers, table + struct.pack("<9f", 1, 0, 0, 0, 0.8, -0.6, 1e-3, -1, bend_per_m) + relief_table(1000, ((0, 0, samples_per_m, columns, rows),))
 
 
+def volume(samples, spacing_m, m_per_value, carve=(0, 0, 0, 0), points=()):
+    """Values that fall along the sum of the three places, around 0; places per count of an encoder of 10 um."""
+    kind, numbers, table = piece(VOLUME, (3, -4, 5), (0, 0, 1, 0.1))
+    axes = b"".join(struct.pack("<iIiIfI", (n - 1) // 2, (n - 1) % 2 << 31, int(1e-5 / spacing_m), int(1e-5 / spacing_m % 1 * 2**32), 1 / spacing_m, n) for n in samples)
+    values = [1000 - 300 * (x + y + z) for z in range(samples[2]) for y in range(samples[1]) for x in range(samples[0])]
+    values += [0] * (len(values) % 2)
+    offsets = b"".join(struct.pack("<3i3I", *whole, *part) for whole, part in points)
+    return kind, numbers, table + axes + struct.pack("<fffIiII", 12.5, m_per_value, *carve, len(points)) + offsets + struct.pack(f"<{len(values)}h", *values)
+
+
 SCENES = {
     "spring": scene((3, -2, 5, 0), [(0, 0, 1, 0, 0.1, 0.1, 0, [(SPRING, (100, 0, 0))])]),
     "ice_on_soup": scene((90, 1, -70, 40), [(0, 0, 0.6, 0.8, 0.01, 0.01, 0, [(DAMPER, (0.1,))]),
@@ -216,6 +226,8 @@ SCENES = {
                                                                                    piece(PLANE, (2**31 - 1, 0, -2**31), (1, 0, 0, 20), (1e6, 1e4, 100, 1e7, 1000, 1000, 1e-6, 10, 1e4, 1000), (0, 0, -1, 0, 0, -1), recording(1e6, 2), [(0, 1000), (0, 0), (20, 1000)], HARD_SLIDE)])]),
     "mesh": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [mesh(0.002), piece(PLANE, (0, 0, -90), (0, 0.6, 0.8, 0.001))])]),
     "reliefs": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [raised((0, 0, 90), 1e7, 500, 6, 5), raised((2**31 - 1, 0, -2**31), 0, 1e8, 1, 2), piece(PLANE, (0, 0, -90), (0, 0, 1, 0.001))])]),
+    "volume": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [volume((4, 5, 6), 5e-4, 1e-6, (0.01, 70000, -3500, 0), [((0, 0, 0), (0, 0, 0)), ((-1, 0, 1), (7, 2**31, 9))]), piece(PLANE, (0, 0, -90), (0, 0.6, 0.8, 0.001)),
+                                                                  volume((3, 3, 3), 1e-7, 0.1, (1000, 0xFFFF0000, 32767, 61))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,)), (TICK_DAMPER, (1e4,))])]),
 }
 

@@ -48,6 +48,17 @@ def write_mats():
         write("mat", name, b"MATLAB 5.0 MAT-file".ljust(116) + file.getvalue()[116:])  # without the date
 
 
+def write_nrrds():
+    import gzip
+    head = "NRRD0005\n# volume\ntype: {}\ndimension: 3\nsizes: 2 3 4\nencoding: {}\nendian: {}\n{}\n\n"
+    directions = 'space units: "mm" "mm" "mm"\nspace directions: (1,0,0) (0,1,0) (0,0,-2)'
+    for name, number, encoding, endian, fields in (("raw", "24h", "raw", "little", "spacings: 1 1 2"), ("big", "24H", "raw", "big", "spacings: 1 1 2"),
+                                                   ("gzip", "24f", "gzip", "little", "spacings: 1 1 2"), ("directions", "24h", "gz", "little", directions)):
+        data = struct.pack("<>"[endian == "big"] + number, *range(24))
+        kind = {"h": "short", "H": "uint16", "f": "float"}[number[-1]]
+        write("nrrd", name, head.format(kind, encoding, endian, fields).encode() + (data if encoding == "raw" else gzip.compress(data, mtime=0)))
+
+
 def write_xdfs():
     import numpy as np
     import xdf_maker as xdf
@@ -87,5 +98,6 @@ if __name__ == "__main__":
     write_wavs()
     write_mats()
     write_xdfs()
+    write_nrrds()
     write_tables()
     write_sidecars(str(pathlib.Path(sys.argv[1]).resolve()))

@@ -8,23 +8,23 @@ MAY_INCLUDE = {
     "data-schema/calibration": "data-schema/{base files json}",
     "data-schema/check":
         "data-schema/{base corpus device experiment files height json kinds mesh recording results scene session spectrogram texture transducer "
-        "wav wiring}",
+        "volume wav wiring}",
     "data-schema/cli":
         "data-schema/{base calibration check command corpus device exchange experiment files height kinds mesh recording report results scene session spectrogram "
-        "texture transducer wiring}",
+        "texture transducer volume wiring}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
     "data-schema/corpus": "data-schema/{base json}",
     "data-schema/device": "data-schema/{base json}",
     "data-schema/experiment": "data-schema/{base files json}",
-    "data-schema/exchange": "data-schema/{base exchange/assimp exchange/matio exchange/zip files mesh texture}",
+    "data-schema/exchange": "data-schema/{base exchange/assimp exchange/matio exchange/zip files mesh texture volume}",
     "data-schema/exchange/assimp": "",
     "data-schema/exchange/matio": "",
     "data-schema/exchange/zip": "",
     "data-schema/files": "data-schema/base",
     "data-schema/height": "data-schema/{base files spectrogram}",
     "data-schema/json": "data-schema/{base files}",
-    "data-schema/kinds": "data-schema/{base files height json mesh session}",
+    "data-schema/kinds": "data-schema/{base files height json mesh session volume}",
     "data-schema/mesh": "data-schema/{base files spectrogram}",
     "data-schema/netcdf": "",
     "data-schema/recording": "data-schema/{base files json transducer wav}",
@@ -35,6 +35,7 @@ MAY_INCLUDE = {
     "data-schema/spectrogram": "data-schema/{base files netcdf}",
     "data-schema/texture": "data-schema/{base files json kinds wav}",
     "data-schema/transducer": "data-schema/{base json}",
+    "data-schema/volume": "data-schema/{base files spectrogram}",
     "data-schema/wav": "data-schema/{base files}",
     "data-schema/wiring": "data-schema/{base files json recording transducer}",
     "firmware-host": "data-schema/base firmware-host/{comedi link replay sim/device sim/physics sim/planar tty usb}",
@@ -67,7 +68,7 @@ MAY_INCLUDE = {
         "capture/{calibrate doctor import record table} data-schema/{base cli command files height kinds recording report wiring} "
         "firmware-host/{. sim/device}",
     "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. core/wire link}",
-    "capture/import": "capture/{calibrate record table} data-schema/{base calibration exchange files height mesh recording texture}",
+    "capture/import": "capture/{calibrate record table} data-schema/{base calibration exchange files height mesh recording texture volume}",
     "capture/record":
         "capture/table data-schema/{base calibration files recording} firmware-host/link spatial/strokes",
     "capture/table": "data-schema/{base exchange files recording wav}",
@@ -99,7 +100,7 @@ MAY_INCLUDE = {
         "data-schema/{base files texture} spatial/{dsp/filter dsp/resample numbers texture}",
     "playback/choose": "data-schema/{results scene} firmware-host/{boards core/scene} playback/{model prepare}",
     "playback/cli":
-        "data-schema/{base command control device files recording report scene session texture} "
+        "data-schema/{base command control device files recording report scene session texture volume} "
         "firmware-host/{boards core/firmware core/scene link} playback/{choose control host-loop model player prepare/relief prepare/scene "
         "render session strokes}",
     "playback/control": "data-schema/{base control files}",
@@ -111,7 +112,7 @@ MAY_INCLUDE = {
         "data-schema/{base files transducer wav} firmware-host/{core/kernel core/wire} spatial/{dsp/filter "
         "dsp/fourier dsp/resample}",
     "playback/player":
-        "data-schema/{base device files height mesh scene session texture} firmware-host/{. core/firmware core/kernel core/wire "
+        "data-schema/{base device files height mesh scene session texture volume} firmware-host/{. core/firmware core/kernel core/wire "
         "link sim/device sim/planar} playback/{choose host-loop model prepare prepare/scene render session} "
         "spatial/dsp/resample",
     "playback/prepare":
@@ -119,13 +120,13 @@ MAY_INCLUDE = {
         "spatial/{dsp/filter dsp/fourier}",
     "playback/prepare/relief": "data-schema/{base height scene} firmware-host/core/scene spatial/dsp/fourier",
     "playback/prepare/scene":
-        "data-schema/{base device height mesh scene texture} firmware-host/core/scene playback/{model prepare prepare/relief "
+        "data-schema/{base device height mesh scene texture volume} firmware-host/core/scene playback/{model prepare prepare/relief "
         "stability}",
     "playback/render":
         "data-schema/{base device files recording scene texture transducer} firmware-host/{core/kernel core/scene sim/planar} "
         "playback/{choose model prepare prepare/scene render/reference} spatial/{dsp/filter features}",
     "playback/render/reference":
-        "data-schema/{base device mesh} firmware-host/core/{kernel scene} playback/{model prepare prepare/relief prepare/scene} "
+        "data-schema/{base device mesh volume} firmware-host/core/{kernel scene} playback/{model prepare prepare/relief prepare/scene} "
         "spatial/{dsp/filter dsp/fourier}",
     "playback/session":
         "data-schema/{base files session wav} firmware-host/{core/firmware core/kernel core/wire link} playback/model",
@@ -172,10 +173,10 @@ MAY_INCLUDE = {
     "analysis/psychometrics": "data-schema/base",
     "analysis/report":
         "analysis/{identify/measure page} data-schema/{base calibration check corpus device experiment files height kinds mesh recording results "
-        "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
+        "scene session spectrogram texture transducer volume} playback/session spatial/{picture picture/draw spectrogram "
         "texture}",
     "analysis/scene":
-        "data-schema/{base device height mesh report scene} firmware-host/core/scene playback/{prepare/scene render/reference session} "
+        "data-schema/{base device height mesh report scene volume} firmware-host/core/scene playback/{prepare/scene render/reference session} "
         "spatial/{picture picture/draw}",
     "analysis/trade":
         "analysis/{page trade/offline trade/rows} data-schema/{base results texture transducer} "

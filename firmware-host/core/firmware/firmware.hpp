@@ -79,10 +79,13 @@ class SceneUpload {
   bool complete() const noexcept { return complete_; }
   uint32_t here() const noexcept { return here_; }
   const SceneView& view() const noexcept { return view_; }
-  float* live() const noexcept { return memory_ + (words_ - live_words()); }
+  float* live() const noexcept {
+    return memory_ + (words_ - (view_.live_words() > live_words() ? view_.live_words() : live_words()));
+  }
 
  private:
-  // SceneView::live_words() of the largest scene; in a small memory a block of half of it cannot need more.
+  // SceneView::live_words() of the largest scene that is not carved; in a small memory a block of half of it
+  // cannot need more.
   uint32_t live_words() const noexcept {
     constexpr uint32_t kMost =
         kMostSceneLayers * (kMostLayerNumbers + kPatchWords) + kMostSceneBodies * (kBodyStateWords + 1);

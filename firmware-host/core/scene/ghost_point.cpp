@@ -5,6 +5,7 @@
 #include "firmware-host/core/scene/piece_relief.hpp"
 #include "firmware-host/core/scene/piece_slide.hpp"
 #include "firmware-host/core/scene/piece_texture.hpp"
+#include "firmware-host/core/scene/volume.hpp"
 
 namespace tacto::core {
 namespace {
@@ -34,6 +35,10 @@ bool is_mesh(const SceneView& scene, uint32_t piece) noexcept {
 
 const MeshTable& mesh_of(const SceneView& scene, uint32_t piece) noexcept {
   return table_of<MeshTable>(scene, scene.layers[piece]);
+}
+
+bool is_volume(const SceneView& scene, uint32_t piece) noexcept {
+  return kind_of(scene, piece) == SceneLayerKind::volume;
 }
 
 const WallState& state_of(const SceneView& scene, uint32_t piece) noexcept {
@@ -551,6 +556,14 @@ SpaceVector GhostPoint::force(const SceneView& block, float* live, const SpaceHa
       if (touch.depth_m > 0) normal = (1 / touch.depth_m) * normal;
       if (state.touched != 0 && !beyond && is_near(mesh_of(scene, i), from, kLetGo_m)) touch.outside_m = 0;
     }
+    if (is_volume(scene, i) && !beyond) {
+      const auto& volume = table_of<VolumeTable>(scene, scene.layers[i]);
+      auto* const carved = reinterpret_cast<uint32_t*>(live + scene.uncarved_words()) + volume.carved;
+      const VolumeTouch in =
+          touch_volume(volume, hand.counts, number[kPieceStiffness], volume.carve_n > 0 ? carved : nullptr);
+      touch.depth_m = length(in.push_m), touch.outside_m = in.outside_m;
+      if (touch.depth_m > 0) normal = (1 / touch.depth_m) * in.push_m;
+    }
     if (adds && !beyond && at.distance_m < 0) {
       SpaceVector nearest;
       const SceneLayerKind kind = kind_of(scene, i);
@@ -567,8 +580,9 @@ SpaceVector GhostPoint::force(const SceneView& block, float* live, const SpaceHa
     touch.grain_m =
         size_of(normal.x) * step_m[0] + size_of(normal.y) * step_m[1] + size_of(normal.z) * step_m[2];
     float normal_n = wall_force(number, table, state, touch);
-    const SpaceVector on =
-        adds ? from + touch.depth_m * normal : difference(ghost_, origin_of(scene, i), step_m);
+    const SpaceVector on = is_volume(scene, i) ? from
+                           : adds              ? from + touch.depth_m * normal
+                                               : difference(ghost_, origin_of(scene, i), step_m);
     if (arrives)
       state.anchor_m = state.last_m = on;  // a hand that begins in a piece is not held from elsewhere
     const SpaceVector of_texture =

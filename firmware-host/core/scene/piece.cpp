@@ -7,6 +7,11 @@
 namespace tacto::core {
 namespace {
 
+// Of which piece.cpp has no surface.
+bool is_elsewhere(SceneLayerKind kind) noexcept {
+  return kind == SceneLayerKind::mesh || kind == SceneLayerKind::volume;
+}
+
 constexpr float kNoEntry = 2;
 constexpr float kNoExit = 1e30F;
 constexpr float kLeastArm = 1e-3F;  // of the radius: nearer to a centre the direction is one of rounding
@@ -132,7 +137,7 @@ bool place_of(const float* q, SpaceVector hand, float lambda, SpaceVector& p) no
 }  // namespace
 
 PieceSurface surface_at(SceneLayerKind kind, const PieceTable& table, SpaceVector place) noexcept {
-  if (kind == SceneLayerKind::mesh) return {kNoExit, {}};
+  if (is_elsewhere(kind)) return {kNoExit, {}};
   if (kind == SceneLayerKind::relief) return relief_surface_at(relief_piece(table), place);
   if (kind == SceneLayerKind::plane) {
     const SpaceVector normal = direction_of(table);
@@ -154,7 +159,7 @@ PieceSurface surface_at(SceneLayerKind kind, const PieceTable& table, SpaceVecto
 }
 
 float entry_of(SceneLayerKind kind, const PieceTable& table, SpaceVector place, SpaceVector way) noexcept {
-  if (kind == SceneLayerKind::mesh) return kNoEntry;
+  if (is_elsewhere(kind)) return kNoEntry;
   if (kind == SceneLayerKind::relief) return relief_entry(relief_piece(table), place, way, 0);
   if (kind == SceneLayerKind::plane) {
     const SpaceVector normal = direction_of(table);

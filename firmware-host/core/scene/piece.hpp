@@ -50,8 +50,8 @@ struct PieceSurface {
   SpaceVector normal;  ///< 0 where a quadric has no gradient: at the tip of a cone, in a centre
 };
 
-/// Here and below `place` is from the origin of the piece. A mesh is far away and is not entered: mesh.hpp
-/// has it. Safe in the tick.
+/// Here and below `place` is from the origin of the piece. A mesh and a volume are far away and are not
+/// entered: mesh.hpp and volume.hpp have them. Safe in the tick.
 PieceSurface surface_at(SceneLayerKind kind, const PieceTable& table, SpaceVector place) noexcept;
 
 /// The part of the way, up to 1, after which a point outside enters the solid on the straight line along

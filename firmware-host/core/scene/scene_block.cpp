@@ -5,6 +5,7 @@
 
 #include "firmware-host/core/kernel/finite.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
+#include "firmware-host/core/scene/volume.hpp"
 #include "firmware-host/core/wire/crc32c.hpp"
 
 namespace tacto::core {
@@ -32,6 +33,8 @@ constexpr float kLeastLoss = 1e-6F;  // of a transient from tick to tick
 constexpr float kMostPasses_per_m = 1e6F;
 constexpr float kLargestPiece_m = 20, kMostCoefficient = 1e9F, kFarthestRest_m = 1;
 constexpr float kMostBend_per_m = 1e17F;  // of coefficients up to 10 m, 1e-8 m apart
+constexpr uint32_t kMostFall = 0xFFFF0000;
+constexpr float kMostVoxels_per_m = 1e7F, kMost_m_per_value = 0.1F, kMostIso = 65536;
 constexpr float kThinnestSkin_m = 1e-12F, kThickestSkin_m = 1e-3F;
 
 bool is_direction(float cosine, float sine) noexcept {
@@ -78,6 +81,7 @@ bool sound(SceneLayerKind kind, const float* number) noexcept {
     case SceneLayerKind::quadric:
     case SceneLayerKind::mesh:
     case SceneLayerKind::relief:
+    case SceneLayerKind::volume:
       return within(number[kPieceStiffness], 0, kStiffest_n_per_m) &&
              within(number[kPieceDamping], 0, kMostDamping_n_s_per_m) &&
              within(number[kPieceArrestMass], 0, kMostPiece_kg) &&
@@ -370,8 +374,39 @@ SceneFault check_relief_piece(const SceneView& view, const SceneLayer& layer, ui
   return fault == SceneFault::none ? check_behind(view, layer, room, words) : fault;
 }
 
-SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t room,
-                       uint32_t& words) noexcept {
+bool sound(const VolumeAxis& axis) noexcept {
+  return axis.samples >= 2 && axis.samples <= kMostVolumeSamples && within(axis.per_m, 0, kMostVoxels_per_m);
+}
+
+// Without a travel, a texture and a slide. Adds its carved words.
+SceneFault check_volume(SceneView& view, const SceneLayer& layer, uint32_t room, uint32_t& words) noexcept {
+  constexpr uint32_t kHead = sizeof(VolumeTable) / sizeof(uint32_t);
+  if (room < kHead) return SceneFault::structure;
+  const auto& table = table_of<VolumeTable>(view, layer);
+  if (table.piece.travel != 0 || table.piece.texture != 0 || table.piece.slide != 0)
+    return SceneFault::structure;
+  uint64_t values = 1;
+  for (const VolumeAxis& axis : table.along) {
+    if (!sound(axis)) return SceneFault::value;
+    values *= axis.samples;
+  }
+  if (table.points > kMostToolPoints) return SceneFault::structure;
+  const uint64_t all = kHead + table.points * (sizeof(ToolPoint) / sizeof(uint32_t)) + (values + 1) / 2;
+  if (all > room) return SceneFault::structure;
+  words = static_cast<uint32_t>(all);
+  if (table.carve_n > 0) {
+    if (table.carved != view.carved_words) return SceneFault::structure;
+    view.carved_words += carved_words_of(table);
+  }
+  return within(table.carve_n, 0, kMostKappa_n) && table.carve_per_tick <= kMostFall &&
+                 table.carve_to >= INT16_MIN && table.carve_to <= INT16_MAX &&
+                 sound(table.piece, SceneLayerKind::volume) && within(table.iso, -kMostIso, kMostIso) &&
+                 within(table.m_per_value, 0, kMost_m_per_value)
+             ? SceneFault::none
+             : SceneFault::value;
+}
+
+SceneFault check_table(SceneView& view, const SceneLayer& layer, uint32_t room, uint32_t& words) noexcept {
   switch (static_cast<SceneLayerKind>(layer.kind)) {
     case SceneLayerKind::grooves:
       return check_surface(view, layer, &GroovesTable::harmonics, kMostHarmonics, room, words);
@@ -397,6 +432,8 @@ SceneFault check_table(const SceneView& view, const SceneLayer& layer, uint32_t 
       return check_mesh(view, layer, room, words);
     case SceneLayerKind::relief:
       return check_relief_piece(view, layer, room, words);
+    case SceneLayerKind::volume:
+      return check_volume(view, layer, room, words);
     case SceneLayerKind::spring:
     case SceneLayerKind::damper:
     case SceneLayerKind::tick_damper:

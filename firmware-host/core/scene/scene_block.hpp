@@ -37,12 +37,14 @@ enum class SceneLayerKind : uint16_t {
   cylinder = 18,
   quadric = 19,
   mesh = 20,
-  relief = 22
+  relief = 22,
+  volume = 24
 };
 
 /// Whether a layer is a piece: a solid in space. In a block either all layers are pieces or none is.
 constexpr bool is_piece(SceneLayerKind kind) noexcept {
-  return (kind >= SceneLayerKind::plane && kind <= SceneLayerKind::mesh) || kind == SceneLayerKind::relief;
+  return (kind >= SceneLayerKind::plane && kind <= SceneLayerKind::mesh) || kind == SceneLayerKind::relief ||
+         kind == SceneLayerKind::volume;
 }
 
 constexpr bool is_known(SceneLayerKind kind) noexcept {
@@ -105,6 +107,7 @@ constexpr uint32_t changeable_numbers_of(SceneLayerKind kind) noexcept {
     case SceneLayerKind::quadric:
     case SceneLayerKind::mesh:
     case SceneLayerKind::relief:
+    case SceneLayerKind::volume:
       return kPieceNumbers;
     case SceneLayerKind::grooves:
     case SceneLayerKind::noise:
@@ -390,11 +393,14 @@ struct SceneView {
   const float* numbers = nullptr;
   const uint32_t* tables = nullptr;
   uint32_t patch_count = 0, layer_count = 0, number_count = 0, table_words = 0;
-  bool needs_speed = false;  ///< it has a layer whose force depends on the speed
-  bool in_space = false;     ///< its layers are pieces, all of one patch; that adds: contact `add`
+  bool needs_speed = false;   ///< it has a layer whose force depends on the speed
+  bool in_space = false;      ///< its layers are pieces, all of one patch; that adds: contact `add`
+  uint32_t carved_words = 0;  ///< of volumes that can be carved
 
   /// Of 4 bytes, of the memory that a kernel needs beside the block.
-  uint32_t live_words() const noexcept { return number_count + patch_count * kPatchWords; }
+  uint32_t live_words() const noexcept { return uncarved_words() + carved_words; }
+  /// Of these before the carved words.
+  uint32_t uncarved_words() const noexcept { return number_count + patch_count * kPatchWords; }
 };
 
 enum class SceneFault : uint8_t {

@@ -15,6 +15,7 @@
 #include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/mesh_block.hpp"
 #include "playback/prepare/scene/slide_table.hpp"
+#include "playback/prepare/scene/volume_block.hpp"
 
 namespace tacto::playback {
 
@@ -48,6 +49,8 @@ SceneLayerKind kind_of_piece(PieceShape shape) {
       return SceneLayerKind::cylinder;
     case PieceShape::mesh:
       return SceneLayerKind::mesh;
+    case PieceShape::volume:
+      return SceneLayerKind::volume;
     case PieceShape::quadric:
       break;
   }
@@ -271,6 +274,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
   base.pieces = scene.pieces;
   base.point_radius_m = scene.point_radius_m;
   base.contact = scene.contact;
+  base.tool_m = scene.tool_m;
   base.steps = steps_of(device, rate_hz);
   base.stiffness_limit_n_per_m = stiffness_limit_of(device, rate_hz, hand, 0, true);
   core::ScenePatch space;
@@ -281,6 +285,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
   std::vector<core::SceneLayer> layers;
   std::vector<float> numbers;
   std::vector<std::uint32_t> tables;
+  std::uint32_t carved = 0;
   for (const Piece& piece : scene.pieces) {
     const std::string at = fmt::format("{}#/pieces/{}", where, layers.size());
     for (const Piece& end : slider_ends(piece)) TACTO_TRY(check_wall(end, device, rate_hz, hand, at));
@@ -297,6 +302,16 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
       TACTO_TRY(append_slide(piece, base.steps.tick_s, at, *words));
       append_texture(piece, base.reliefs, base.steps, *words);
       append_words(tables, *words);
+      continue;
+    }
+    if (piece.shape == PieceShape::volume) {
+      auto placed = table_at({piece.x_m, piece.y_m, piece.z_m}, base.steps, at);
+      TACTO_TRY(placed);
+      placed->transient = *transient;
+      auto table =
+          volume_table(piece, *base.reliefs.volumes.at(piece.volume), *placed, base.steps, base.tool_m);
+      TACTO_TRY(set_carving(piece, *base.reliefs.volumes.at(piece.volume), rate_hz, at, carved, table));
+      append_words(tables, table);
       continue;
     }
     auto table = table_of_piece(piece, scene.point_radius_m, base.steps, at);
@@ -351,6 +366,12 @@ std::vector<std::string> limits_of_pieces(const PreparedScene& scene, const sche
           "the device has no axis {0}: the hand stays at {0} = 0, and forces along {0} are left out", name));
   for (const Piece& piece : scene.pieces)
     if (auto note = cut_of_transient(piece, device, rate_hz)) notes.push_back(std::move(*note));
+  for (const Piece& piece : scene.pieces)
+    if (piece.shape == PieceShape::volume && solid_at_border(piece, *scene.reliefs.volumes.at(piece.volume)))
+      notes.push_back(
+          fmt::format("the volume of piece '{}' is solid at its border, where its force ends with a step: "
+                      "a hand that passes there may gain energy",
+                      piece.name));
   if (!(device.axes.front().mass_kg > 0)) return notes;
   schema::Scene judged_scene;
   judged_scene.pieces = scene.pieces;

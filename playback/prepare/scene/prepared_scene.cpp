@@ -21,6 +21,7 @@
 #include "playback/prepare/scene/field_stiffness.hpp"
 #include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/stable_scene.hpp"
+#include "playback/prepare/scene/volume_block.hpp"
 #include "playback/prepare/texture_check.hpp"
 #include "playback/stability/free_limit.hpp"
 #include "playback/stability/hand_limit.hpp"
@@ -379,6 +380,7 @@ std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLa
 }
 
 std::string PreparedScene::remedy_for(std::size_t room) const {
+  if (!reliefs.volumes.empty()) return remedy_for_volumes(*this, room);
   if (!meshes.empty()) return remedy_for_meshes(*this, room);
   if (!pieces.empty() && reliefs.textures.empty() && reliefs.height_maps.empty() && reliefs.surfaces.empty())
     return {};
@@ -471,6 +473,9 @@ Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, dou
     layer.curl_n_per_m = slopes.curl_n_per_m;
     return {};
   };
+  for (std::size_t i = 0; i < scene.pieces.size(); ++i)
+    TACTO_TRY(read_piece_volume(scene.pieces[i], where, fmt::format("{}#/pieces/{}", where, i),
+                                scene.tool_m.size(), reliefs.volumes));
   for (schema::Piece& piece : scene.pieces) {
     if (piece.relief) TACTO_TRY(read_relief(piece, where, reliefs));
     if (!piece.texture || piece.texture->type == schema::PieceTextureType::sine) continue;

@@ -16,6 +16,7 @@
 #include "data-schema/mesh/mesh.hpp"
 #include "data-schema/scene/atoms.hpp"
 #include "data-schema/scene/scene.hpp"
+#include "data-schema/volume/volume.hpp"
 #include "firmware-host/core/scene/scene_block.hpp"
 #include "playback/prepare/relief/relief_levels.hpp"
 
@@ -34,12 +35,13 @@ PlaneSteps steps_of(const schema::Device& device, double rate_hz);
 /// A hand that is faster is a jump of the encoder.
 inline constexpr double kFastestHandMps = 10;
 
-/// The height maps, textures, atoms and force maps of a scene, by the names in their layers.
+/// The height maps, textures, atoms, force maps and volumes of a scene, by the names in their layers.
 struct Reliefs {
   std::map<std::string, std::shared_ptr<const Relief>> height_maps, textures;
   std::map<std::string, std::shared_ptr<const Relief>> surfaces = {};  ///< of planes: surface_relief()
   std::map<std::string, std::shared_ptr<const ForceRelief>> force_maps;
   std::map<std::string, std::shared_ptr<const std::vector<schema::Atom>>> atoms;
+  std::map<std::string, std::shared_ptr<const schema::Volume>> volumes = {};  ///< by Piece::volume
 
   const Relief& of(const schema::PieceTexture& texture) const {
     const bool recording = texture.type == schema::PieceTextureType::recording;
@@ -64,8 +66,11 @@ struct PreparedScene {
   std::map<std::string, std::shared_ptr<const schema::Mesh>> meshes = {};  ///< by Piece::mesh
   double point_radius_m = 0;
   schema::PieceContact contact = schema::PieceContact::ghost;
+  std::vector<std::array<double, 3>> tool_m = {};  ///< schema::Scene::tool_m
 
   std::size_t bytes() const { return words.size() * sizeof(std::uint32_t); }
+  /// What the device needs to have free for it: the block, and the values of volumes that can be carved.
+  std::size_t room_bytes() const { return bytes() + view().carved_words * sizeof(std::uint32_t); }
   /// Points into this object.
   core::SceneView view() const;
   /// Other patches for the same device, each of them once part of such a scene.
@@ -96,13 +101,13 @@ double stiffness_limit_of(const schema::Device& device, double rate_hz,
 /// scene's file. Errors: unsuitable: the limit is 0, by JSON pointer.
 schema::Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, const std::string& where);
 
-/// Reads the height maps, textures, atoms and force maps of all layers and pieces, and sets their curvature,
-/// steepest_n_per_m, stiffest_n_per_m and slopes. Textures fade at their ends as on a tray
-/// (TextureLookup); those of pieces are less their mean, with the sign of a stroke that goes forth; a relief
-/// with interpolated normals becomes a texture of the type normals. `where`
-/// is the scene's file. Errors: as read_height_map, relief_levels, read_texture, check_playable, read_atoms,
-/// check_section, read_force_grid, force_levels; unsuitable: a texture whose mean force is too large for its
-/// length.
+/// Reads the height maps, textures, atoms, force maps and volumes of all layers and pieces, and sets their
+/// curvature, steepest_n_per_m, stiffest_n_per_m, slopes and steepness. Textures fade at their ends as on a
+/// tray (TextureLookup); those of pieces are less their mean, with the sign of a stroke that goes forth; a
+/// relief with interpolated normals becomes a texture of the type normals. `where` is the scene's file.
+/// Errors: as read_height_map, relief_levels, read_texture, check_playable, read_atoms, check_section,
+/// read_force_grid, force_levels, read_piece_volume; unsuitable: a texture whose mean force is too large for
+/// its length.
 schema::Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, double rate_hz);
 
 /// Of a patch along a direction in it: the length of its shadow.

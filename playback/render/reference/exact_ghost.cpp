@@ -8,6 +8,7 @@
 
 #include "firmware-host/core/scene/piece_texture.hpp"
 #include "playback/prepare/scene/contact_transient.hpp"
+#include "playback/prepare/scene/volume_block.hpp"
 #include "playback/render/reference/exact_relief.hpp"
 
 namespace tacto::playback {
@@ -19,7 +20,7 @@ namespace {
 
 constexpr double kNear_m = 1e-9;  // nearer, a piece is touched
 constexpr double kBends_m = 1e-13;
-constexpr double kFarAway_m = 1e3;  // a mesh, whose triangles are asked instead
+constexpr double kFarAway_m = 1e3;  // a mesh and a volume, which are asked elsewhere
 constexpr int kPasses = 300;        // of a tick
 constexpr int kSweeps = 2000;       // of Hildreth's iteration
 constexpr int kEntrySamples = 128;  // of a way
@@ -67,12 +68,18 @@ ExactGhost::ExactGhost(const PreparedScene& scene, const schema::Device& device,
                           ? std::optional<ExactMesh>(std::in_place, scene.meshes.at(piece.mesh),
                                                      SpaceMetres{piece.x_m, piece.y_m, piece.z_m})
                           : std::nullopt);
+  for (const Piece& piece : scene.pieces)
+    if (const schema::Volume* const volume =
+            piece.carve ? scene.reliefs.volumes.at(piece.volume).get() : nullptr)
+      carved_.push_back(CarvedVolume{*volume, std::ranges::min(volume->stored), 0});
+    else
+      carved_.emplace_back();
 }
 
 ExactGhost::Surface ExactGhost::surface_at(const Piece& piece, const SpaceMetres& place_m) const {
   const SpaceMetres p = sum_of(place_m, -1, {piece.x_m, piece.y_m, piece.z_m});
   const double radius_m = scene_.point_radius_m;
-  if (piece.shape == PieceShape::mesh) return {kFarAway_m, {0, 0, 1}};
+  if (piece.shape == PieceShape::mesh || piece.shape == PieceShape::volume) return {kFarAway_m, {0, 0, 1}};
   if (piece.shape == PieceShape::plane) {
     const SpaceMetres n = unit_of(piece.direction);
     const double above_m = inner(n, p), below_m = -piece.thickness_m - above_m;
@@ -181,7 +188,7 @@ std::vector<ExactGhost::Held> ExactGhost::follow(const SpaceMetres& hand_m) {
     double part = 1;
     std::size_t met = pieces.size();
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (touched[i] || meshes_[i]) continue;
+      if (touched[i] || meshes_[i] || pieces[i].shape == PieceShape::volume) continue;
       const double entry = entry_of(pieces[i], ghost_m_, way);
       if (entry < part) part = entry, met = i;
     }
@@ -436,6 +443,52 @@ void ExactGhost::move_slide(std::size_t piece, double push_n) {
   pieces_[piece].z_m = begin.z_m + offset[2];
 }
 
+// As core::touch_volume.
+ExactGhost::Held ExactGhost::in_volume(std::size_t index, const SpaceMetres& hand_m, double& outside_m) {
+  const Piece& piece = scene_.pieces[index];
+  const schema::Volume& volume =
+      carved_[index] ? carved_[index]->volume : *scene_.reliefs.volumes.at(piece.volume);
+  const SpaceMetres from_middle_m = sum_of(hand_m, -1, {piece.x_m, piece.y_m, piece.z_m});
+  const std::vector<SpaceMetres> hand_alone(1);
+  SpaceMetres sum_m = {};
+  std::optional<double> fall;
+  for (const SpaceMetres& point_m : scene_.tool_m.empty() ? hand_alone : scene_.tool_m) {
+    const SpaceMetres place_m = sum_of(from_middle_m, 1, point_m);
+    schema::VolumeValue at;
+    if (!value_at(volume, place_m, at)) continue;
+    const double depth_m = (at.value - piece.iso) / piece.value_per_m;
+    outside_m = std::min(outside_m, std::max(0.0, -depth_m));
+    const SpaceMetres push_m = sum_of({}, -std::max(0.0, depth_m) / piece.value_per_m, at.slope_per_m);
+    sum_m = sum_of(sum_m, 1, push_m);
+    if (!carved_[index] || !(piece.stiffness_n_per_m * size_of(push_m) > piece.carve->force_n)) continue;
+    if (!fall) fall = fall_of_tick(index);
+    carve(index, place_m, *fall);
+  }
+  const double size_m = size_of(sum_m);
+  return size_m > 0 ? Held{sum_of({}, 1 / size_m, sum_m), size_m} : Held{{0, 0, 1}, 0};
+}
+
+double ExactGhost::fall_of_tick(std::size_t index) {
+  auto& [volume, lowest, uncut] = *carved_[index];
+  uncut += carve_per_tick(scene_.pieces[index], volume, 1 / tick_s_) / 0x1p16;
+  const double fall = std::floor(uncut);
+  uncut -= fall;
+  return fall;
+}
+
+void ExactGhost::carve(std::size_t index, const SpaceMetres& place_m, double fall) {
+  auto& [volume, lowest, uncut] = *carved_[index];
+  std::array<std::size_t, 3> first;
+  for (std::size_t i = 0; i < 3; ++i)
+    first[i] = static_cast<std::size_t>((place_m[i] + volume.half_size_m()[i]) / volume.spacing_m[i]);
+  for (std::size_t z = first[2]; z < first[2] + 2; ++z)
+    for (std::size_t y = first[1]; y < first[1] + 2; ++y)
+      for (std::size_t x = first[0]; x < first[0] + 2; ++x) {
+        std::int16_t& value = volume.stored[volume.at(x, y, z)];
+        value = static_cast<std::int16_t>(std::max<double>(lowest, value - fall));
+      }
+}
+
 SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {
   const bool arrives = !placed_;
   if (arrives) ghost_m_ = hand_m;
@@ -451,11 +504,15 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
     double outside_m = surface_at(piece, hand_m).distance_m;
     const SpaceMetres offset = offset_of(i);
     if (meshes_[i] && walls_[i].touched) outside_m = meshes_[i]->distance_m(sum_of(hand_m, -1, offset));
+    const bool is_volume = piece.shape == PieceShape::volume;
+    if (is_volume) held[i] = in_volume(i, hand_m, outside_m);
     SpaceMetres relative_mps = speed_mps;
     if (piece.slide) relative_mps = sum_of(speed_mps, -walls_[i].slid_mps, unit_of(piece.slide->direction));
     double force_n = wall_force(piece, walls_[i], held[i], outside_m, inner(held[i].normal, relative_mps));
-    const SpaceMetres on =
-        sum_of(adds ? sum_of(hand_m, held[i].depth_m, held[i].normal) : ghost_m_, -1, offset);
+    const SpaceMetres touched_m = is_volume ? hand_m
+                                  : adds    ? sum_of(hand_m, held[i].depth_m, held[i].normal)
+                                            : ghost_m_;
+    const SpaceMetres on = sum_of(touched_m, -1, offset);
     if (arrives) walls_[i].anchor_m = walls_[i].last_m = on;
     SpaceMetres own = texture_force(scene_.pieces[i], walls_[i], force_n, held[i].normal, on, relative_mps);
     own = sum_of(own, force_n, held[i].normal);

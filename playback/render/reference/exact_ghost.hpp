@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "data-schema/device/device.hpp"
+#include "data-schema/volume/volume.hpp"
 #include "playback/prepare/scene/prepared_scene.hpp"
 #include "playback/render/reference/exact_mesh.hpp"
 
@@ -19,7 +20,8 @@ using SpaceMetres = std::array<double, 3>;
 /// methods: the planes
 /// that hold the ghost by Hildreth's iteration over all that it touches, the entry into a piece by samples
 /// and bisection, curved surfaces by many small steps instead of a closed form, meshes by trying all
-/// triangles, each slip of the friction by bisection. Slow; not for the tick.
+/// triangles, each slip of the friction by bisection, volumes by the weights of
+/// their values. Slow; not for the tick.
 class ExactGhost {
  public:
   /// Keeps references to both.
@@ -57,6 +59,11 @@ class ExactGhost {
   struct TouchedTriangle {
     std::size_t piece = 0, triangle = 0;
   };
+  struct CarvedVolume {
+    schema::Volume volume;
+    std::int16_t lowest = 0;
+    double uncut = 0;  // the part of a step that a tick left
+  };
   void add_triangles(std::vector<Touch>& touches);
   Surface surface_at(const schema::Piece& piece, const SpaceMetres& place_m) const;
   double entry_of(const schema::Piece& piece, const SpaceMetres& from_m, const SpaceMetres& way_m) const;
@@ -77,15 +84,20 @@ class ExactGhost {
   SpaceMetres offset_of(std::size_t piece) const;
   void move_slide(std::size_t piece, double push_n);
 
+  Held in_volume(std::size_t piece, const SpaceMetres& hand_m, double& outside_m);
+  double fall_of_tick(std::size_t piece);
+  void carve(std::size_t piece, const SpaceMetres& place_m, double fall);
+
   const PreparedScene& scene_;
   const schema::Device& device_;
   double tick_s_;
   bool placed_ = false;
   SpaceMetres ghost_m_ = {};
   std::vector<Wall> walls_;
-  std::vector<schema::Piece> pieces_;             // where they are now
-  std::vector<std::optional<ExactMesh>> meshes_;  // of each piece
-  std::vector<TouchedTriangle> triangles_;        // that the ghost met and is still near
+  std::vector<schema::Piece> pieces_;                // where they are now
+  std::vector<std::optional<ExactMesh>> meshes_;     // of each piece
+  std::vector<std::optional<CarvedVolume>> carved_;  // of each piece that can be carved
+  std::vector<TouchedTriangle> triangles_;           // that the ghost met and is still near
 };
 
 }  // namespace tacto::playback

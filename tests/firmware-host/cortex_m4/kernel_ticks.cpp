@@ -6,6 +6,7 @@
 #include "tests/firmware-host/cortex_m4/board.hpp"
 #include "tests/firmware-host/kernel_workload.hpp"
 #include "tests/firmware-host/pieces_workload.hpp"
+#include "tests/firmware-host/volume_workload.hpp"
 
 namespace tacto::cortex_m4 {
 namespace {
@@ -28,6 +29,7 @@ tests::TextureWorkload texture;
 
 tests::SceneWorkload scene;
 tests::PiecesWorkload pieces;
+tests::VolumeWorkload volumes;
 
 template <class Workload>
 uint32_t count_ticks(Workload& ticked, const char* fingerprint_name, const char* counts_name,
@@ -54,8 +56,10 @@ bool count_kernel() {
       count_ticks(texture, "texture_fingerprint", "texture_counts", "texture_most_counts");
   const uint32_t patches = count_ticks(scene, "scene_fingerprint", "scene_counts", "scene_most_counts");
   const uint32_t solids = count_ticks(pieces, "pieces_fingerprint", "pieces_counts", "pieces_most_counts");
+  const uint32_t voxels = count_ticks(volumes, "volume_fingerprint", "volume_counts", "volume_most_counts");
   return sections == tests::kWorkloadFingerprint && levels == tests::kTextureFingerprint &&
-         patches == tests::kSceneFingerprint && solids == tests::kPiecesFingerprint;
+         patches == tests::kSceneFingerprint && solids == tests::kPiecesFingerprint &&
+         voxels == tests::kVolumeFingerprint;
 }
 
 // During a change of texture both are read; its first tick also starts the change.
