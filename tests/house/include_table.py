@@ -120,7 +120,7 @@ MAY_INCLUDE = {
         "spatial/{dsp/filter dsp/fourier}",
     "playback/prepare/relief": "data-schema/{base height scene} firmware-host/core/scene spatial/dsp/fourier",
     "playback/prepare/scene":
-        "data-schema/{base device height mesh scene texture volume} firmware-host/core/scene playback/{model prepare prepare/relief "
+        "data-schema/{device height mesh scene texture volume} firmware-host/core/scene playback/{model prepare prepare/relief "
         "stability}",
     "playback/render":
         "data-schema/{base device files recording scene texture transducer} firmware-host/{core/kernel core/scene sim/planar} "
