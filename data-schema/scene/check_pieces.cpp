@@ -90,7 +90,7 @@ Result<void> check_slide(const PieceSlide& slide, const std::string& where) {
   if (!(slide.from_m < slide.to_m))
     return fail(ErrorKind::unsuitable, "the piece cannot move: its two stops are at one place",
                 where + "/to_m", "give stops below and above its place: from_m at most 0, to_m at least 0");
-  if (slide.detent_n > 0 != slide.detent_m > 0)
+  if ((slide.detent_n > 0) != (slide.detent_m > 0))
     return fail(ErrorKind::unsuitable, "detents have a force and a distance",
                 where + (slide.detent_n > 0 ? "/detent_n" : "/detent_m"),
                 "give both detent_n and detent_m, or neither");

@@ -52,7 +52,8 @@ def no_kill_loses_an_answer():
 
 def stopped_run(run):
     """A run whose process stops while the device plays, and in the next interval while it waits for the beginning. Where it
-    stops is seen by the size of the session, whose upload has 30 kB."""
+    stops is seen by the size of the session, whose upload has 30 kB. None if the link lost the answer to a command, too: then
+    the run ends with exit code 8."""
     command = ["experiment", "run", "lost", "-d", "sim:paced=1,link_buffer=20ms", "--participant", run.split("-")[1], "--observer", "weber=25%"]
     process = subprocess.Popen([tacto.COMMAND, *command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     for name, size in (("001-1", 70_000), ("001-2", 31_000)):
@@ -62,8 +63,8 @@ def stopped_run(run):
         process.send_signal(signal.SIGSTOP)
         time.sleep(0.4)
         process.send_signal(signal.SIGCONT)
-    assert process.wait() == 0
-    return table(run)
+    assert process.wait() in (0, 8)
+    return table(run) if process.returncode == 0 else None
 
 
 def lost_ticks_come_again():
@@ -73,11 +74,13 @@ def lost_ticks_come_again():
     for person in range(1, 6):
         run = f"lost-P{person}"
         rows = stopped_run(run)
+        if rows is None:
+            continue
         proof = tacto.run_json("experiment", "prove", run)
         assert proof["proven"] is True and "faults" not in proof, proof
         if "lost ticks" in rows[0]["why"]:
             break
-    assert rows[0]["delivered"] == "no" and "lost ticks" in rows[0]["why"], rows[0]
+    assert rows and rows[0]["delivered"] == "no" and "lost ticks" in rows[0]["why"], rows[0]
     assert [row["trial"] for row in rows].count(rows[0]["trial"]) > 1 and proof["same_to_the_bit"] < proof["sessions"]
 
 

@@ -96,7 +96,7 @@ TEST(Scene, WhatIsMisspeltIsRefusedWithTheNearest) {
             "s#/playback/energy_rms", "did you mean 'energy_rms_v'?"},
         std::tuple{R"({"kind":"scene","version":"1.0","light":"dim","layers":[{)" + body + "}]}", "s#/light",
                    "the known members are kind, version, name, notes, created, creator, playback, layers, "
-                   "patches, pieces, contact, radius_m"}}) {
+                   "patches, pieces, contact, radius_m, tool_m"}}) {
     const auto scene = parse_scene(text, "s");
     ASSERT_FALSE(scene) << text;
     EXPECT_EQ(scene.error().kind, ErrorKind::malformed);
