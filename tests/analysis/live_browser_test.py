@@ -81,8 +81,11 @@ class Browser:
         self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=0 if kind == "mouseReleased" else 1, clickCount=1)
 
     def click(self, name):
-        box = self.value(f"(() => {{ const e = document.getElementById({json.dumps(name)}); e.scrollIntoView({{block: 'center'}}); "
-                         "const r = e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
+        """Once it lies still: the window's width may have just changed."""
+        box = self.value(f"(async () => {{ const e = document.getElementById({json.dumps(name)}); e.scrollIntoView({{block: 'center'}}); "
+                         "const middle = () => { const r = e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; }; "
+                         "for (let before = null, here = middle(); ; before = here, here = middle()) { "
+                         "if (String(before) === String(here)) return here; await new Promise(requestAnimationFrame); } })()")
         self.mouse("mousePressed", *box)
         self.mouse("mouseReleased", *box)
 
@@ -375,7 +378,7 @@ def check_names(chrome):
             break
         seen.add(where)
         assert outline >= 2, where
-    reachable = chrome.value("[...document.querySelectorAll('button, input, select, [tabindex=\"0\"], summary')].filter((e) => !e.disabled).map((e) => e.id || e.ariaLabel || e.textContent)")
+    reachable = chrome.value("[...document.querySelectorAll('button, input, select, [tabindex=\"0\"], summary')].filter((e) => !e.matches(':disabled')).map((e) => e.id || e.ariaLabel || e.textContent)")
     assert set(reachable) <= seen, set(reachable) - seen
 
 
