@@ -81,11 +81,8 @@ class Browser:
         self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=0 if kind == "mouseReleased" else 1, clickCount=1)
 
     def click(self, name):
-        """Once it lies still: the window's width may have just changed."""
-        box = self.value(f"(async () => {{ const e = document.getElementById({json.dumps(name)}); e.scrollIntoView({{block: 'center'}}); "
-                         "const middle = () => { const r = e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; }; "
-                         "for (let before = null, here = middle(); ; before = here, here = middle()) { "
-                         "if (String(before) === String(here)) return here; await new Promise(requestAnimationFrame); } })()")
+        box = self.value(f"(() => {{ const e = document.getElementById({json.dumps(name)}); e.scrollIntoView({{block: 'center'}}); "
+                         "const r = e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
         self.mouse("mousePressed", *box)
         self.mouse("mouseReleased", *box)
 
@@ -101,7 +98,7 @@ class Browser:
         self.ask("Emulation.setDeviceMetricsOverride", width=width, height=1050 if width > 700 else 2000, deviceScaleFactor=1, mobile=width < 700)
         self.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
         time.sleep(0.5)
-        path.write_bytes(base64.b64decode(self.ask("Page.captureScreenshot", format="png")["data"]))
+        path.write_bytes(base64.b64decode(self.ask("Page.captureScreenshot", format="webp", quality=80)["data"]))
 
 
 @contextlib.contextmanager
@@ -390,6 +387,7 @@ def check_looks(chrome):
     chrome.ask("Emulation.setDeviceMetricsOverride", width=400, height=900, deviceScaleFactor=1, mobile=False)
     assert chrome.value("document.documentElement.scrollWidth") <= 400
     chrome.ask("Emulation.clearDeviceMetricsOverride")
+    chrome.wait("innerWidth > 400")
 
 
 STROKES = "0,0.004\n0.6,0.034\n1.2,0.004\n"   # repeated without end
@@ -587,9 +585,10 @@ def live_in_chromium():
 
 
 def take_pictures(chrome, folder, name):
+    """The README of analysis shows two of the four."""
     for width in (1300, 400):
         for dark in (False, True):
-            chrome.picture(folder / f"{name}-{width}-{'dark' if dark else 'light'}.png", width, dark)
+            chrome.picture(folder / f"{name}-{width}-{'dark' if dark else 'light'}.webp", width, dark)
 
 
 def pictures(folder):
