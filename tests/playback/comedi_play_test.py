@@ -211,7 +211,7 @@ def a_recording_has_the_counter():
     counts = (readings - readings[0]) & COUNTER_MOST
     starts = [i for i in np.flatnonzero(counts == stored[0, 0]) if np.array_equal(counts[i:i + len(stored)], stored[:, 0])]
     assert starts and np.ptp(stored[:, 0]) > 15_000, (counts[:5], stored[:5])
-    assert np.all(stored[:, 1] >> 16 == ZERO - 1 - 32768), "input 0 reads the output, which nobody drives"
+    assert np.all(stored[:, 1] >> 16 == ZERO - 1 - 32768), "input 0 reads the output, which no device drives"
     assert not any(what in ("ao", "dio") for what, _ in log()), "a recording drives nothing"
     tacto.run("validate", "counted")
     slow = run("record", "-d", "comedi:bench", "-o", "slower", "--time", "0.2s", "--allow-gaps", takes_us=150)

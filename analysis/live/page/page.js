@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: chooses a texture, moves the finger, shows what the device does, keeps sessions.
 
-import {errorText, get} from './answers.js';
+import {get} from './answers.js';
 import {compareWords, fullScale, gainsOf, largestLevel} from './compare.js';
 import {startDevice} from './device.js';
+import {IDLE_S, KeptSession, LONGEST_S} from './kept_session.js';
 import {Library} from './library.js';
 import {Shape} from './shape.js';
 import {drawFinger, drawMap, Trace} from './strip.js';
 
-const IDLE_S = 30;              // without motion: then the drive falls and the session ends
-const LONGEST_S = 590;          // of a session; the server accepts 600
 const MOST_LEVEL = 4;
-const RECONNECT_MS = 2000;
 const FADE_S = 0.05;            // from A to B and back
 const LIMITS = [[8, 'amplitude'], [16, 'slew'], [64, 'energy']];  // flags of ticks (WIRE.md)
 const CALM_MS = 250;            // between figures; with prefers-reduced-motion also between pictures
@@ -22,7 +20,7 @@ const trace = new Trace(at('trace'));
 const calm = matchMedia('(prefers-reduced-motion: reduce)');
 
 const compiled = WebAssembly.compileStreaming(get('core.wasm'));
-let device = null, starting = null, socket = null;
+let device = null, starting = null;
 let sides = {A: null, B: null}, heard = 'A';  // textures (load), and the one that is heard
 let chosen = null;              // the side that is heard, once the device has it
 let gains = {A: 0, B: 0};       // m/N, at level 1
@@ -32,7 +30,6 @@ const brought = new Map();      // frames of changes, by path: promises
 let last = {state: 'idle', touches: false, place_m: 0, speed_mps: 0};  // the last report
 let fitted = true;              // the strip shows the whole texture
 let playing = false;            // asked for
-let session = 'none';           // 'none', 'open', 'kept'
 let began_ms = 0, moved_ms = 0, mapDrawn = false, drawn_ms = 0, worded_ms = 0;
 let waiting = [];               // for the device: {when, done}
 
@@ -47,36 +44,11 @@ function showState() {
                  stopped: last.state === 'idle' ? 'stopped' : 'stopping'};
   const text = chosen === null ? 'no texture' : words[state] + (device?.sounds === false ? ', no sound device' : '');
   if (at('state-word').textContent !== text) at('state-word').textContent = text;
-  at('keep').disabled = session !== 'open';
+  at('keep').disabled = session.state !== 'open';
 }
 
 // Server.
-function connect() {
-  socket = new WebSocket(`ws://${location.host}/session`);
-  socket.binaryType = 'arraybuffer';
-  socket.onmessage = (event) => hear(JSON.parse(event.data));
-  socket.onclose = () => {
-    if (session === 'open') session = 'none';
-    at('kept').textContent = 'The server is gone: nothing can be kept. Trying again.';
-    setTimeout(connect, RECONNECT_MS);
-  };
-  socket.onopen = () => { if (at('kept').textContent.startsWith('The server is gone')) at('kept').textContent = 'The server is back.'; };
-}
-
-const send = (data) => { if (socket.readyState === WebSocket.OPEN) socket.send(data); };
-
-function hear(message) {
-  if (message.error) {
-    session = 'none';
-    at('kept').textContent = `Not kept: ${errorText(message.error)}`;
-  }
-  if (message.event === 'fault') say(`Fault: ${message.what}. ${message.remedy ?? ''} Press Stop, then touch again.`);
-  if (message.kept !== undefined) {
-    session = 'kept';
-    at('kept').textContent = `Kept: ${message.kept}, ${message.ticks} ticks${message.lost_ticks > 0 ? `, ${message.lost_ticks} lost` : ''}. Check it: tactograph replay ${message.kept}`;
-  }
-  showState();
-}
+const session = new KeptSession('/session', at('kept'), (text) => say(`${text} Press Stop, then touch again.`), showState);
 
 // Textures.
 const library = new Library({
@@ -103,7 +75,7 @@ async function choose(name, row) {
   say('');
   stop();
   chosen = null;
-  session = 'none';
+  session.state = 'none';
   try {
     starting ??= compiled.then((module) => startDevice(module, report));
     device = await starting;
@@ -248,10 +220,8 @@ function play() {
   if (last.state !== 'idle') return false;  // it still falls
   say('');
   if (stale) loadHeard();
-  send(JSON.stringify({request: 'begin', made: base.made}));
+  session.begin(base.made, 'textures');
   device.send({what: 'play', gain_m_per_n: gain()});
-  session = socket.readyState === WebSocket.OPEN ? 'open' : 'none';
-  if (session === 'open') at('kept').textContent = 'Keep stops and writes the session into the folder of the textures.';
   playing = true;
   began_ms = performance.now();
   if (sides.B !== null) for (const name of ['A', 'B']) broughtFor(name).catch(() => {});  // ready for its key
@@ -289,12 +259,12 @@ function report(message) {
 
 // The log goes on with the change, so the server has to know of it first.
 function hearChanged({accepted, note}) {
-  if (accepted && session === 'open') send(JSON.stringify({request: 'change', ...note}));
+  if (accepted && session.state === 'open') session.request('change', note);
   if (!accepted && playing) say('The device did not change the texture. Press Stop, then touch again.');
 }
 
 function hearTicks(message) {
-  if (message.log.length > 0) send(message.log);
+  if (message.log.length > 0) session.send(message.log);
   idleReports = message.state === 'idle' ? idleReports + 1 : 0;
   trace.add(message.cells);
   const now_ms = performance.now();
@@ -311,8 +281,7 @@ async function keep() {
   stop();
   idleReports = 0;
   await until(() => idleReports >= 2);  // the last ticks are sent
-  at('kept').textContent = 'Keeping …';
-  send(JSON.stringify({request: 'keep'}));
+  session.keep();
 }
 
 // The pointer. It touches while it is pressed and within the strip.
@@ -450,7 +419,6 @@ function draw(now_ms) {
 
 async function begin() {
   history.replaceState(null, '', '/');  // the token is in a cookie now
-  connect();
   requestAnimationFrame(draw);
   await Promise.all([compiled, library.read()]);
 }

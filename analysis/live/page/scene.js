@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page of force scenes: moves the hand, shows the force on it, sets numbers, keeps sessions.
 
-import {errorText, get} from './answers.js';
+import {get} from './answers.js';
 import {Hand, runHand} from './hand.js';
 import {imageOf} from './scene_list.js';
+import {IDLE_S, KeptSession, LONGEST_S} from './kept_session.js';
 import {sized} from './strip.js';
 
-const IDLE_S = 30;              // without motion: then the force falls and the session ends
-const LONGEST_S = 590;          // of a session; the server accepts 600
-const RECONNECT_MS = 2000;
 const CALM_MS = 250;            // between figures; with prefers-reduced-motion also between pictures
 const LONGEST_ARROW = 0.3;      // of the picture's smaller side
 const LIMITS = [[8, 'peak'], [16, 'slew'], [64, 'continuous']];  // flags of ticks (WIRE.md)
@@ -20,9 +18,9 @@ const calm = matchMedia('(prefers-reduced-motion: reduce)');
 const compiled = WebAssembly.compileStreaming(get('core.wasm'));
 compiled.catch((error) => say(error.message));
 
-let scene = null, hand = null, endHand = () => {}, section = null, socket = null;
+let scene = null, hand = null, endHand = () => {}, section = null;
 let last = {state: 'idle', place_m: [0, 0, 0], force_n: [0, 0, 0], speed_mps: 0, flags: 0, ghost_m: null, values: null};
-let playing = false, session = 'none';  // asked for; 'none', 'open', 'kept'
+let playing = false;  // asked for
 let began_ms = 0, moved_ms = 0, drawn_ms = 0, worded_ms = 0;
 let picture = null, full_n = 0.1, rested = true, idleReports = 0, waiting = [], choices = 0;
 let outputs = [];                       // of the sliders
@@ -37,34 +35,11 @@ function showState() {
   at('state').dataset.state = state;
   const text = scene === null ? 'no scene' : state === 'stopped' && last.state !== 'idle' ? 'stopping' : state;
   if (at('state-word').textContent !== text) at('state-word').textContent = text;
-  at('keep').disabled = session !== 'open';
+  at('keep').disabled = session.state !== 'open';
 }
 
 // Server.
-function connect() {
-  socket = new WebSocket(`ws://${location.host}/scene-session`);
-  socket.onmessage = (event) => hear(JSON.parse(event.data));
-  socket.onclose = () => {
-    if (session === 'open') session = 'none';
-    at('kept').textContent = 'The server is gone: nothing can be kept. Trying again.';
-    setTimeout(connect, RECONNECT_MS);
-  };
-  socket.onopen = () => { if (at('kept').textContent.startsWith('The server is gone')) at('kept').textContent = 'The server is back.'; };
-}
-const send = (data) => { if (socket.readyState === WebSocket.OPEN) socket.send(data); };
-
-function hear(message) {
-  if (message.error) {
-    session = 'none';
-    at('kept').textContent = `Not kept: ${errorText(message.error)}`;
-  }
-  if (message.event === 'fault') say(`Fault: ${message.what}. ${message.remedy ?? ''} Press Stop, then begin again.`);
-  if (message.kept !== undefined) {
-    session = 'kept';
-    at('kept').textContent = `Kept: ${message.kept}, ${message.ticks} ticks${message.lost_ticks > 0 ? `, ${message.lost_ticks} lost` : ''}. Check it: tactograph replay ${message.kept}`;
-  }
-  showState();
-}
+const session = new KeptSession('/scene-session', at('kept'), (text) => say(`${text} Press Stop, then begin again.`), showState);
 
 // The scene of the address: scene.html#3.
 async function choose() {
@@ -74,7 +49,7 @@ async function choose() {
   endHand();
   scene = hand = picture = null;
   playing = false;
-  session = 'none';
+  session.state = 'none';
   at('scene-title').textContent = 'Preparing …';
   showState();
   try {
@@ -261,9 +236,7 @@ function play() {
   if (playing) return true;
   if (last.state !== 'idle') return false;  // it still falls
   say('');
-  send(JSON.stringify({request: 'begin', made: scene.made}));
-  session = socket.readyState === WebSocket.OPEN ? 'open' : 'none';
-  if (session === 'open') at('kept').textContent = 'Keep stops and writes the session into the folder of the scenes.';
+  session.begin(scene.made, 'scenes');
   playing = true;
   began_ms = performance.now();
   last = {...last, state: 'armed'};
@@ -291,7 +264,7 @@ function report(message) {
     return;
   }
   last = {...last, ...message};
-  if (message.log.length > 0) send(message.log);
+  if (message.log.length > 0) session.send(message.log);
   idleReports = message.state === 'idle' ? idleReports + 1 : 0;
   const now_ms = performance.now(), force_n = Math.hypot(...message.force_n);
   while (force_n > full_n) full_n *= /^[15]/.test(full_n.toExponential()) ? 2 : 2.5;  // 1, 2, 5, 10
@@ -314,8 +287,7 @@ async function keep() {
   stop();
   idleReports = 0;
   await until(() => idleReports >= 2);  // the last ticks are sent
-  at('kept').textContent = 'Keeping …';
-  send(JSON.stringify({request: 'keep'}));
+  session.keep();
 }
 
 // The pointer: it is the hand while it is pressed.
@@ -406,6 +378,5 @@ function draw(now_ms) {
   showValues();
 }
 
-connect();
 requestAnimationFrame(draw);
 choose();
