@@ -102,7 +102,7 @@ Result<void> LiveRecorder::begin(std::string_view name) {
   return {};
 }
 
-void LiveRecorder::tell(cli::Report event) {
+void LiveRecorder::tell(const cli::Report& event) {
   const std::lock_guard lock(mutex_);
   events_.push_back(cli::json_line(event));
 }

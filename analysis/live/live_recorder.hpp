@@ -45,7 +45,7 @@ class LiveRecorder {
   // On the thread of the recording.
   void run(capture::RecordRequest request);
   schema::Result<capture::Recorded> make(capture::RecordRequest request);
-  void tell(cli::Report event);
+  void tell(const cli::Report& event);
 
   std::string folder_, device_, name_;
   std::vector<Page*> pages_;

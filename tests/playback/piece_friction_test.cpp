@@ -15,12 +15,13 @@
 #include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/reference/exact_scene.hpp"
+#include "tests/playback/arm_on_pieces.hpp"
 
 namespace tacto::playback {
 namespace {
 
 using schema::Piece;
-using Space = std::array<double, 3>;
+using Space = ArmOnPieces::Place;
 
 constexpr double kFineStep_m = 1e-6, kTick_s = 1e-3;
 
@@ -28,42 +29,11 @@ double size_of(const Space& v) {
   return std::hypot(v[0], v[1], v[2]);
 }
 
-struct RoughPieces {
-  schema::Device device = *schema::read_device("arm");
-  core::ForceSetup setup;
-  PreparedScene scene;
-  std::vector<float> live;
-  core::SceneKernel kernel;
-
-  explicit RoughPieces(const std::vector<Piece>& pieces,
-                       schema::PieceContact contact = schema::PieceContact::ghost) {
-    for (schema::DeviceAxis& axis : device.axes) {
-      axis.encoder_step_m = kFineStep_m;
-      axis.peak_force_n = axis.continuous_force_n = 1e9;
-    }
-    device.peak_force_n = device.continuous_force_n = 1e9;
-    device.slew_n_per_s = 1e15;
-    schema::Scene of;
-    of.pieces = pieces;
-    of.contact = contact;
-    setup = *force_setup_of(device, 1000);
-    scene = *prepare_scene(of, "s.scene.json", device, 1000);
-    live.resize(scene.view().live_words());
-    kernel.set(scene.view(), setup, live.data());
-  }
-  Space at(const Space& place_m) {
-    std::int32_t counts[3] = {};
-    for (std::size_t i = 0; i < 3; ++i)
-      counts[i] = static_cast<std::int32_t>(std::lround(place_m[i] / kFineStep_m));
-    const core::ForceOutput output = kernel.tick(counts, true);
-    return {double{output.force_n[0]}, double{output.force_n[1]}, double{output.force_n[2]}};
-  }
-  // From above, until the onset is over.
-  void rest_at(const Space& place_m) {
-    at({place_m[0], place_m[1], place_m[2] + 0.005});
-    for (int i = 0; i < 200; ++i) at(place_m);
-  }
-};
+// From above.
+void rest_at(ArmOnPieces& on, const Space& place_m) {
+  on.at({place_m[0], place_m[1], place_m[2] + 0.005});
+  for (int i = 0; i < 200; ++i) on.at(place_m);
+}
 
 // 1 N/mm: 1 N at a depth of 1 mm.
 Piece rough_floor(double fixed, double kinetic) {
@@ -100,12 +70,11 @@ TEST(PieceFrictionTest, AHandThatBeginsInAPieceIsHeldFromThere) {
   ball.shape = schema::PieceShape::sphere, ball.radius_m = 0.02, ball.z_m = -0.02;
   for (const Piece& piece : {floor, ball})
     for (const auto& contact : {schema::PieceContact::ghost, schema::PieceContact::add}) {
-      RoughPieces rough({piece}, contact);
-      ExactScene exact(rough.scene, rough.device, 1000);
+      ArmOnPieces rough({piece}, kFineStep_m, contact);
       Space force_n = {};
       for (int i = 0; i < 300; ++i) {
         force_n = rough.at({0, 0, -2e-3});
-        const auto reference = exact.tick({0, 0, -2000}).force_n;
+        const auto reference = rough.exact->tick({0, 0, -2000}).force_n;
         EXPECT_NEAR(std::hypot(force_n[0], force_n[1]), 0, 1e-6);
         EXPECT_NEAR(std::hypot(reference[0], reference[1]), 0, 1e-6);
       }
@@ -120,8 +89,8 @@ TEST(PieceFrictionTest, AHandThatBeginsInAPieceIsHeldFromThere) {
 TEST(PieceFrictionTest, DraggedItSlipsEvery200Micrometres) {
   constexpr double kWay_m = 47e-6, kSlip_m = 200e-6;
   for (const auto& contact : {schema::PieceContact::ghost, schema::PieceContact::add}) {
-    RoughPieces rough({rough_floor(0.6, 0.4)}, contact);
-    rough.rest_at({0, 0, -1e-3});
+    ArmOnPieces rough({rough_floor(0.6, 0.4)}, kFineStep_m, contact);
+    rest_at(rough, {0, 0, -1e-3});
     double last_m = 0, first_slip_m = 0, last_slip_m = 0;
     int slips = 0;
     for (int i = 1; i * kWay_m <= 1; ++i) {
@@ -144,8 +113,8 @@ TEST(PieceFrictionTest, DraggedItSlipsEvery200Micrometres) {
 
 // A fast hand slips several times a tick.
 TEST(PieceFrictionTest, SlipsOfOneTickAreAllFound) {
-  RoughPieces rough({rough_floor(0.6, 0.4)});
-  rough.rest_at({0, 0, -1e-3});
+  ArmOnPieces rough({rough_floor(0.6, 0.4)});
+  rest_at(rough, {0, 0, -1e-3});
   for (int i = 1; i <= 200; ++i) {
     const double way_m = 2.9e-3 * i;  // 14.5 slips a tick
     const double expected_m = 400e-6 + std::fmod(way_m - 400e-6, 200e-6);
@@ -156,8 +125,8 @@ TEST(PieceFrictionTest, SlipsOfOneTickAreAllFound) {
 }
 
 TEST(PieceFrictionTest, BelowBreakAwayNothingDrifts) {
-  RoughPieces rough({rough_floor(0.6, 0.4)});
-  rough.rest_at({0.01, 0.02, -1e-3});
+  ArmOnPieces rough({rough_floor(0.6, 0.4)});
+  rest_at(rough, {0.01, 0.02, -1e-3});
   std::vector<Space> first;
   for (int cycle = 0; cycle < 200; ++cycle)
     for (int i = 0; i < 50; ++i) {
@@ -173,8 +142,8 @@ TEST(PieceFrictionTest, BelowBreakAwayNothingDrifts) {
 TEST(PieceFrictionTest, TheForceStaysInItsCone) {
   Piece slope = rough_floor(0.8, 0.5);
   slope.direction = {0, 0.6, 0.8};
-  RoughPieces rough({slope});
-  rough.rest_at({0, 0, -1e-3});
+  ArmOnPieces rough({slope});
+  rest_at(rough, {0, 0, -1e-3});
   double most = 0;
   int slipped = 0;
   for (int i = 0; i < 20'000; ++i) {
@@ -203,25 +172,21 @@ TEST(PieceFrictionTest, SinglePrecisionIsNearDoublePrecision) {
       ball.viscous_n_s_per_m = 2;
       Piece floor = rough_floor(0.5, kinetic);
       floor.z_m = 0;
-      RoughPieces rough({ball, floor}, contact);
-      ExactScene exact(rough.scene, rough.device, 1000);  // without an onset
+      ArmOnPieces rough({ball, floor}, kFineStep_m, contact);
       std::mt19937_64 random(4);
       Space place_m = {0, 0, 0.01}, to_m = place_m;
-      rough.rest_at(place_m);
+      rest_at(rough, place_m);
       double worst_n = 0;
       int far = 0, touched = 0;
       for (int i = 0; i < 3000; ++i) {
         if (i % 150 == 0)
           for (double& each : to_m) each = -0.03 + 0.06 * static_cast<double>(random() >> 11) * 0x1p-53;
         for (std::size_t k = 0; k < 3; ++k) place_m[k] += 0.02 * (to_m[k] - place_m[k]);
-        std::vector<std::int32_t> counts;
-        for (const double each : place_m)
-          counts.push_back(static_cast<std::int32_t>(std::lround(each / kFineStep_m)));
-        const core::ForceOutput kernel = rough.kernel.tick(counts.data(), true);
-        const auto wanted = exact.tick(counts);
+        const Space force_n = rough.at(place_m);
+        const auto wanted = rough.exact->tick(rough.counts_of(place_m));
         double off_n = 0, size_n = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-          off_n = std::max(off_n, std::abs(double{kernel.unlimited_n[k]} - wanted.force_n[k]));
+          off_n = std::max(off_n, std::abs(force_n[k] - wanted.force_n[k]));
           size_n = std::max(size_n, std::abs(wanted.force_n[k]));
         }
         touched += size_n > 0;
@@ -238,8 +203,8 @@ TEST(PieceFrictionTest, SinglePrecisionIsNearDoublePrecision) {
 TEST(PieceFrictionTest, ViscousFrictionComesOnTop) {
   Piece floor = rough_floor(0, 0);
   floor.viscous_n_s_per_m = 5;
-  RoughPieces rough({floor});
-  rough.rest_at({0, 0, -1e-3});
+  ArmOnPieces rough({floor});
+  rest_at(rough, {0, 0, -1e-3});
   Space force_n = {};
   for (int i = 1; i < 200; ++i) force_n = rough.at({0, 1e-4 * i, -1e-3});
   EXPECT_NEAR(force_n[1], -0.5, 1e-5);

@@ -21,12 +21,13 @@
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/reference/exact_relief.hpp"
 #include "playback/render/reference/exact_scene.hpp"
+#include "tests/playback/arm_on_pieces.hpp"
 
 namespace tacto::playback {
 namespace {
 
 using schema::Piece;
-using InSpace = std::array<double, 3>;
+using InSpace = ArmOnPieces::Place;
 
 constexpr double kReliefPitch_m = 2e-4;
 
@@ -65,81 +66,21 @@ Piece wall_at(double x_m) {
   return wall;
 }
 
-struct OnReliefs {
-  schema::Device device = *schema::read_device("arm");
-  core::ForceSetup setup;
-  PreparedScene scene;
-  std::vector<float> live;
-  core::SceneView view;
-  core::SceneKernel kernel;
-  core::GhostPoint ghost;
-  std::optional<ExactScene> exact;
-  double count_m, largest_n = 0, largest_error_n = 0;
-
-  explicit OnReliefs(const std::vector<Piece>& pieces, double step_m = 1e-6) : count_m(step_m) {
-    for (schema::DeviceAxis& axis : device.axes) {
-      axis.encoder_step_m = count_m;
-      axis.peak_force_n = axis.continuous_force_n = 1e9;
-    }
-    device.peak_force_n = device.continuous_force_n = 1e9;
-    device.slew_n_per_s = 1e15;
-    schema::Scene of;
-    of.pieces = pieces;
-    setup = *force_setup_of(device, 1000);
-    setup.onset_s = 0;
-    auto prepared = prepare_scene(of, "s.scene.json", device, 1000);
-    EXPECT_TRUE(prepared) << schema::message(prepared.error());
-    scene = std::move(*prepared);
-    live.resize(scene.view().live_words());
-    view = scene.view();
-    kernel.set(view, setup, live.data());
-    exact.emplace(scene, device, 1000);
-  }
-  std::vector<std::int32_t> counts_of(const InSpace& place_m) const {
-    std::vector<std::int32_t> counts;
-    for (const double along_m : place_m)
-      counts.push_back(static_cast<std::int32_t>(std::lround(along_m / count_m)));
-    return counts;
-  }
-  InSpace at(const InSpace& place_m) {
-    const core::ForceOutput output = kernel.tick(counts_of(place_m).data(), true);
-    return {double{output.unlimited_n[0]}, double{output.unlimited_n[1]}, double{output.unlimited_n[2]}};
-  }
-  // Also in double precision.
-  void compare_at(const InSpace& place_m) {
-    const InSpace force_n = at(place_m);
-    const auto reference = exact->tick(counts_of(place_m)).unlimited_n;
-    for (std::size_t i = 0; i < 3; ++i) {
-      largest_n = std::max(largest_n, std::abs(reference[i]));
-      largest_error_n = std::max(largest_error_n, std::abs(force_n[i] - reference[i]));
-    }
-  }
-  // Of the ghost point alone.
-  InSpace ghost_at(const InSpace& place_m) {
-    const auto counts = counts_of(place_m);
-    const auto single = static_cast<float>(count_m);
-    const float steps[3] = {single, single, single};
-    ghost.force(view, live.data(), {{counts[0], counts[1], counts[2]}, {}}, steps, setup);
-    const core::SpacePlace& at = ghost.place();
-    return {at.counts[0] * count_m + double{at.rest_m.x}, at.counts[1] * count_m + double{at.rest_m.y},
-            at.counts[2] * count_m + double{at.rest_m.z}};
-  }
-  // Of the relief of an upright floor at the origin.
-  double height_m(const InSpace& place_m) const {
-    const Relief& relief = scene.reliefs.of(*scene.pieces.front().relief);
-    const ReliefLevel& level = relief.levels.front();
-    return spline_of(level, place_on_level(relief, level, 0, place_m[0]),
-                     place_on_level(relief, level, 1, place_m[1]))
-        .value;
-  }
-};
+// The height of the relief of an upright floor at the origin.
+double height_below(const ArmOnPieces& on, const InSpace& place_m) {
+  const Relief& relief = on.scene.reliefs.of(*on.scene.pieces.front().relief);
+  const ReliefLevel& level = relief.levels.front();
+  return spline_of(level, place_on_level(relief, level, 0, place_m[0]),
+                   place_on_level(relief, level, 1, place_m[1]))
+      .value;
+}
 
 TEST(PieceReliefTest, ThroughTheHeightsOfTheMap) {
-  OnReliefs on({raised_floor()});
+  ArmOnPieces on({raised_floor()});
   for (const auto& [i, j] : {std::pair{0, 0}, {13, -40}, {-70, 61}}) {
     const InSpace place = {kReliefPitch_m * i, kReliefPitch_m * j, 0};
     const double height_m = hills_m(place[0], place[1]);
-    EXPECT_NEAR(on.height_m(place), height_m, 1e-9);
+    EXPECT_NEAR(height_below(on, place), height_m, 1e-9);
     on.at({place[0], place[1], 2e-3});
     EXPECT_EQ(on.at({place[0], place[1], height_m + 2e-6})[2], 0);
     EXPECT_GT(on.at({place[0], place[1], height_m - 2e-6})[2], 0);
@@ -156,7 +97,7 @@ TEST(PieceReliefTest, TheKernelIsTheReference) {
   for (const std::vector<Piece>& pieces :
        {std::vector{raised_floor()}, {tilted}, {rough}, {flat}, {raised_floor(), wall_at(-3e-3)}})
     for (const double by : {1.0, 6.0}) {
-      OnReliefs on(pieces);
+      ArmOnPieces on(pieces);
       for (int i = 0; i < 4000; ++i) {
         const double t = 1e-3 * by * i;
         on.compare_at(
@@ -175,7 +116,7 @@ struct WorkOfTurn {
 };
 
 // Of the force on a hand on a closed path below the surface, over the ticks of one turn.
-WorkOfTurn work_below(OnReliefs& on, bool follows) {
+WorkOfTurn work_below(ArmOnPieces& on, bool follows) {
   constexpr int kTicks = 24'000;
   constexpr double kTurnOf = 2 * std::numbers::pi;
   const auto place = [&](double t) -> InSpace {
@@ -197,14 +138,14 @@ WorkOfTurn work_below(OnReliefs& on, bool follows) {
 
 TEST(PieceReliefTest, AClosedPathDoesNoWorkUnlessNormalsAreInterpolated) {
   Piece floor = raised_floor();
-  OnReliefs exact({floor}, 1e-8);
+  ArmOnPieces exact({floor}, 1e-8);
   const WorkOfTurn none = work_below(exact, true);
   std::printf("[ measured ] exact normals: net work %.2g of %.3g uJ\n", 1e6 * none.net_j,
               1e6 * none.absolute_j);
   EXPECT_GT(none.absolute_j, 1e-5);
   EXPECT_LT(std::abs(none.net_j), 1e-6 * none.absolute_j);
   floor.relief->interpolated = true;
-  OnReliefs flat({floor}, 1e-8);
+  ArmOnPieces flat({floor}, 1e-8);
   const WorkOfTurn some = work_below(flat, false);
   std::printf("[ measured ] interpolated normals: net work %.3g of %.3g uJ\n", 1e6 * some.net_j,
               1e6 * some.absolute_j);
@@ -217,7 +158,7 @@ TEST(PieceReliefTest, InterpolatedNormalsGiveAtMostWhatIsStated) {
   constexpr double kPerM = 500, kHeight_m = 5e-4;
   floor.relief = relief_of("wave", [](double u, double /*v*/) { return kHeight_m * std::cos(kPerM * u); });
   floor.relief->interpolated = true;
-  OnReliefs on({floor}, 1e-7);
+  ArmOnPieces on({floor}, 1e-7);
   schema::Device device = *schema::read_device("arm");
   const double depth_m = device.peak_force_n / floor.stiffness_n_per_m, half_m = std::numbers::pi / kPerM;
   double work_j = 0;
@@ -249,7 +190,7 @@ TEST(PieceReliefTest, ARandomHandFallsThroughNoRelief) {
     for (const double step_m : {1e-5, 1e-7, 1e-3}) {
       std::vector<Piece> pieces = {raised_floor()};
       if (walled) pieces.push_back(wall_at(-4e-3));
-      OnReliefs on(pieces, step_m);
+      ArmOnPieces on(pieces, step_m);
       std::mt19937_64 random(32);
       const auto anywhere = [&](double half_m) {
         return 2 * half_m * (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5);
@@ -261,7 +202,7 @@ TEST(PieceReliefTest, ARandomHandFallsThroughNoRelief) {
         if (tick % 1000 == 999) hand = {anywhere(0.03), anywhere(0.03), anywhere(4e-3)};  // within one tick
         for (std::size_t i = 0; i < 3; ++i) hand[i] += 0.05 * (goal[i] - hand[i]);
         const InSpace at = on.ghost_at(hand);
-        deepest_m = std::max(deepest_m, on.height_m(at) - at[2]);
+        deepest_m = std::max(deepest_m, height_below(on, at) - at[2]);
         if (walled) deepest_m = std::max(deepest_m, -4e-3 - at[0]);
       }
       EXPECT_LT(deepest_m, 1.5e-6) << step_m << walled;  // GhostPoint states 1e-6 along the normal
@@ -270,7 +211,7 @@ TEST(PieceReliefTest, ARandomHandFallsThroughNoRelief) {
 
 // By at most one sample a step, onto the surface, and never away from the hand.
 TEST(PieceReliefTest, ASlideEndsNearerToTheHand) {
-  OnReliefs on({raised_floor()});
+  ArmOnPieces on({raised_floor()});
   const auto& table = core::table_of<core::ReliefPieceTable>(on.view, on.view.layers[0]);
   std::mt19937_64 random(1996);
   const auto anywhere = [&](double half_m) {
@@ -281,7 +222,7 @@ TEST(PieceReliefTest, ASlideEndsNearerToTheHand) {
     const core::SpaceVector hand = {anywhere(0.01), anywhere(0.01), anywhere(1e-3) - 1.5e-3F};
     core::SpaceVector start = {hand.x + anywhere(5e-3), hand.y + anywhere(5e-3), 0};
     const auto height = [&](const core::SpaceVector& at) {
-      return on.height_m({double{at.x}, double{at.y}, 0});
+      return height_below(on, {double{at.x}, double{at.y}, 0});
     };
     start.z = static_cast<float>(height(start));
     const core::SpaceVector end = core::slid_on_relief(table, hand, start);
@@ -297,7 +238,7 @@ TEST(PieceReliefTest, ASlideEndsNearerToTheHand) {
 // A hand that jumps from valley to valley below the surface: the ghost follows on it, or over it, in some
 // ticks.
 TEST(PieceReliefTest, TheGhostComesAfterAHandThatJumps) {
-  OnReliefs on({raised_floor()});
+  ArmOnPieces on({raised_floor()});
   on.ghost_at({0, 0, 2e-3});
   InSpace last = on.ghost_at({0, 0, -1e-3});
   const std::array<InSpace, 4> hands = {
@@ -309,10 +250,10 @@ TEST(PieceReliefTest, TheGhostComesAfterAHandThatJumps) {
     for (int tick = 0; tick < 100; ++tick) {
       const InSpace at = on.ghost_at(hand);
       EXPECT_LE(from_hand(at), from_hand(last) + 1e-6);
-      EXPECT_GE(at[2], on.height_m(at) - 1e-6);
+      EXPECT_GE(at[2], height_below(on, at) - 1e-6);
       last = at;
     }
-    EXPECT_NEAR(last[2], on.height_m(last), 1e-7) << "at rest on the surface";
+    EXPECT_NEAR(last[2], height_below(on, last), 1e-7) << "at rest on the surface";
     EXPECT_LT(from_hand(last), 3e-3);
   }
 }
@@ -322,7 +263,7 @@ TEST(PieceReliefTest, AFlatMapIsAPlane) {
   Piece raised = raised_floor(), plane = raised_floor();
   raised.relief = relief_of("flat", [](double, double) { return 1e-3; });
   plane.relief.reset(), plane.z_m = 1e-3;
-  OnReliefs on_map({raised}), on_plane({plane});
+  ArmOnPieces on_map({raised}), on_plane({plane});
   for (int i = 0; i < 500; ++i) {
     const InSpace hand = {1e-3 * std::sin(0.01 * i), 0, 1e-3 + 5e-4 * std::cos(0.02 * i)};
     const InSpace a = on_map.at(hand), b = on_plane.at(hand);
@@ -331,7 +272,7 @@ TEST(PieceReliefTest, AFlatMapIsAPlane) {
 }
 
 TEST(PieceReliefTest, ABlockWithAxesThatAreNotAcrossIsRefused) {
-  OnReliefs on({raised_floor()});
+  ArmOnPieces on({raised_floor()});
   const auto fault_with = [&](float first_axis_z) {
     std::vector<std::uint32_t> words = on.scene.words;
     const core::SceneView view = on.scene.view();

@@ -20,12 +20,13 @@
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/prepare/scene/slide_table.hpp"
 #include "playback/render/reference/exact_scene.hpp"
+#include "tests/playback/arm_on_pieces.hpp"
 
 namespace tacto::playback {
 namespace {
 
 using schema::Piece;
-using SlidePlace = std::array<double, 3>;
+using SlidePlace = ArmOnPieces::Place;
 
 constexpr double kSlideTick_s = 1e-3, kKnobRadius_m = 0.01;
 
@@ -129,57 +130,10 @@ TEST(PieceSlideTest, ADetentHoldsAndGivesNoEnergy) {
   }
 }
 
-struct SlidesOnArm {
-  schema::Device device = *schema::read_device("arm");
-  core::ForceSetup setup;
-  PreparedScene scene;
-  std::vector<float> live;
-  core::SceneView view;
-  core::SceneKernel kernel;
-  core::GhostPoint ghost;
-  std::optional<ExactScene> exact;
-  double count_m;
-
-  explicit SlidesOnArm(const std::vector<Piece>& pieces, double step_m = 1e-6) : count_m(step_m) {
-    for (schema::DeviceAxis& axis : device.axes) {
-      axis.encoder_step_m = count_m;
-      axis.peak_force_n = axis.continuous_force_n = 1e9;
-    }
-    device.peak_force_n = device.continuous_force_n = 1e9;
-    device.slew_n_per_s = 1e15;
-    schema::Scene of;
-    of.pieces = pieces;
-    setup = *force_setup_of(device, 1 / kSlideTick_s);
-    setup.onset_s = 0;
-    auto prepared = prepare_scene(of, "s.scene.json", device, 1 / kSlideTick_s);
-    EXPECT_TRUE(prepared) << schema::message(prepared.error());
-    scene = std::move(*prepared);
-    live.resize(scene.view().live_words());
-    view = scene.view();
-    kernel.set(view, setup, live.data());
-    exact.emplace(scene, device, 1 / kSlideTick_s);
-  }
-  std::vector<std::int32_t> counts_of(const SlidePlace& place_m) const {
-    std::vector<std::int32_t> counts;
-    for (const double along_m : place_m)
-      counts.push_back(static_cast<std::int32_t>(std::lround(along_m / count_m)));
-    return counts;
-  }
-  // Of the first piece.
-  double slid_m() const {
-    const std::size_t state = core::kPieceNumbers + core::kWallStateWords - 2;
-    return double{live[state]};
-  }
-  SlidePlace ghost_at(const SlidePlace& place_m) {
-    const auto counts = counts_of(place_m);
-    const auto single = static_cast<float>(count_m);
-    const float steps[3] = {single, single, single};
-    ghost.force(view, live.data(), {{counts[0], counts[1], counts[2]}, {}}, steps, setup);
-    const core::SpacePlace& at = ghost.place();
-    return {at.counts[0] * count_m + double{at.rest_m.x}, at.counts[1] * count_m + double{at.rest_m.y},
-            at.counts[2] * count_m + double{at.rest_m.z}};
-  }
-};
+// Of the first piece.
+double slid_m(const ArmOnPieces& on) {
+  return double{on.live[core::kPieceNumbers + core::kWallStateWords - 2]};
+}
 
 // No slip, stop or detent of these paths is so near that rounding decides its tick.
 TEST(PieceSlideTest, TheKernelIsTheReference) {
@@ -187,24 +141,17 @@ TEST(PieceSlideTest, TheKernelIsTheReference) {
   detents.slide->detent_n = 0.5, detents.slide->detent_m = 4e-3;
   rough.static_friction = rough.kinetic_friction = 0.5;
   for (const Piece& piece : {knob_on_slide(), detents, rough, cube_on_slide()}) {
-    SlidesOnArm on({piece, still_plane("floor", {0, 0, -0.004}, {0, 0, 1})});
-    double largest_n = 0, largest_error_n = 0, farthest_m = 0;
+    ArmOnPieces on({piece, still_plane("floor", {0, 0, -0.004}, {0, 0, 1})});
+    double farthest_m = 0;
     for (int i = 0; i < 6000; ++i) {
       const double t = 1e-3 * i;
-      const auto counts =
-          on.counts_of({0.015 * std::sin(1.1 * t - 1.5), 2e-3 * std::sin(t), 2e-3 * std::cos(2 * t)});
-      const core::ForceOutput output = on.kernel.tick(counts.data(), true);
-      const auto reference = on.exact->tick(counts).unlimited_n;
-      for (std::size_t j = 0; j < 3; ++j) {
-        largest_error_n = std::max(largest_error_n, std::abs(double{output.unlimited_n[j]} - reference[j]));
-        largest_n = std::max(largest_n, std::abs(reference[j]));
-      }
-      farthest_m = std::max(farthest_m, std::abs(on.slid_m()));
+      on.compare_at({0.015 * std::sin(1.1 * t - 1.5), 2e-3 * std::sin(t), 2e-3 * std::cos(2 * t)});
+      farthest_m = std::max(farthest_m, std::abs(slid_m(on)));
     }
-    std::printf("[ measured ] %s: %.2g of %.2g N, slid %.3g mm\n", piece.name.c_str(), largest_error_n,
-                largest_n, 1e3 * farthest_m);
+    std::printf("[ measured ] %s: %.2g of %.2g N, slid %.3g mm\n", piece.name.c_str(), on.largest_error_n,
+                on.largest_n, 1e3 * farthest_m);
     EXPECT_GT(farthest_m, 3e-3);
-    EXPECT_LT(largest_error_n, 1e-4 * largest_n);
+    EXPECT_LT(on.largest_error_n, 1e-4 * on.largest_n);
   }
 }
 
@@ -215,7 +162,7 @@ TEST(PieceSlideTest, ASlidingPieceNeverPassesTheGhost) {
       Piece piece = cube ? cube_on_slide() : knob_on_slide();
       piece.slide->friction_n = 0, piece.slide->viscous_n_s_per_m = 0.1;
       piece.slide->detent_n = 2, piece.slide->detent_m = 0.02;  // drives it to and fro
-      SlidesOnArm on({piece, still_plane("floor", {0, 0, -4e-3}, {0, 0, 1}),
+      ArmOnPieces on({piece, still_plane("floor", {0, 0, -4e-3}, {0, 0, 1}),
                       still_plane("wall", {-0.035, 0, 0}, {1, 0, 0})},
                      step_m);
       std::mt19937_64 random(32);
@@ -228,11 +175,11 @@ TEST(PieceSlideTest, ASlidingPieceNeverPassesTheGhost) {
         if (tick % 40 == 39) goal = {anywhere(0.045), anywhere(0.015), anywhere(0.015)};
         for (std::size_t i = 0; i < 3; ++i) hand[i] += 0.05 * (goal[i] - hand[i]);
         const SlidePlace at = on.ghost_at(hand);
-        const double x = at[0] - on.slid_m();
+        const double x = at[0] - slid_m(on);
         const double in_m = cube ? 0.01 - std::max({std::abs(x), std::abs(at[1]), std::abs(at[2])})
                                  : kKnobRadius_m - std::hypot(x, at[1], at[2]);
         deepest_m = std::max({deepest_m, in_m, -4e-3 - at[2], -0.035 - at[0]});
-        farthest_m = std::max(farthest_m, std::abs(on.slid_m()));
+        farthest_m = std::max(farthest_m, std::abs(slid_m(on)));
       }
       std::printf("[ measured ] deepest %.2g um, slid %.3g mm\n", 1e6 * deepest_m, 1e3 * farthest_m);
       EXPECT_GT(farthest_m, 0.02);

@@ -20,12 +20,13 @@
 #include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/reference/exact_scene.hpp"
+#include "tests/playback/arm_on_pieces.hpp"
 
 namespace tacto::playback {
 namespace {
 
 using schema::Piece;
-using Space = std::array<double, 3>;
+using Space = ArmOnPieces::Place;
 
 constexpr double kCount_m = 1e-6, kSample_m = 1e-5, kTurn = 2 * std::numbers::pi;
 
@@ -69,61 +70,6 @@ Piece textured_floor(schema::PieceTexture texture) {
   return floor;
 }
 
-struct TexturedPieces {
-  schema::Device device = *schema::read_device("arm");
-  core::ForceSetup setup;
-  PreparedScene scene;
-  std::vector<float> live;
-  core::SceneKernel kernel;
-  std::optional<ExactScene> exact;
-  double largest_n = 0, largest_error_n = 0;
-
-  explicit TexturedPieces(const std::vector<Piece>& pieces,
-                          schema::PieceContact contact = schema::PieceContact::ghost,
-                          double count_m = kCount_m)
-      : count_m_(count_m) {
-    for (schema::DeviceAxis& axis : device.axes) {
-      axis.encoder_step_m = count_m;
-      axis.peak_force_n = axis.continuous_force_n = 1e9;
-    }
-    device.peak_force_n = device.continuous_force_n = 1e9;
-    device.slew_n_per_s = 1e15;
-    schema::Scene of;
-    of.pieces = pieces;
-    of.contact = contact;
-    setup = *force_setup_of(device, 1000);
-    setup.onset_s = 0;
-    auto prepared = prepare_scene(of, "s.scene.json", device, 1000);
-    EXPECT_TRUE(prepared) << schema::message(prepared.error());
-    scene = std::move(*prepared);
-    live.resize(scene.view().live_words());
-    kernel.set(scene.view(), setup, live.data());
-    exact.emplace(scene, device, 1000);
-  }
-  std::vector<std::int32_t> counts_of(const Space& place_m) const {
-    std::vector<std::int32_t> counts;
-    for (const double along_m : place_m)
-      counts.push_back(static_cast<std::int32_t>(std::lround(along_m / count_m_)));
-    return counts;
-  }
-  Space at(const Space& place_m) {
-    const core::ForceOutput output = kernel.tick(counts_of(place_m).data(), true);
-    return {double{output.unlimited_n[0]}, double{output.unlimited_n[1]}, double{output.unlimited_n[2]}};
-  }
-  // Also in double precision.
-  void compare_at(const Space& place_m) {
-    const Space force_n = at(place_m);
-    const auto reference = exact->tick(counts_of(place_m)).unlimited_n;
-    for (std::size_t i = 0; i < 3; ++i) {
-      largest_n = std::max(largest_n, std::abs(reference[i]));
-      largest_error_n = std::max(largest_error_n, std::abs(force_n[i] - reference[i]));
-    }
-  }
-
- private:
-  double count_m_;
-};
-
 // The slope of a B-spline through 100 samples a period: within 1e-5 of the sine. The path begins half a
 // sample before the first column of the map, and a sample is half a column behind its column.
 TEST(PieceTextureTest, ARecordingIsThatOfItsPlaceOnTheWayForthAndBack) {
@@ -133,7 +79,7 @@ TEST(PieceTextureTest, ARecordingIsThatOfItsPlaceOnTheWayForthAndBack) {
     for (const double gain : {1.0, -2.0}) {
       Piece floor = textured_floor(recording("sine", 0.02, sine));
       floor.texture_gain = gain;
-      TexturedPieces on({floor}, contact);
+      ArmOnPieces on({floor}, kCount_m, contact);
       on.at({0, 0, 1e-3});
       EXPECT_EQ(on.at({0, 0, -1e-3})[0], 0) << "before the first way there is no direction";
       int judged = 0;
@@ -155,7 +101,7 @@ TEST(PieceTextureTest, ARecordingIsThatOfItsPlaceOnTheWayForthAndBack) {
 // length ln 2 kPathLine_m is lost.
 TEST(PieceTextureTest, ThePathTurnsWithTheWay) {
   const auto sine = [](double x) { return 0.2 * std::sin(kTurn * x / 1e-3); };
-  TexturedPieces on({textured_floor(recording("corner", 0.02, sine))});
+  ArmOnPieces on({textured_floor(recording("corner", 0.02, sine))});
   on.at({0, 0, 1e-3});
   for (int i = 0; i <= 2000; ++i) on.at({2e-6 * i, 0, -1e-3});
   double largest_n = 0;
@@ -175,7 +121,7 @@ TEST(PieceTextureTest, ThePathTurnsWithTheWay) {
 // the integral of its force, however long the way is.
 TEST(PieceTextureTest, ATextureGivesNoMoreThanItsRange) {
   // The mean is subtracted.
-  TexturedPieces on({textured_floor(recording("noise", 0.02, [](double x) { return 0.3 + noise_n(x); }))});
+  ArmOnPieces on({textured_floor(recording("noise", 0.02, [](double x) { return 0.3 + noise_n(x); }))});
   double integral = 0, least = 0, most = 0;
   for (double x = 0; x < 0.02; x += kSample_m) {
     integral += noise_n(x) * kSample_m;
@@ -216,7 +162,7 @@ TEST(PieceTextureTest, ABumpIsTheSlopeTimesTheForceAlongTheNormal) {
   for (Piece piece : {floor, ball})
     for (const double gain : {1.0, -0.5}) {
       piece.texture_gain = gain;
-      TexturedPieces on({piece});
+      ArmOnPieces on({piece});
       on.at({0, 4e-3, 2e-3});
       for (int i = 0; i < 300; ++i) on.at({0, 4e-3, -3e-3});  // until its speed is forgotten
       const bool round = piece.shape == schema::PieceShape::sphere;
@@ -253,7 +199,7 @@ TEST(PieceTextureTest, ABumpDoesNoWorkOnAClosedPath) {
   Piece ball = floor;
   ball.shape = schema::PieceShape::sphere, ball.radius_m = 0.02, ball.z_m = -0.02;
   for (const Piece& piece : {floor, ball}) {
-    TexturedPieces on({piece}, schema::PieceContact::ghost, 1e-8);
+    ArmOnPieces on({piece}, 1e-8);
     // Simpson's rule over the ticks of one turn, by the speed of the path.
     constexpr int kTicks = 24'000;
     double work_j = 0, absolute_j = 0;
@@ -291,7 +237,7 @@ TEST(PieceTextureTest, ASineIsAddedToTheForceAlongTheNormalAndNeverPulls) {
     for (const double gain : {1.0, -1.0}) {
       Piece floor = textured_floor(sine(kAmplitude_n, kP_m, kQ_m));
       floor.x_m = 4e-4, floor.texture_gain = gain;
-      TexturedPieces on({floor}, contact);
+      ArmOnPieces on({floor}, kCount_m, contact);
       on.at({0, 0, 1e-3});
       for (int i = 0; i < 3000; ++i) {
         const double t = 1e-3 * i;
@@ -333,7 +279,7 @@ TEST(PieceTextureTest, TheKernelIsTheReference) {
   for (Piece piece : pieces)
     for (const double by : {1.0, 8.0}) {
       piece.static_friction = piece.kinetic_friction = 0.3;
-      TexturedPieces on({piece});
+      ArmOnPieces on({piece});
       for (int i = 0; i < 4000; ++i) {
         const double t = 1e-3 * by * i;
         on.compare_at({4e-3 * std::sin(2 * t), 3e-3 * std::cos(3.1 * t), -1.5e-3 + 2e-3 * std::cos(0.9 * t)});

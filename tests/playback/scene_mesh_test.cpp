@@ -18,6 +18,7 @@
 #include "playback/prepare/scene/piece_block.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/reference/exact_scene.hpp"
+#include "tests/playback/unlimited_device.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -89,21 +90,16 @@ double winding_number(const schema::Mesh& mesh, const Point& place) {
 
 // A scene of one mesh on the preset arm without limits.
 struct MeshOnArm {
-  schema::Device device = *schema::read_device("arm");
+  double step_m;
+  schema::Device device;
   core::ForceSetup setup;
   PreparedScene scene;
   std::vector<float> live;
   core::SceneView view;
   core::GhostPoint ghost;
-  double step_m;
 
-  MeshOnArm(const schema::Mesh& mesh, double step, const Point& place_m = {}) : step_m(step) {
-    for (schema::DeviceAxis& axis : device.axes) {
-      axis.encoder_step_m = step;
-      axis.peak_force_n = axis.continuous_force_n = 1e9;
-    }
-    device.peak_force_n = device.continuous_force_n = 1e9;
-    device.slew_n_per_s = 1e15;
+  MeshOnArm(const schema::Mesh& mesh, double step, const Point& place_m = {})
+      : step_m(step), device(unlimited_device(step, "arm")) {
     setup = *force_setup_of(device, 1000);
     const std::string path = testing::TempDir() + "scene_mesh_test.mesh.nc";
     EXPECT_TRUE(schema::write_mesh(path, mesh, schema::Existing::replace));

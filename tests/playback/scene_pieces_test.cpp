@@ -19,6 +19,7 @@
 #include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/reference/exact_scene.hpp"
+#include "tests/playback/unlimited_device.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -28,17 +29,6 @@ using schema::PieceShape;
 
 constexpr double kPieceStep_m = 1e-5;  // of the preset arm
 constexpr double kPieceStiffness = 2000;
-
-schema::Device arm_without_limits(double step_m = kPieceStep_m) {
-  schema::Device device = *schema::read_device("arm");
-  for (schema::DeviceAxis& axis : device.axes) {
-    axis.encoder_step_m = step_m;
-    axis.peak_force_n = axis.continuous_force_n = 1e9;
-  }
-  device.peak_force_n = device.continuous_force_n = 1e9;
-  device.slew_n_per_s = 1e15;
-  return device;
-}
 
 Piece piece_at(PieceShape shape, double x_m, double y_m, double z_m) {
   Piece piece;
@@ -86,7 +76,7 @@ struct PiecesOnArm {
   std::vector<float> live;
   core::SceneKernel kernel;
 
-  explicit PiecesOnArm(const schema::Scene& of, schema::Device on = arm_without_limits())
+  explicit PiecesOnArm(const schema::Scene& of, schema::Device on = unlimited_device(kPieceStep_m, "arm"))
       : device(std::move(on)),
         setup(*force_setup_of(device, 1000)),
         scene(*prepare_scene(of, "s.scene.json", device, 1000)),
@@ -294,7 +284,7 @@ double deepest_in(const std::vector<Piece>& pieces, const Space3& p) {
 TEST(ScenePiecesTest, ARandomHandFallsThroughNothing) {
   const std::vector<Piece> pieces = crowded_box();
   for (const double step_m : {1e-5, 1e-7, 1e-3}) {
-    const schema::Device device = arm_without_limits(step_m);
+    const schema::Device device = unlimited_device(step_m, "arm");
     PiecesOnArm arm(scene_of(pieces), device);
     core::GhostPoint ghost;
     const auto single = static_cast<float>(step_m);

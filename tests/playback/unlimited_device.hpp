@@ -2,13 +2,15 @@
 // A force device whose limits no test reaches.
 #pragma once
 
+#include <string>
+
 #include "data-schema/device/device.hpp"
 
 namespace tacto::playback {
 
-/// The preset sandpaper-1990 with other encoder steps.
-inline schema::Device unlimited_device(double encoder_step_m) {
-  schema::Device device = *schema::read_device("sandpaper-1990");
+/// The preset with other encoder steps.
+inline schema::Device unlimited_device(double encoder_step_m, const std::string& preset = "sandpaper-1990") {
+  schema::Device device = *schema::read_device(preset);
   for (schema::DeviceAxis& axis : device.axes) {
     axis.peak_force_n = axis.continuous_force_n = 1e9;
     axis.encoder_step_m = encoder_step_m;

@@ -35,7 +35,8 @@ Level level_at(const VolumeTable& table, const int16_t* values, const Cell& cell
   const uint32_t row = table.along[0].samples, layer = row * table.along[1].samples;
   float above[4], rise[4];  // over iso, and along x: of the rows at y z, y + 1 z, y z + 1, y + 1 z + 1
   for (uint32_t i = 0; i < 4; ++i) {
-    const int16_t* const at = values + cell.first + (i & 1) * row + (i >> 1) * layer;
+    const uint32_t first = cell.first + (i & 1) * row + (i >> 1) * layer;
+    const int16_t* const at = values + first;
     rise[i] = static_cast<float>(at[1] - at[0]);
     above[i] = (static_cast<float>(at[0]) - table.iso) + cell.x * rise[i];
   }
