@@ -572,8 +572,15 @@ struct PowerOptions {
   PowerAssumptions assumed;
 };
 
-std::string people_in_words(const std::optional<int>& people) {
-  return people ? std::to_string(*people) : fmt::format("more than {}", kMostPeople);
+// "8 people (83.4 %; 7: 77.3 %)": the fewest for the goal with their power, and that of one fewer.
+std::string people_in_words(const std::vector<StudyPower::Row>& rows, const std::optional<int>& people,
+                            double StudyPower::Row::*power) {
+  if (!people) return fmt::format("more than {} people", kMostPeople);
+  const auto row = std::ranges::find(rows, *people, &StudyPower::Row::people);
+  const std::string fewer = row == rows.begin() ? ""
+                                                : fmt::format("; {}: {:.1f} %", std::prev(row)->people,
+                                                              100 * (*std::prev(row)).*power);
+  return fmt::format("{} people ({:.1f} %{})", *people, 100 * (*row).*power, fewer);
 }
 
 Result<Report> run_study_power(PowerOptions o) {
@@ -591,10 +598,11 @@ Result<Report> run_study_power(PowerOptions o) {
   const auto power = study_power(*protocol, o.assumed, [&](double part) { progress.update(part); });
   TACTO_TRY(power);
   Report report;
-  report.add("verdict",
-             fmt::format("for a power of {:g} %: {} people in each of two groups, or {} people in both "
-                         "conditions",
-                         100 * kPowerGoal, people_in_words(power->a_group), people_in_words(power->twice)));
+  report.add(
+      "verdict",
+      fmt::format("for a power of {:g} %: {} in each of two groups, or {} in both conditions",
+                  100 * kPowerGoal, people_in_words(power->rows, power->a_group, &StudyPower::Row::groups),
+                  people_in_words(power->rows, power->twice, &StudyPower::Row::twice)));
   if (power->a_group) report.add("people_a_group", *power->a_group);
   if (power->twice) report.add("people_twice", *power->twice);
   report.add(

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <utility>
 
 #include "analysis/experiment/study_answers.hpp"
 #include "analysis/experiment/withdrawal.hpp"
+#include "data-schema/experiment/trials_table.hpp"
 #include "data-schema/version.hpp"
 
 namespace tacto::analysis {
@@ -17,51 +17,6 @@ namespace tacto::analysis {
 using schema::Result;
 
 namespace {
-
-struct Column {
-  const char *name, *description, *units;
-};
-
-// Those of trials_table(), of each task, and what is added to them.
-constexpr Column kColumns[] = {
-    {"attempt", "number of the attempt in the run; what was not delivered comes again", ""},
-    {"trial", "code of the stretched stimulus, the comparison or the standard, and number of its repetition",
-     ""},
-    {"block", "number of the block of trials", ""},
-    {"condition", "whether the comparisons were real samples or played (virtual)", ""},
-    {"sample", "name of the real sample beside which a texture was played", ""},
-    {"presented", "name of the comparison, or of the texture that was played", ""},
-    {"answer_choice", "number of the standard that was answered, or 1: same, 2: different", ""},
-    {"correct", "1: the answer is the comparison, or right about the sample, else 0", ""},
-    {"explorations", "number of textures that were explored, each of them once or more", ""},
-    {"order", "names of the textures in the order of the answer, from least to most", ""},
-    {"series", "ascending: the setting began at a low gain; descending: at a high one", ""},
-    {"start_ratio", "gain at its beginning over that of the protocol", "1"},
-    {"accepted_ratio", "the same of the gain that was accepted, the last one of the session", "1"},
-    {"bound", "lower or upper: the accepted gain is the end of the range, and so a bound", ""},
-    {"nominal_ratio", "gain of the trial over that at which the displacement is the real sample's", "1"},
-    {"predicted_ratio", "the same of the displacement that the transducer's model predicts", "1"},
-    {"measured_ratio", "the same of the displacement that the tray's sensor measured", "1"},
-    {"rating", "from -3, much weaker than the real sample, to 3, much stronger", ""},
-    {"standard_interval", "interval in which the standard was played, 1 or 2", ""},
-    {"nominal_stretch", "period of the stretched stimulus over that of the standard, minus 1", "1"},
-    {"predicted_stretch", "the same of the displacement that the transducer's model predicts", "1"},
-    {"measured_stretch", "the same of the displacement that the tray's sensor measured", "1"},
-    {"predicted_error_db", "RMS of predicted displacement - target of the worst stroke, re the target", "dB"},
-    {"measured_error_db", "the same of the displacement that the tray's sensor measured", "dB"},
-    {"force_within",
-     "share of the time with a normal force within the protocol's range, of the interval with the smallest "
-     "share; unknown: the device does not report it. No session records it",
-     "1"},
-    {"answer_interval", "interval whose stimulus seemed to have the smaller period, 1 or 2", ""},
-    {"answer", "the answer in the protocol's word; of an order the codes", ""},
-    {"answer_s", "time from the question to the answer; 0 of an observer or a file", "s"},
-    {"delivered",
-     "whether the session proves that the intervals kept the protocol's limits; unknown of real samples", ""},
-    {"why", "reasons why an attempt was not delivered, or has no answer", ""},
-    {"simulated", "simulated observer that answered", ""},
-    {"seemed_longer", "1: the stretched stimulus seemed to have the longer period, else 0", ""},
-};
 
 bool is_two_interval(const schema::Protocol& protocol) {
   return protocol.task == schema::Task::two_interval;
@@ -179,10 +134,9 @@ std::string task_label(const std::string& study) {
 std::string sidecar(const std::string& task, const std::vector<std::string>& names) {
   std::string text = "{\n  \"TaskName\": " + json_text(task);
   for (const std::string& name : names) {
-    const Column& column = *std::ranges::find(kColumns, name, &Column::name);
-    text +=
-        fmt::format(",\n  {}: {{\"Description\": {}", json_text(column.name), json_text(column.description));
-    if (*column.units != '\0') text += fmt::format(", \"Units\": {}", json_text(column.units));
+    const auto [description, units] = schema::trials_column(name);
+    text += fmt::format(",\n  {}: {{\"Description\": {}", json_text(name), json_text(description));
+    if (!units.empty()) text += fmt::format(", \"Units\": {}", json_text(units));
     text += "}";
   }
   return text + "\n}\n";

@@ -493,34 +493,54 @@ LevelRange range_of(const std::vector<double>& x) {
   return range;
 }
 
-// Whether F is 0 or 1 at all levels: then any smaller spread fits as well.
+double nearest_place(const PsychometricLikelihood& likelihood, double centre) {
+  return *std::ranges::min_element(likelihood.places(), {}, [&](double x) { return std::abs(x - centre); });
+}
+
+// Whether a smaller spread fits as well: F is 0 or 1 at all levels, or at all but the nearest one, at which
+// it stays the same.
 bool is_step(const PsychometricLikelihood& likelihood, const PsychometricPeak& peak) {
+  constexpr double kSmaller = 0.25, kRounding = 1e-9;
+  const bool fixed = likelihood.options().threshold.has_value();
+  const double centre =
+      fixed ? peak.centre : std::lerp(nearest_place(likelihood, peak.centre), peak.centre, kSmaller);
+  const auto tails = likelihood.tails(centre, kSmaller * std::exp(peak.log_spread));
+  return likelihood.at(tails, peak.lapse, peak.eta) >= peak.value - kRounding;
+}
+
+// Precondition: a step, without a fixed threshold.
+tl::unexpected<schema::Error> step_error(const std::vector<LevelCount>& levels,
+                                         const PsychometricLikelihood& likelihood,
+                                         const PsychometricPeak& peak) {
   constexpr double kNone = 1e-3;
-  const auto tails = likelihood.tails(peak.centre, std::exp(peak.log_spread));
-  return std::ranges::all_of(tails,
-                             [](const auto& each) { return std::min(each.first, each.second) < kNone; });
+  const Shape shape = likelihood.options().shape;
+  const double nearest = nearest_place(likelihood, peak.centre);
+  const auto [below, above] = standard_function(shape, (nearest - peak.centre) / std::exp(peak.log_spread));
+  if (std::min(below, above) >= kNone)
+    return fail(ErrorKind::unsuitable,
+                fmt::format("both answers occur at {:g} only: this bounds the JND", level_of(shape, nearest)),
+                {}, "a bound is no estimate: measure at levels near this one");
+  auto next = std::ranges::upper_bound(levels, level_of(shape, peak.centre), {}, &LevelCount::level);
+  next = std::clamp(next, levels.begin() + 1, levels.end() - 1);
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format("the answers change at once between {:g} and {:g}: this bounds the threshold and the JND",
+                  (next - 1)->level, next->level),
+      {}, "a bound is no estimate: measure at levels between these two");
 }
 
 double width_of(const PsychometricOptions& options) {
   return standard_quantile(options.shape, 0.95) - standard_quantile(options.shape, 0.05);
 }
 
-// Answers that give only a bound: a step between two neighbours, or a peak outside the priors.
+// Answers that give only a bound: a step, or a peak outside the priors.
 Result<void> check_peak(const std::vector<LevelCount>& levels, const PsychometricLikelihood& likelihood,
                         const LevelRange& range, const PsychometricPeak& peak) {
   const PsychometricOptions& options = likelihood.options();
   const double threshold = level_of(options.shape, peak.centre);
-  if (is_step(likelihood, peak) && options.threshold)
-    return fail(ErrorKind::unsuitable, kBoundOfJnd, {}, kMeasureNear);
   if (is_step(likelihood, peak)) {
-    auto above = std::ranges::upper_bound(levels, threshold, {}, &LevelCount::level);
-    above = std::clamp(above, levels.begin() + 1, levels.end() - 1);
-    return fail(
-        ErrorKind::unsuitable,
-        fmt::format("the answers change at once between {:g} and {:g}: this bounds the threshold and the "
-                    "JND",
-                    (above - 1)->level, above->level),
-        {}, "a bound is no estimate: measure at levels between these two");
+    if (options.threshold) return fail(ErrorKind::unsuitable, kBoundOfJnd, {}, kMeasureNear);
+    return step_error(levels, likelihood, peak);
   }
   if (width_of(options) * std::exp(peak.log_spread) > 3 * range.range())
     return fail(ErrorKind::unsuitable, "the answers depend too little on the level to estimate a threshold",

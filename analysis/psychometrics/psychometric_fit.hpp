@@ -51,12 +51,13 @@ struct PsychometricFit {
 /// Beta(1, 10). Intervals: quantiles of the marginal posterior, with the priors of threshold and width of
 /// Schuett, Harmeling, Macke, Wichmann 2016 (Vision Research 122): flat in the range that the levels can
 /// show, zero beyond it. Overdispersed answers are beta-binomial. Errors: unsuitable: fewer than two levels,
-/// answers all alike (a bound), a step between two levels (a bound), answers that don't rise with the level,
-/// a level that is not above 0 for Weibull. With a fixed threshold (not of a Weibull function)
-/// an answer is right if it is 'yes' above it or not below it, errors are: all answers right but lapses, or
-/// no more than half of them; and the priors refer to the levels and their mirror images at the threshold.
-/// Precondition: 0 <= yes <= trials, trials > 0, 0 <= guess < 1, 0
-/// <= lapse < (1 - guess) / 2. Pure; takes milliseconds, overdispersed about a second.
+/// answers all alike (a bound), a step between two levels or at one, the only one at which both answers occur
+/// (a bound: the smaller the spread, the better it fits), answers that don't rise with the level, a level
+/// that is not above 0 for Weibull. With a fixed threshold (not of a Weibull function) an answer is right if
+/// it is 'yes' above it or not below it, errors are: all answers right but lapses, or no more than half of
+/// them; and the priors refer to the levels and their mirror images at the threshold. Precondition: 0 <= yes
+/// <= trials, trials > 0, 0 <= guess < 1, 0 <= lapse < (1 - guess) / 2. Pure; takes milliseconds,
+/// overdispersed about a second.
 schema::Result<PsychometricFit> fit_psychometric(std::vector<LevelCount> levels,
                                                  const PsychometricOptions& options);
 

@@ -14,6 +14,7 @@ import numpy as np
 import scipy.signal
 import scipy.stats
 
+import experiment_files
 import tacto
 from person import Person
 
@@ -244,6 +245,7 @@ def study():
     a_person_is_told_of_an_early_setting()
     a_person_uses_the_arrow_keys()
     other_verbs()
+    experiment_files.keep_to_their_schemas("delivered", "resumed")
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ import time
 import numpy as np
 import scipy.stats
 
+import experiment_files
 import tacto
 
 TRIALS, MATCH = 30, 0.86
@@ -159,6 +160,7 @@ def study():
     a_killed_run_is_resumed()
     ratings_of_one_kind_are_a_bound()
     other_verbs()
+    experiment_files.keep_to_their_schemas("delivered", "resumed")
 
 
 if __name__ == "__main__":

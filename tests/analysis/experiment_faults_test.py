@@ -9,6 +9,7 @@ import signal
 import subprocess
 import time
 
+import experiment_files
 import tacto
 from experiment_study_test import journal, new_study, table
 
@@ -112,6 +113,7 @@ def runs():
     lost_ticks_come_again()
     what_the_limits_remove_is_not_delivered()
     what_the_tray_s_sensor_measures_is_in_the_table()
+    experiment_files.keep_to_their_schemas("delivered", "resumed")
 
 
 if __name__ == "__main__":

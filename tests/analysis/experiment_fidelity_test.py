@@ -10,6 +10,7 @@ import pathlib
 import numpy as np
 import scipy.stats
 
+import experiment_files
 import tacto
 
 RUN = ["experiment", "run", "bench", "-d", "sim:"]
@@ -128,6 +129,7 @@ def study():
     the_answers_are_compared()
     the_operator_places_each_sample_once()
     other_verbs()
+    experiment_files.keep_to_their_schemas("delivered", "placed")
 
 
 if __name__ == "__main__":

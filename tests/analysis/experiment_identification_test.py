@@ -11,6 +11,7 @@ import subprocess
 
 import numpy as np
 
+import experiment_files
 import tacto
 from person import Person
 
@@ -279,6 +280,7 @@ def study():
     a_block_ends_after_its_time()
     what_is_never_delivered_is_abandoned()
     a_gain_beyond_the_transducer_is_refused_at_once()
+    experiment_files.keep_to_their_schemas("delivered", "placed", "resumed", "block_over")
 
 
 if __name__ == "__main__":

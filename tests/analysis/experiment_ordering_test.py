@@ -15,6 +15,7 @@ import time
 import numpy as np
 import scipy.stats
 
+import experiment_files
 import tacto
 from person import Person
 
@@ -235,6 +236,7 @@ def study():
     ranks_are_compared()
     progress_is_watched()
     other_verbs()
+    experiment_files.keep_to_their_schemas("delivered", "explored", "resumed")
 
 
 if __name__ == "__main__":

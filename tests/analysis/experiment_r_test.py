@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The script of `experiment export` in R: the answers of real people (with the figures of lme4), and those of a study."""
+"""The script of `experiment export` in R: the answers of real people (with the figures of lme4), and those of a study. R's glm against `experiment fit`."""
 import csv
 import io
 import os
@@ -31,6 +31,31 @@ def a_staircase_has_no_pse():
     table.write_text(whole)
 
 
+# The probit fit of each person and condition, iterated until the deviance changes by less than 1e-14.
+GLM = """
+answers <- read.csv(commandArgs(trailingOnly = TRUE)[1])
+for (each in split(answers, list(answers$participant, answers$vibration_hz))) {
+  b <- coef(glm(cbind(faster, slower) ~ speed_cm_per_s, family = binomial(link = probit), data = each,
+                control = glm.control(epsilon = 1e-14, maxit = 100)))
+  cat(sprintf("%s,%s,%.15g,%.15g\n", each$participant[1], each$vibration_hz[1], -b[1] / b[2], qnorm(0.75) / b[2]))
+}
+"""
+
+
+def probit_fits_of_real_people_are_those_of_glm():
+    if not SPEEDS.exists():
+        print("skipped: no real data")
+        return
+    pathlib.Path("glm.R").write_text(GLM)
+    done = subprocess.run(["Rscript", "glm.R", str(SPEEDS)], capture_output=True, text=True, check=True, timeout=600)
+    expected = {(person, vibration): (float(pse), float(jnd)) for person, vibration, pse, jnd in csv.reader(io.StringIO(done.stdout))}
+    fits = tacto.run_json("experiment", "fit", SPEEDS, "--by", "participant,vibration_hz", "--lapse", "0%")["fits"]
+    assert len(fits) == len(expected) == 18, (fits, expected)
+    for fit in fits:
+        pse, jnd = expected[fit["participant"], fit["vibration_hz"]]
+        assert abs(fit["pse"] / pse - 1) < 1e-6 and abs(fit["jnd"] / jnd - 1) < 1e-6, (fit, pse, jnd)
+
+
 def the_exported_script_runs():
     tacto.run("experiment", "new", "stretch", "-o", "stretch", "--seed", "lab-7")
     for participant in ("P01", "P02"):
@@ -52,4 +77,5 @@ if __name__ == "__main__":
     if shutil.which("Rscript") is None or subprocess.run(["Rscript", "-e", "library(lme4)"], capture_output=True).returncode != 0:
         print("skipped: no R with lme4")
     else:
-        tacto.in_folder(the_exported_script_runs)
+        for test in (probit_fits_of_real_people_are_those_of_glm, the_exported_script_runs):
+            tacto.in_folder(test)

@@ -11,6 +11,7 @@ import random
 import shutil
 import subprocess
 
+import experiment_files
 import tacto
 
 OBSERVER = "weber=25.3%,lapse=2%,hurry=20%,seed=1"
@@ -365,6 +366,7 @@ def study():
     levels_follow_the_answers()
     participants_are_planned()
     a_participant_withdraws()
+    experiment_files.keep_to_their_schemas("delivered", "resumed")
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ import re
 import numpy as np
 import soundfile
 
+import experiment_files
 import tacto
 from person import Person
 
@@ -221,6 +222,7 @@ def study():
     the_screen_shows_how_to_move()
     the_screen_says_how_the_finger_presses()
     a_missing_or_unknown_text_is_one_error()
+    experiment_files.keep_to_their_schemas("delivered", "resumed", "break")
 
 
 if __name__ == "__main__":

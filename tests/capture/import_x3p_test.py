@@ -1,54 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`import` of X3P files (ISO 25178-72) that Python's zipfile and struct write: the heights of each type, holes, checksums, cuts and damage."""
+"""`import` of X3P files (ISO 25178-72) that Python's zipfile writes (tests/fuzz/x3p_maker.py): the heights of each type, holes, checksums, cuts and damage."""
 import hashlib
-import io
 import json
 import pathlib
 import random
 import re
+import sys
 import zipfile
 
 import netCDF4
 import numpy as np
 import tacto
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "fuzz"))
+from x3p_maker import COLUMNS, PITCH_X_M, PITCH_Y_M, ROWS, main_xml, x3p
+
 USAGE, NOT_FOUND, MALFORMED, UNSUITABLE = 2, 3, 4, 5
 TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
-COLUMNS, ROWS = 40, 30
-PITCH_X_M, PITCH_Y_M = 2e-6, 3e-6
-
-
-def main_xml(letter, points, mask=None, feature="SUR", sizes=(COLUMNS, ROWS, 1), scale=1e-9, offset=5e-7, sums=True, axis="I", link=True):
-    data = "<PointDataLink>bindata/data.bin</PointDataLink>" if link else ""
-    if sums:
-        data += f"<MD5ChecksumPointData>{hashlib.md5(points).hexdigest().upper()}</MD5ChecksumPointData>"
-    if mask is not None:
-        data += f"<ValidPointsLink>bindata/valid.bin</ValidPointsLink><MD5ChecksumValidPoints>{hashlib.md5(mask).hexdigest()}</MD5ChecksumValidPoints>"
-    size = "".join(f"<Size{name}>{value}</Size{name}>" for name, value in zip("XYZ", sizes))
-    return f"""<?xml version="1.0" encoding="UTF-8"?>
-<p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2">
-<Record1><Revision>ISO5436 - 2000</Revision><FeatureType>{feature}</FeatureType><Axes>
-<CX><AxisType>{axis}</AxisType><DataType>D</DataType><Increment>{PITCH_X_M}</Increment><Offset>1e-3</Offset></CX>
-<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>{PITCH_Y_M}</Increment><Offset>0</Offset></CY>
-<CZ><AxisType>A</AxisType><DataType>{letter}</DataType><Increment>{scale}</Increment><Offset>{offset}</Offset></CZ></Axes></Record1>
-<Record2><Date>2026-11-29T12:00:00</Date><Creator>tester</Creator><Instrument><Manufacturer>M</Manufacturer><Model>T-1</Model></Instrument></Record2>
-<Record3><MatrixDimension>{size}</MatrixDimension><DataLink>{data}</DataLink></Record3>
-<Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4></p:ISO5436_2>""".encode()
-
-
-def x3p(xml, points, mask=None, folder="", more=(), sums=True, packing=zipfile.ZIP_DEFLATED):
-    file = io.BytesIO()
-    with zipfile.ZipFile(file, "w", packing) as archive:
-        for name, content in more:
-            archive.writestr(name, content)
-        archive.writestr(folder + "bindata/data.bin", points)
-        if mask is not None:
-            archive.writestr(folder + "bindata/valid.bin", mask)
-        archive.writestr(folder + "main.xml", xml)
-        if sums:
-            archive.writestr(folder + "md5checksum.hex", f"{hashlib.md5(xml).hexdigest()} *main.xml\n")
-    return file.getvalue()
 
 
 def imported(content, *more, code=0):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`import` of XDF files that Python's struct writes (tests/fuzz/xdf_maker.py): numbers to the bit, rates and gaps as made, cuts never silently short.
 
-A second reader, read_with_numpy(), follows the specification on its own and shares no code with the maker.
+A second reader, read_with_numpy(), follows the specification on its own and shares no code with the maker. A third one is Debian's libxdf.
 """
 import json
 import pathlib
@@ -21,6 +21,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "fuzz"))
 from xdf_maker import boundary, chunk, clock_offset, file_header, footer, header, samples, texts
 
 USAGE, MALFORMED, UNSUITABLE = 2, 4, 5
+LIBXDF_SAMPLES = sys.argv[1]  # a program of this build
 ROWS = 3000
 FORMATS = {"int8": "<i1", "int16": "<i2", "int32": "<i4", "int64": "<i8", "float32": "<f4", "double64": "<f8"}
 
@@ -95,6 +96,43 @@ def counts_above_2_24_and_beyond_2_53():
     data = file_header() + header(1, "Encoder", 2, 1000, "int64") + samples(1, both, np.arange(ROWS) / 1000) + footer(1, ROWS)
     imported(data, channel="position=ch2*1um")  # a channel that is not requested blocks nothing
     assert np.array_equal(stored("x")[:, 0], np.arange(ROWS))
+
+
+def read_with_libxdf(stream, channels):
+    """Times and numbers (float32) of a stream of trial.xdf."""
+    tacto.subprocess.run([LIBXDF_SAMPLES, "trial.xdf", stream, "samples"], check=True, capture_output=True)
+    content = pathlib.Path("samples").read_bytes()
+    rows = len(content) // (8 + 4 * channels)
+    return np.frombuffer(content, "<f8", rows), np.frombuffer(content, "<f4", offset=8 * rows).reshape(channels, rows).T
+
+
+def libxdf_reads_the_same_numbers_up_to_2_24():
+    rng = np.random.default_rng(8)
+    for kind, dtype in FORMATS.items():
+        values = rng.normal(size=(ROWS, 2)).astype(dtype)
+        if kind.startswith("int"):
+            limit = min(2**24, 2**(8 * np.dtype(dtype).itemsize - 1) - 1)
+            values = rng.integers(-limit, limit, (ROWS, 2), endpoint=True).astype(dtype)
+            values[0] = [limit, -limit]
+        data = file_header() + header(7, "F", 2, 1000, kind) + samples(7, values, 100 + np.arange(ROWS) / 1000, every=250) + footer(7, ROWS)
+        told = imported(data, "--channel", "b:signal=ch2")
+        times_s, numbers = read_with_libxdf("F", 2)
+        ours = stored("x")
+        assert np.array_equal(ours.astype("<f4") if kind == "double64" else ours, numbers), kind
+        # Stamps of 100 s are rounded by 1.4e-14 s, and libxdf adds up 249 periods.
+        assert abs(1 / np.mean(np.diff(times_s)) - told["sample_rate_hz"]) < 1e-6, kind
+    values = rng.normal(size=(ROWS, 2)).astype("<f4")
+    imported(many_streams(values), "--stream", "Force", channel="normal_force=Fz")
+    assert np.array_equal(stored("x")[:, 0], read_with_libxdf("Force", 2)[1][:, 1])
+
+
+def counts_that_libxdf_rounds_are_kept():
+    counts = 20_000_001 + 2 * np.arange(ROWS, dtype="<i4").reshape(-1, 1)
+    imported(file_header() + header(1, "Encoder", 1, 1000, "int32", [("count", "")]) + samples(1, counts, np.arange(ROWS) / 1000) + footer(1, ROWS),
+             channel="position=count*1um")
+    rounded = read_with_libxdf("Encoder", 1)[1]
+    assert rounded[0, 0] == 20_000_000 and not np.any(rounded.astype(float) == counts)  # a float above 2^24 is even
+    assert np.array_equal(stored("x"), counts)
 
 
 def many_streams(values):
@@ -374,7 +412,8 @@ def damaged_files_are_refused():
 
 
 if __name__ == "__main__":
-    for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, streams_are_listed_and_chosen, gaps_are_kept, times_that_are_not_stated_do_not_add_up_rounding, a_pause_of_any_length_is_a_gap, a_jump_beyond_any_file_is_refused, what_a_remedy_names_can_be_typed,
+    for test in (each_type_is_exact, counts_above_2_24_and_beyond_2_53, libxdf_reads_the_same_numbers_up_to_2_24, counts_that_libxdf_rounds_are_kept,
+                 streams_are_listed_and_chosen, gaps_are_kept, times_that_are_not_stated_do_not_add_up_rounding, a_pause_of_any_length_is_a_gap, a_jump_beyond_any_file_is_refused, what_a_remedy_names_can_be_typed,
                  the_error_of_a_file_is_not_hidden_without_an_output, a_rate_that_no_wav_stores_is_named, scattered_times_are_fitted,
                  clock_offsets_give_the_recorders_rate, wrong_offsets_change_no_rate_and_noise_is_no_drift, a_reset_clock_is_refused_with_its_time,
                  markers_become_marks_by_the_recorders_clock, marks_beside_gaps_and_outside, damaged_markers_are_refused,

@@ -70,6 +70,25 @@ def write_xdfs():
     write("xdf", "int64", begin + xdf.samples(1, 2**53 - 3 + np.arange(6, dtype="<i8").reshape(6, 1), np.arange(6) / 1000, every=1) + end)
 
 
+def write_x3ps():
+    import re
+    import numpy as np
+    import x3p_maker
+
+    def parts(xml, points, mask=None):
+        mask = mask or b""
+        return b"\1" + re.sub(rb"<(MD5\w+|Record4)>.*?</\1>", b"", xml) + b"\0" + bytes([len(mask)]) + mask + points
+
+    for letter, kind in (("I", "<i2"), ("L", "<i4"), ("F", "<f4"), ("D", "<f8")):
+        points = np.arange(12).astype(kind).tobytes()
+        mask = b"\xff\x0e" if letter in "IL" else None
+        xml = x3p_maker.main_xml(letter, points, mask, sizes=(4, 3, 1))
+        write("x3p", f"archive_{letter}", b"\0" + x3p_maker.x3p(xml, points, mask, folder="a/" if letter == "D" else ""))
+        write("x3p", f"parts_{letter}", parts(xml, points, mask))
+    points = np.arange(5.0).tobytes()
+    write("x3p", "parts_profile", parts(x3p_maker.main_xml("D", points, feature="PRF", sizes=(5, 1, 1)), points))
+
+
 def write_tables():
     rows = [(i / 1000, 0.1 * (i % 5), 40 * i) for i in range(40)]
     lines = "".join(f"{t},{force},{count}\n" for t, force, count in rows)
@@ -99,5 +118,6 @@ if __name__ == "__main__":
     write_mats()
     write_xdfs()
     write_nrrds()
+    write_x3ps()
     write_tables()
     write_sidecars(str(pathlib.Path(sys.argv[1]).resolve()))
