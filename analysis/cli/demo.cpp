@@ -5,10 +5,12 @@
 #include <memory>
 #include <sstream>
 
+#include "analysis/cli/stopped.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/page/html.hpp"
 #include "analysis/page/picture_svg.hpp"
 #include "capture/cli/verbs.hpp"
+#include "data-schema/command/stop_signals.hpp"
 #include "data-schema/files/files.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/report/terminal.hpp"
@@ -88,6 +90,8 @@ Result<RunCommand> run_of(const DemoCommand& command, const std::string& stem,
   RunCommand run{fmt::format("tactograph {}", command.verb->name), {}};
   for (const std::string& word : words) run.line += " " + cli::shell_word(word);
   const auto report = cli::run_verb(*command.verb, words);
+  if (cli::StopSignals::stop_asked())
+    end_as_stopped();  // a recording that was cut short is no error of 'record'
   TACTO_TRY(report);
   run.printed = report->for_people();
   return run;

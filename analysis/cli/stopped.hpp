@@ -11,7 +11,7 @@ namespace tacto::analysis {
 /// Ends the process by SIGINT, so that a shell sees the signal and not an exit code. Call it after everything
 /// that the work used is released and no StopSignals object exists.
 inline void end_as_stopped() {
-  cli::write_message("tactograph: stopped before the end; nothing is written\n");
+  cli::write_message("tactograph: stopped before the end; no result is written\n");
   std::signal(SIGINT, SIG_DFL);
   std::raise(SIGINT);
 }

@@ -83,7 +83,7 @@ class Search {
     if (pattern.names.empty())
       take(schema::is_file(text + ".json") ? text + ".json" : text);
     else
-      TACTO_TRY(walk(pattern, text));
+      TACTO_TRY(walk(pattern));
     if (found_.size() + known_ > before) return {};
     return schema::fail(ErrorKind::not_found, "names no recording", text,
                         "quote a pattern, for example 'raw/**/*.json'");
@@ -92,12 +92,14 @@ class Search {
   FoundRecordings result() && { return {{found_.begin(), found_.end()}, others_}; }
 
  private:
-  Result<void> walk(const Pattern& pattern, const std::string& text) {
+  Result<void> walk(const Pattern& pattern) {
     const fs::path from = pattern.folder.empty() ? "." : pattern.folder;
     const bool any_depth = std::ranges::find(pattern.names, kAnyFolders) != pattern.names.end();
     std::error_code failed;
+    fs::path folder = from;  // the one that is entered next
     for (fs::recursive_directory_iterator at(from, failed), end; !failed && at != end; at.increment(failed)) {
-      const fs::path below = at->path().lexically_relative(from);
+      folder = at->path();
+      const fs::path below = folder.lexically_relative(from);
       const std::vector<std::string> names(below.begin(), below.end());
       std::error_code ignored;
       if (at->is_directory(ignored)) {
@@ -108,8 +110,8 @@ class Search {
       }
     }
     if (failed)
-      return schema::fail(ErrorKind::not_found, from.string() + " cannot be listed: " + failed.message(),
-                          text);
+      return schema::fail(ErrorKind::not_found, "the folder cannot be read: " + failed.message(),
+                          folder.string(), "check its name and its permissions");
     return {};
   }
 

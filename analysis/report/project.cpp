@@ -17,31 +17,6 @@ namespace fs = std::filesystem;
 using schema::ErrorKind;
 using schema::Result;
 
-bool hidden(const fs::path& path) {
-  return path.filename().string().starts_with(".");
-}
-
-// All entries below the folder except folders, sorted by name.
-Result<std::vector<std::string>> files_below(const std::string& folder, const std::string& leave_out) {
-  std::error_code failure, ignored;
-  fs::recursive_directory_iterator at(folder, failure);
-  if (failure)
-    return schema::fail(ErrorKind::not_found, "the folder can't be read: " + failure.message(), folder,
-                        "name the folder that holds the project's files");
-  std::vector<std::string> files;
-  for (; at != fs::recursive_directory_iterator(); at.increment(failure)) {
-    if (failure) break;
-    if (hidden(at->path())) {
-      at.disable_recursion_pending();
-      continue;
-    }
-    const bool left_out = !leave_out.empty() && fs::equivalent(at->path(), leave_out, ignored);
-    if (!at->is_directory(ignored) && !left_out) files.push_back(at->path().string());
-  }
-  std::ranges::sort(files);
-  return files;
-}
-
 // Whether the path contains the samples of a readable file, or is a WAV beside an unusable sidecar.
 bool is_sidecars_wav(const std::string& path, const Project& project) {
   const auto names = [&](const ProjectFile& file) { return file.data == path; };
@@ -96,14 +71,20 @@ void add_file(const std::string& path, Project& project, const std::function<voi
 
 Result<Project> read_project(const std::string& folder, const std::string& leave_out,
                              const std::function<void(double)>& progress) {
-  const auto paths = files_below(folder, leave_out);
-  TACTO_TRY(paths);
+  auto below = schema::files_below(folder);
+  TACTO_TRY(below);
+  auto& paths = below->files;
+  std::error_code ignored;
+  std::erase_if(paths, [&](const std::string& path) {
+    return !leave_out.empty() && fs::equivalent(path, leave_out, ignored);
+  });
   Project project;
   project.folder = folder;
-  const auto files = static_cast<double>(paths->size());
-  for (std::size_t i = 0; i < paths->size(); ++i) {
+  for (schema::Error& closed : below->unreadable) project.broken.push_back({closed.where, std::move(closed)});
+  const auto files = static_cast<double>(paths.size());
+  for (std::size_t i = 0; i < paths.size(); ++i) {
     const double from = static_cast<double>(i) / files, to = static_cast<double>(i + 1) / files;
-    add_file((*paths)[i], project, playback::part_of(progress, from, to));
+    add_file(paths[i], project, playback::part_of(progress, from, to));
     if (progress) progress(to);
   }
   if (project.files.empty() && project.broken.empty())

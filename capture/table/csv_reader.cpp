@@ -86,7 +86,14 @@ Result<void> CsvReader::feed(std::string_view piece) {
 }
 
 Result<void> CsvReader::finish() {
-  if (!incomplete_line_.empty() && !take_line(incomplete_line_)) return tl::unexpected(*error_);
+  if (!incomplete_line_.empty() && !take_line(incomplete_line_)) {
+    if (rows_ > 0)
+      error_->remedy = fmt::format(
+          "the file ends in this line, as one that was cut short does: delete the line to import the {} rows "
+          "before it",
+          rows_);
+    return tl::unexpected(*error_);
+  }
   incomplete_line_.clear();
   if (rows_ == 0) return schema::fail(ErrorKind::malformed, "contains no row of numbers", file_);
   return {};

@@ -69,20 +69,12 @@ bool is_ours(const std::string& path) {
 
 // All files in it and in the folders below, except hidden ones. WAVs are checked with their sidecars.
 Result<void> check_folder(const std::string& folder, Outcome& outcome) {
-  namespace fs = std::filesystem;
-  std::vector<std::string> paths;
-  std::error_code failed, ignored;
-  fs::recursive_directory_iterator at(folder, failed);
-  for (; !failed && at != fs::recursive_directory_iterator(); at.increment(failed)) {
-    if (at->path().filename().string().starts_with("."))
-      at.disable_recursion_pending();
-    else if (at->is_regular_file(ignored))
-      paths.push_back(at->path().string());
-  }
-  if (failed) return fail(ErrorKind::not_found, "the folder cannot be read: " + failed.message(), folder);
-  std::ranges::sort(paths);
+  const auto below = files_below(folder);
+  TACTO_TRY(below);
   const std::size_t before = outcome.files.size();
-  for (const std::string& path : paths) {
+  for (const Error& closed : below->unreadable) put_unreadable(closed.where, closed, outcome);
+  for (const std::string& path : below->files) {
+    if (!is_file(path)) continue;
     if (is_ours(path))
       check_name(name_to_check(path), outcome);
     else if (!path.ends_with(".wav") || !is_file(path.substr(0, path.size() - 4) + ".json"))

@@ -35,7 +35,7 @@ StopSignals::~StopSignals() {
   for (std::size_t i = 0; i < std::size(kSignals); ++i) sigaction(kSignals[i], &before_[i], nullptr);
 }
 
-bool StopSignals::stop_asked() const {
+bool StopSignals::stop_asked() {
   return stop_is_asked;
 }
 

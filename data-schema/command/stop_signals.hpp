@@ -17,7 +17,8 @@ class StopSignals {
   StopSignals& operator=(const StopSignals&) = delete;
   ~StopSignals();
 
-  bool stop_asked() const;
+  /// Also after the object, until the next one.
+  static bool stop_asked();
   /// Marks asked for since the last call.
   std::size_t take_marks();
 

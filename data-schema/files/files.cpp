@@ -151,6 +151,28 @@ bool same_file(const std::string& a, const std::string& b) {
   return canonical_path(a) == canonical_path(b);
 }
 
+Result<FilesBelow> files_below(const std::string& folder) {
+  const auto closed = [](const std::string& path, const std::error_code& why) {
+    return Error{ErrorKind::not_found, "the folder cannot be read: " + why.message(), path,
+                 "check its name and its permissions"};
+  };
+  FilesBelow below;
+  std::error_code failed, ignored;
+  fs::recursive_directory_iterator at(folder, failed);
+  for (; !failed && at != fs::recursive_directory_iterator(); at.increment(failed)) {
+    const bool hidden = at->path().filename().string().starts_with(".");
+    if (!hidden && !at->is_directory(ignored)) below.files.push_back(at->path().string());
+    std::error_code refused;  // otherwise the iteration would end there, without the rest
+    if (!hidden && at->is_directory(ignored) && !at->is_symlink(ignored))
+      fs::directory_iterator(at->path(), refused);
+    if (refused) below.unreadable.push_back(closed(at->path().string(), refused));
+    if (hidden || refused) at.disable_recursion_pending();
+  }
+  if (failed) return tl::unexpected(closed(folder, failed));
+  std::ranges::sort(below.files);
+  return below;
+}
+
 bool is_file(const std::string& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored);

@@ -21,6 +21,16 @@ Result<void> check_readable(const std::string& path);
 /// Whether `path` names a file (not a folder).
 bool is_file(const std::string& path);
 
+/// What is in a folder and in those below it.
+struct FilesBelow {
+  std::vector<std::string> files;  ///< all but folders, sorted by path
+  std::vector<Error> unreadable;   ///< folders below it whose files are not in `files`
+};
+
+/// Lists a folder and those below it, except hidden names; links to folders are not followed. Errors:
+/// not_found, if the folder itself cannot be read.
+Result<FilesBelow> files_below(const std::string& folder);
+
 /// The path without links and "..", as far as its folders exist: one for all spellings of a file.
 std::string canonical_path(const std::string& path);
 

@@ -131,9 +131,12 @@ Result<std::vector<StoredFile>> stored_files(const std::string& name) {
   if (is_file(name + ".events.jsonl"))
     return fail(ErrorKind::unsuitable, "is not closed, or is still being recorded", name,
                 fmt::format("'tactograph recover {}' makes a recording of the existing files", name));
-  std::error_code ignored;
-  if (std::filesystem::is_directory(name, ignored))
+  std::error_code why;
+  if (std::filesystem::is_directory(name, why))
     return fail(ErrorKind::not_found, "is a folder, not a file", name, "name a file in it");
+  if (why == std::errc::permission_denied)
+    return fail(ErrorKind::not_found, "cannot be read: " + why.message(), name,
+                "check its folder's permissions");
   return fail(ErrorKind::not_found, "there is no such file", name,
               "give the full name of a file, or its stem");
 }

@@ -33,6 +33,9 @@ schema::Result<FingerPath> read_finger_path(const std::string& file);
 /// The same for a text in memory; errors give `name` as the file.
 schema::Result<FingerPath> parse_finger_path(std::string_view text, const std::string& name);
 
+/// Whether the first line of a table names a column of this quantity, with any unit and separator.
+bool has_column(std::string_view text, const std::string& quantity);
+
 /// Reads the path of a hand on a device: the columns `time` and one of each axis's name, one path per axis,
 /// all with the same times. Format and errors as above.
 schema::Result<std::vector<FingerPath>> read_axis_paths(const std::string& file,

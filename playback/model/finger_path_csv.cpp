@@ -95,12 +95,14 @@ std::string plain_name(std::string name) {
   return name;
 }
 
+bool is_of(std::string_view column, const std::string& quantity) {
+  return plain_name(schema::split_unit(column).name) == quantity;
+}
+
 // The column of a quantity and its unit: "position_mm", "Position (mm)" or "position / mm".
 Result<void> find_column(Table& table, std::size_t which) {
   const auto& [quantity, dimension] = table.columns.all[which];
-  const auto is_it = [&](std::string_view name) {
-    return plain_name(schema::split_unit(name).name) == quantity;
-  };
+  const auto is_it = [&quantity = quantity](std::string_view name) { return is_of(name, quantity); };
   const auto found = std::ranges::find_if(table.header, is_it);
   const std::string line = table.name + ", line 1";
   table.column.emplace_back();
@@ -196,6 +198,13 @@ Result<FingerPath> read_finger_path(const std::string& file) {
   const auto text = schema::read_file(file);
   TACTO_TRY(text);
   return parse_finger_path(*text, file);
+}
+
+bool has_column(std::string_view text, const std::string& quantity) {
+  const auto lines = lines_of(text);
+  if (lines.empty()) return false;
+  const auto header = split(lines.front(), separator_of(lines.front()));
+  return std::ranges::any_of(header, [&](std::string_view column) { return is_of(column, quantity); });
 }
 
 Result<std::vector<FingerPath>> read_axis_paths(const std::string& file,

@@ -113,9 +113,7 @@ std::vector<std::string> plane_axes_of(const Device& device) {
 std::vector<std::string> path_axes_of(const Device& device, const std::string& file) {
   std::vector<std::string> names = plane_axes_of(device);
   const auto text = schema::read_file(file);
-  if (!text || names.size() == device.axes.size()) return names;
-  const std::string header = "," + text->substr(0, text->find('\n'));
-  if (header.find(",z_") == std::string::npos) return names;
+  if (!text || names.size() == device.axes.size() || !has_column(*text, "z")) return names;
   names.clear();
   for (const DeviceAxis& axis : device.axes) names.push_back(axis.name);
   return names;

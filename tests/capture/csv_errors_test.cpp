@@ -95,6 +95,19 @@ TEST(CsvErrors, AHeaderWhoseRowsAreAllCommentsHasNoRow) {
   EXPECT_TRUE(tests::fails(reader.finish(), schema::ErrorKind::malformed, "t.csv"));
 }
 
+// Of a file that ends within a row the rows before it can be had.
+TEST(CsvErrors, AFileThatWasCutShortSaysHowManyRowsAreWhole) {
+  for (const char* text : {"f,x\n1,2\n3,4\n5,6\n7", "f,x\n1,2\n3,4\n5,6\n7,-"}) {
+    const auto table = read_text(text, {}, 1UL << 20);
+    ASSERT_FALSE(table);
+    EXPECT_EQ(table.error().where.substr(0, 13), "t.csv: line 5");
+    EXPECT_NE(table.error().remedy.find(" 3 rows"), std::string::npos) << table.error().remedy;
+  }
+  const auto within = read_text("f,x\n1,2\n3\n5,6\n", {}, 1UL << 20);
+  ASSERT_FALSE(within);
+  EXPECT_EQ(within.error().remedy.find("rows before"), std::string::npos) << within.error().remedy;
+}
+
 TEST(CsvErrors, ALongFirstLineIsNoTable) {
   const auto layout = find_csv_layout("1,2,3", false, "t.csv");
   EXPECT_TRUE(tests::fails(layout, schema::ErrorKind::malformed, "t.csv"));

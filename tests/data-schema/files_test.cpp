@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "data-schema/kinds/file_kind.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {
@@ -187,6 +189,34 @@ TEST(Files, SayWhyTheyCantBeRead) {
   EXPECT_EQ(read_file(folder / "").error().what, "is a folder, not a file");
   EXPECT_EQ(check_readable(folder / "absent").error().kind, ErrorKind::not_found);
   EXPECT_EQ(sha256_of_file(folder / "absent").error().kind, ErrorKind::not_found);
+}
+
+// Root may read every folder, so the test becomes another user for it.
+TEST(Files, AFolderThatCannotBeReadIsNamedAndHidesNoOtherFile) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a", "closed", "z", ".hidden"}) {
+    std::filesystem::create_directory(folder / name);
+    std::ofstream(folder / name + "/file") << "text";
+  }
+  std::filesystem::create_directory_symlink(folder / "a", folder / "link");
+  std::filesystem::permissions(folder / "", std::filesystem::perms(0755));
+  std::filesystem::permissions(folder / "closed", std::filesystem::perms::none);
+  const uid_t me = ::geteuid();
+  if (me == 0 && ::seteuid(65534) != 0) GTEST_SKIP() << "root cannot become another user here";
+  const auto below = files_below(folder / "");
+  const auto closed = files_below(folder / "closed");
+  const auto stored = stored_files(folder / "closed/oak");
+  ASSERT_EQ(::seteuid(me), 0);
+  std::filesystem::permissions(folder / "closed", std::filesystem::perms::owner_all);
+  ASSERT_TRUE(below);
+  EXPECT_EQ(below->files, (std::vector<std::string>{folder / "a/file", folder / "z/file"}));
+  ASSERT_EQ(below->unreadable.size(), 1U);
+  EXPECT_EQ(below->unreadable[0].where, folder / "closed");
+  ASSERT_FALSE(closed);
+  EXPECT_EQ(closed.error().kind, ErrorKind::not_found);
+  ASSERT_FALSE(stored);
+  EXPECT_NE(stored.error().what, "there is no such file");
+  EXPECT_FALSE(files_below(folder / "absent"));
 }
 
 // The pipe has no writer, so opening it would block.

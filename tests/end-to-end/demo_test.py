@@ -7,6 +7,9 @@ import os
 import pathlib
 import re
 import shlex
+import signal
+import subprocess
+import time
 import urllib.parse
 
 import tacto
@@ -67,6 +70,18 @@ def demo_may_be_repeated():
     tacto.run("demo", "-o", "two words")
 
 
+def ctrl_c_in_its_first_recording_ends_it():
+    """`record` takes Ctrl-C as the end of its recording; the demo must not go on with a recording that is too short."""
+    process = subprocess.Popen([tacto.COMMAND, "demo", "-o", "stopped"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not pathlib.Path("stopped/A.wav").exists() and process.poll() is None:
+        time.sleep(0.002)
+    process.send_signal(signal.SIGINT)
+    process.communicate()
+    assert process.returncode == -signal.SIGINT, process.returncode
+    assert not pathlib.Path("stopped/index.html").exists()
+
+
 if __name__ == "__main__":
-    for test in (demo_makes_its_page, the_commands_by_hand_make_the_same_files, demo_may_be_repeated):
+    for test in (demo_makes_its_page, the_commands_by_hand_make_the_same_files, demo_may_be_repeated,
+                 ctrl_c_in_its_first_recording_ends_it):
         tacto.in_folder(test)

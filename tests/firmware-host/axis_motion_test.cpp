@@ -43,6 +43,33 @@ TEST(LinearMotion, IsTheClosedForm) {
   }
 }
 
+// Without a spring the closed form is that of the lag m / b; with one, only its slow root is left, because
+// the fast one has decayed. A loop over the pieces would take 1e4 to 1e20 steps.
+TEST(LinearMotion, ALightMassOnAStrongDamperFollowsItsForce) {
+  constexpr double kTime = 2.5e-4, b = 0.5, k = 300;
+  for (const double m : {1e-8, 1e-12, 1e-24}) {
+    const double lag = m / b, steady = 3 / b - 5 / b * lag;
+    const PlaceAndSpeed free = LinearMotion{m, b, 0, 3, 5}.after({0.1, -0.2}, kTime);
+    EXPECT_NEAR(free.place_m, 0.1 + steady * kTime + 5 / b * kTime * kTime / 2 + (-0.2 - steady) * lag,
+                1e-15);
+    EXPECT_NEAR(free.speed_mps, steady + 5 / b * kTime, 1e-14);
+    const double s = std::sqrt(b * b - 4 * k * m), slow = -2 * k / (b + s);
+    const PlaceAndSpeed held = LinearMotion{m, b, k, 0, 0}.after({0.1, 0}, kTime);
+    const double left = 0.1 * (b + s) / (2 * s) * std::exp(slow * kTime);
+    EXPECT_NEAR(held.place_m, left, 1e-14);
+    EXPECT_NEAR(held.speed_mps, slow * left, 1e-12);
+  }
+}
+
+TEST(LinearMotion, ManyPiecesOfASwingKeepItsPhase) {
+  const LinearMotion swing{0.5, 0.02, 400, 0.3, 1};
+  for (const double t : {8.0, 10.0, 200.0}) {
+    const PlaceAndSpeed found = swing.after({0.01, 0.2}, t), expected = closed_form(swing, {0.01, 0.2}, t);
+    EXPECT_NEAR(found.place_m, expected.place_m, 1e-13) << t;
+    EXPECT_NEAR(found.speed_mps, expected.speed_mps, 1e-11) << t;
+  }
+}
+
 TEST(LinearMotion, AFreeMassUnderARampIsACubic) {
   const LinearMotion free{.mass_kg = 2, .force_n = 3, .force_rate_n_per_s = 5};
   const PlaceAndSpeed end = free.after({0.1, -0.2}, 0.7);

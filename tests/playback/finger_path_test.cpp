@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+
+#include "playback/render/plane_render.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -24,6 +28,25 @@ TEST(FingerPathCsv, DecimalCommasBetweenSemicolonsOrTabs) {
     EXPECT_EQ(path->time_s, (std::vector<double>{0, 0.5}));
     EXPECT_EQ(path->position_m, (std::vector<double>{-0.5, 1.25e-3}));
   }
+}
+
+TEST(FingerPathCsv, AThirdAxisIsFoundHoweverItsColumnIsWritten) {
+  const tests::TemporaryFolder folder;
+  schema::Device device;
+  for (const char* name : {"x", "y", "z"}) device.axes.emplace_back().name = name;
+  const std::string file = folder / "hand.csv";
+  for (const char* text :
+       {"time_s,x_mm,y_mm,z_mm\n0,1,2,3\n1,1,2,3\n", "time_s;x_mm;y_mm;z_mm\n0;1;2;3\n1;1;2;3,0\n",
+        "time_s\tx_mm\ty_mm\tz_mm\n0\t1\t2\t3\n1\t1\t2\t3\n",
+        "Z (mm), X (mm), Y (mm), Time (s)\n3,1,2,0\n3,1,2,1\n"}) {
+    std::ofstream(file) << text;
+    const auto paths = read_axis_paths(file, path_axes_of(device, file));
+    ASSERT_TRUE(paths) << message(paths.error());
+    ASSERT_EQ(paths->size(), 3U) << text;
+    EXPECT_EQ((*paths)[2].position_m, (std::vector<double>{3e-3, 3e-3})) << text;
+  }
+  std::ofstream(file) << "time_s;x_mm;y_mm\n0;1;2\n1;1;2\n";
+  EXPECT_EQ(path_axes_of(device, file), (std::vector<std::string>{"x", "y"}));
 }
 
 struct Bad {
