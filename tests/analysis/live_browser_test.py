@@ -138,8 +138,8 @@ def choose_by_keys(chrome, name):
 
 
 def strip_on(chrome):
-    """The left end, the middle of the height and the width of the strip, which is scrolled into view."""
-    return chrome.value("(() => { const s = document.getElementById('strip'); s.scrollIntoView({block: 'center'}); const r = s.getBoundingClientRect(); "
+    """The left end, the middle of the height and the width of the strip's picture, which is scrolled into view."""
+    return chrome.value("(() => { const s = document.getElementById('map'); s.scrollIntoView({block: 'center'}); const r = s.getBoundingClientRect(); "
                         "return [r.x, r.y + r.height / 2, r.width]; })()")
 
 
@@ -165,6 +165,42 @@ def stroke_by_touch(chrome):
     chrome.wait("Number(document.getElementById('strip').ariaValueNow) < 12 && document.getElementById('place').textContent.startsWith('finger touches')")
     touch("touchEnd")
     chrome.wait("document.getElementById('state-word').textContent === 'playing, finger lifted'")
+
+
+def check_scale(chrome):
+    """Millimetres per pixel are shown and set: then the pointer moves the finger by as much."""
+    choose_by_keys(chrome, ODD_NAME)
+    choose_by_keys(chrome, "C")  # its title appears once it is chosen
+    _, _, width = strip_on(chrome)
+    shown = chrome.value("Number(document.getElementById('scale').value)")
+    length_mm = chrome.value("Number(document.getElementById('strip').ariaValueMax)")
+    assert abs(shown * width / length_mm - 1) < 1e-3, (shown, width, length_mm)  # five digits, upwards
+    chrome.value("(() => { const s = document.getElementById('scale'); s.value = 0.01; s.dispatchEvent(new Event('input')); })()")
+    x, y, width = strip_on(chrome)
+    assert abs(chrome.value("Number(document.getElementById('strip').ariaValueMax)") - 0.01 * width) < 0.01
+    chrome.mouse("mousePressed", x + 100, y)
+    chrome.mouse("mouseMoved", x + 300, y)
+    chrome.wait("Math.abs(Number(document.getElementById('strip').ariaValueNow) - 3) < 0.051")  # 300 pixels; shown to 0.1 mm
+    chrome.mouse("mouseReleased", x + 300, y)
+    chrome.click("stop")
+    chrome.wait("document.getElementById('state-word').textContent.startsWith('stopped')")
+
+
+# Pictures of the tray's trace that are drawn within a second.
+PICTURES = """new Promise((done) => {
+  const own = CanvasRenderingContext2D.prototype.clearRect;
+  let drawn = 0;
+  CanvasRenderingContext2D.prototype.clearRect = function (...box) { drawn += this.canvas.id === 'trace'; own.apply(this, box); };
+  setTimeout(() => { CanvasRenderingContext2D.prototype.clearRect = own; done(drawn); }, 1000);
+})"""
+
+
+def check_calm(chrome):
+    """With prefers-reduced-motion pictures move at most every 250 ms."""
+    chrome.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
+    assert 1 <= chrome.value(PICTURES) <= 5
+    chrome.ask("Emulation.setEmulatedMedia", features=[])
+    assert chrome.value(PICTURES) > 5
 
 
 def keep(chrome, least_ticks):
@@ -342,6 +378,12 @@ def check_explorer(chrome, server):
     assert chrome.value(view) == whole
     check_names(chrome)
     check_looks(chrome)
+    # Other units and spacings are drawn, too; an error would be in the console.
+    pictures = set()
+    for name, value in (("unit", "mm"), ("unit", "Hz"), ("spacing", "linear"), ("unit", "1/mm"), ("colours", "grey"), ("range", "30")):
+        chrome.value(f"(() => {{ const e = document.getElementById('{name}'); e.value = '{value}'; e.dispatchEvent(new Event('input')); return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))); }})()")
+        pictures.add(chrome.value("document.getElementById('heat').toDataURL()"))
+    assert len(pictures) == 6, "each changes the picture"
     press(chrome, "part")
     chrome.value("document.querySelector('#exports button[data-form=\"png\"]').click()")
     chrome.wait("document.getElementById('exported').textContent === 'C.png: all'")
@@ -386,6 +428,10 @@ def check_looks(chrome):
         assert least["ratio"] >= 4.5, least
     chrome.ask("Emulation.setDeviceMetricsOverride", width=400, height=900, deviceScaleFactor=1, mobile=False)
     assert chrome.value("document.documentElement.scrollWidth") <= 400
+    # Stop is always visible, also at the end of the page.
+    chrome.value("scrollTo(0, document.documentElement.scrollHeight)")
+    assert chrome.value("(() => { const e = document.getElementById('stop'); if (e === null) return true; const r = e.getBoundingClientRect(); "
+                        "return document.elementFromPoint(r.x + r.width / 2, r.y + r.height / 2) === e; })()")
     chrome.ask("Emulation.clearDeviceMetricsOverride")
     chrome.wait("innerWidth > 400")
 
@@ -449,6 +495,10 @@ def check_device(chrome, server):
         shown = chrome.text("place")
         time.sleep(0.5)
         assert chrome.text("place") == shown and chrome.text("state-word") == "playing"
+        trace = "document.getElementById('trace').toDataURL()"
+        before = chrome.value(trace)
+        chrome.value("(() => { const s = document.getElementById('span'); s.value = '0.5'; s.dispatchEvent(new Event('input')); })()")
+        assert chrome.text("trace-words").startswith("last 0.5 s before the pause") and chrome.value(trace) != before  # zoom in a pause
         press(chrome, "pause")
         chrome.key("Escape")
         state(chrome, "armed")
@@ -566,6 +616,8 @@ def live_in_chromium():
     with live("folder") as server, browser(server.address) as chrome:
         assert chrome.value("location.search") == "", "the token stays out of the address"
         check_playing(chrome)
+        check_scale(chrome)
+        check_calm(chrome)
         check_compare(chrome)
         check_shape(chrome)
         check_list(chrome)

@@ -293,7 +293,7 @@ async function keep() {
 // The pointer: it is the hand while it is pressed.
 let pointer = null;  // {id, place_m}
 function placeOf(event) {
-  const box = view.getBoundingClientRect(), place_m = [0, 0, 0];
+  const box = at('picture').getBoundingClientRect(), place_m = [0, 0, 0];  // within the border
   place_m[section.right] = section.left_m + (event.clientX - box.left) / box.width * section.columns * section.pixel_m;
   place_m[section.up] = section.top_m - (event.clientY - box.top) / box.height * section.rows * section.pixel_m;
   return place_m;
