@@ -454,6 +454,9 @@ def write_scenes(folder):
     ball = {"name": "ball", "shape": "sphere", "place": {"x_m": 0, "y_m": 0, "z_m": 0}, "radius_m": 0.03, "stiffness_n_per_m": 600}
     for name, members in (("bench", {"patches": [bench]}), ("ball", {"pieces": [ball]})):
         pathlib.Path(f"{folder}/{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", **members}))
+    axes = [{"name": name, "mass_kg": 0.1, "viscous_n_s_per_m": 1, "coulomb_n": 0, "encoder_step_m": 1e-5, "travel_m": [-0.1, 0.1], "peak_force_n": 5, "continuous_force_n": 5} for name in "xy"]
+    pathlib.Path(f"{folder}/own.device.json").write_text(json.dumps({"kind": "device", "version": "1.0", "name": "own", "axes": axes, "peak_force_n": 5,
+                                                                     "continuous_force_n": 5, "slew_n_per_s": 5000, "delay_s": 0, "rates_hz": [500]}))
 
 
 def open_scene(chrome, server, name):
@@ -497,6 +500,14 @@ def check_scenes(chrome, server):
     check_names(chrome)
     check_looks(chrome)
     keep(chrome, 0.2 * 4000)  # 10 mm at 50 mm/s
+    # On the device of the folder.
+    chrome.value("(() => { const d = document.getElementById('device'); d.value = [...d.options].find((o) => o.text === 'own').value; d.dispatchEvent(new Event('input')); })()")
+    chrome.wait("document.getElementById('notes').textContent.startsWith('Device: own, 500 ticks')")
+    chrome.value("document.getElementById('view').focus()")
+    chrome.key("ArrowUp", ["rawKeyDown"])
+    chrome.wait("/y [1-9][0-9]/.test(document.getElementById('place').textContent)")
+    chrome.key("ArrowUp", ["keyUp"])
+    keep(chrome, 0.2 * 500)
     open_scene(chrome, server, "ball")
     box = into_the_ball(chrome)
     assert chrome.text("state-word") == "playing" and "0.000 from the hand" not in chrome.text("ghost"), chrome.text("ghost")
