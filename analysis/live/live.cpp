@@ -189,7 +189,7 @@ class Site {
                      request.path == kJobsPath || request.path == kRecorderPath
                  ? WebAnswer()
                  : not_found();
-    if (auto answer = scene_content(request.path)) return std::move(*answer);
+    if (auto answer = scene_content(request.path, request.query)) return std::move(*answer);
     if (request.path == "/loaded") return loaded();
     if (request.path == "/textures") {
       folder_.refresh();
@@ -219,10 +219,12 @@ class Site {
       if (asset.name == name) return asset_answer(asset);
     return not_found();
   }
-  std::optional<WebAnswer> scene_content(std::string_view path) {
+  std::optional<WebAnswer> scene_content(std::string_view path, std::string_view query) {
     if (path == "/scenes") return json_answer(scenes_.list_json());
     if (const auto index = number_after("/scene/", path)) {
-      const auto number = scenes_.make(*index);
+      const auto device = number_after("device=", query);
+      if (!query.empty() && !device) return not_found();
+      const auto number = scenes_.make(*index, device);
       return number ? json_answer(scene_json(*number, **scenes_.made(*number)))
                     : error_answer(number.error());
     }

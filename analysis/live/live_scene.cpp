@@ -23,13 +23,40 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-constexpr std::string_view kSceneEnding = ".scene.json";
+constexpr std::string_view kSceneEnding = ".scene.json", kDeviceEnding = ".device.json";
 constexpr std::size_t kFrontSection = 1;
 constexpr int kSmallColumns = 160;  // of a small picture
 
-std::string scene_name(const std::string& file) {
+std::string name_without(std::string_view ending, const std::string& file) {
   const std::string name = fs::path(file).filename().string();
-  return name.substr(0, name.size() - kSceneEnding.size());
+  return name.substr(0, name.size() - ending.size());
+}
+
+// The files of a folder with an ending of their names, in order.
+std::set<std::string> files_with(std::string_view ending, const std::string& folder,
+                                 std::error_code& failed) {
+  std::set<std::string> found;
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
+    std::error_code ignored;
+    if (at->path().string().ends_with(ending) && at->is_regular_file(ignored))
+      found.insert(at->path().string());
+  }
+  return found;
+}
+
+// The page moves the hand along x, y and, of pieces, z.
+Result<schema::Device> device_for(const schema::Scene& scene, const std::string& name) {
+  auto device = schema::read_device(name);
+  TACTO_TRY(device);
+  const std::string_view wanted = scene.pieces.empty() ? "x, y" : "x, y, z";
+  std::vector<std::string> names;
+  for (const schema::DeviceAxis& axis : device->axes) names.push_back(axis.name);
+  if (const std::string own = fmt::format("{}", fmt::join(names, ", ")); own != wanted)
+    return fail(
+        ErrorKind::unsuitable,
+        fmt::format("the device '{}' has the axes {}, this scene needs {}", device->name, own, wanted), name,
+        "choose another device");
+  return device;
 }
 
 // The earliest time if there is no such file.
@@ -161,26 +188,28 @@ std::string colour_words(const spatial::Colour& colour) {
 
 }  // namespace
 
-Result<LiveScene> make_live_scene(const std::string& file) {
+Result<LiveScene> make_live_scene(const std::string& file, const std::string& own_device) {
   auto scene = read_force_scene(file);
   TACTO_TRY(scene);
   LiveScene live;
   live.file = file;
-  const std::string preset = scene->pieces.empty() ? "sandpaper-1990" : "arm";
-  auto device = schema::read_device(preset);
+  const std::string name = !own_device.empty()     ? own_device
+                           : scene->pieces.empty() ? "sandpaper-1990"
+                                                   : "arm";
+  auto device = device_for(*scene, name);
   TACTO_TRY(device);
   live.device = std::move(*device);
   TACTO_TRY(upload_to_page(live));
   add_sliders(live);
   if (scene->pieces.empty()) {
-    auto picture = read_scene_picture(file, preset, {}, {});
+    auto picture = read_scene_picture(file, name, {}, {});
     TACTO_TRY(picture);
     auto figure = SceneFigure::make(std::move(*picture));
     TACTO_TRY(figure);
     live.plane = std::move(*figure);
     return live;
   }
-  auto picture = read_piece_picture(std::move(*scene), file, preset);
+  auto picture = read_piece_picture(std::move(*scene), file, name);
   TACTO_TRY(picture);
   live.pieces = std::move(*picture);
   live.space.emplace(live.pieces);
@@ -236,7 +265,9 @@ std::string scene_json(std::size_t made, const LiveScene& scene) {
                           .add("from", slider.number.slider->from)
                           .add("to", slider.number.slider->to));
   cli::Report figures;
-  figures.add("made", made).add("name", scene_name(scene.file)).add("device", scene.device.name);
+  figures.add("made", made)
+      .add("name", name_without(kSceneEnding, scene.file))
+      .add("device", scene.device.name);
   figures.add("rate_hz", scene.program.session.rate_hz)
       .add("peak_n", double{scene.program.limits.peak_n})
       .add("bytes", scene.program.scene.bytes())
@@ -248,20 +279,14 @@ std::string scene_json(std::size_t made, const LiveScene& scene) {
 }
 
 std::string LiveScenes::list_json() {
-  std::set<std::string> found;
   std::error_code failed;
-  for (fs::directory_iterator at(folder_, failed), end; !failed && at != end; at.increment(failed)) {
-    std::error_code ignored;
-    if (at->path().string().ends_with(kSceneEnding) && at->is_regular_file(ignored))
-      found.insert(at->path().string());
-  }
   std::vector<cli::Report> rows;
-  for (const std::string& path : found) {
+  for (const std::string& path : files_with(kSceneEnding, folder_, failed)) {
     auto one = std::ranges::find(listed_, path, &Listed::file);
     if (one == listed_.end()) one = listed_.insert(listed_.end(), Listed{path, {}, {}, {}});
     if (const auto time = scene_time(path); one->row.empty() || one->time != time) {
       *one = {path, time, {}, {}};
-      one->row.add("index", one - listed_.begin()).add("name", scene_name(path));
+      one->row.add("index", one - listed_.begin()).add("name", name_without(kSceneEnding, path));
       const auto scene = read_force_scene(path);
       if (!scene) one->row.add("reason", schema::message(scene.error()));
       if (scene) one->row.add("patches", scene->patches.size()).add("pieces", scene->pieces.size());
@@ -269,9 +294,25 @@ std::string LiveScenes::list_json() {
     rows.push_back(one->row);
   }
   cli::Report list;
-  list.add("scenes", std::move(rows));
+  list.add("scenes", std::move(rows)).add("devices", device_rows());
   if (failed) list.add("reason", failed.message());
   return list.json();
+}
+
+// A folder that can't be read has been reported with the scenes.
+std::vector<cli::Report> LiveScenes::device_rows() {
+  std::error_code failed;
+  std::vector<cli::Report> rows;
+  for (const std::string& path : files_with(kDeviceEnding, folder_, failed)) {
+    auto one = std::ranges::find(devices_, path);
+    if (one == devices_.end()) one = devices_.insert(devices_.end(), path);
+    cli::Report row;
+    row.add("index", one - devices_.begin()).add("name", name_without(kDeviceEnding, path));
+    if (const auto device = schema::read_device(path); !device)
+      row.add("reason", schema::message(device.error()));
+    rows.push_back(std::move(row));
+  }
+  return rows;
 }
 
 Result<std::string> LiveScenes::file(std::size_t index) const {
@@ -285,17 +326,20 @@ Result<std::vector<std::uint32_t>> LiveScenes::thumbnail(std::size_t index) {
   TACTO_TRY(own);
   std::vector<std::uint32_t>& small = listed_[index].thumbnail;
   if (!small.empty()) return small;
-  const auto scene = make_live_scene(*own);
+  const auto scene = make_live_scene(*own, {});
   TACTO_TRY(scene);
   const double through_m =
       scene->space ? scene->space->through_m().at(kPieceSections[kFrontSection].across) : 0;
   return small = small_picture(scene_pixels(*scene, kFrontSection, through_m));
 }
 
-Result<std::size_t> LiveScenes::make(std::size_t index) {
+Result<std::size_t> LiveScenes::make(std::size_t index, std::optional<std::size_t> device) {
   const auto own = file(index);
   TACTO_TRY(own);
-  auto scene = make_live_scene(*own);
+  if (device && *device >= devices_.size())
+    return fail(ErrorKind::not_found, "there is no device of this index", std::to_string(*device),
+                "load the page again");
+  auto scene = make_live_scene(*own, device ? devices_[*device] : std::string());
   TACTO_TRY(scene);
   return made_.add(std::move(*scene));
 }

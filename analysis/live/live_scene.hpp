@@ -26,7 +26,7 @@ struct LiveSlider {
 
 struct LiveScene {
   std::string file;
-  schema::Device device;  ///< the preset whose axes the page has
+  schema::Device device;  ///< whose axes the page has
   playback::ForceProgram program;
   /// A frame of these axes, then the frames of playback::upload_scene() to the page's board, each as it was
   /// accepted.
@@ -38,9 +38,11 @@ struct LiveScene {
   PiecePicture pieces;                 ///< with `space`: what it draws
 };
 
-/// For the preset `sandpaper-1990` (patches) or `arm` (pieces) at its largest rate. Errors: as read_scene,
-/// make_force_program, read_scene_picture, read_piece_picture; unsuitable, for a scene of a tray.
-schema::Result<LiveScene> make_live_scene(const std::string& file);
+/// For a device (a preset, or NAME.device.json) at its largest rate; empty: the preset `sandpaper-1990`
+/// (patches) or `arm` (pieces). Errors: as read_scene, read_device, make_force_program, read_scene_picture,
+/// read_piece_picture; unsuitable, for a scene of a tray, and for a device whose axes are not x and y, of
+/// pieces also z.
+schema::Result<LiveScene> make_live_scene(const std::string& file, const std::string& own_device);
 
 /// The picture of the verb `scene` without its frame: patches from above (`section` 0), or pieces in a
 /// section of kPieceSections through a place across it.
@@ -55,14 +57,15 @@ class LiveScenes {
   explicit LiveScenes(std::string folder) : folder_(std::move(folder)) {}
 
   /// Reads the folder, and the scenes in it that are new or have changed. JSON: `scenes`, by name: index,
-  /// name, number of patches or pieces; one that can't be played has the reason. A scene that was listed
+  /// name, number of patches or pieces; one that can't be played has the reason. `devices`, by name: index
+  /// and name of each NAME.device.json in the folder, or the reason why it can't be read. What was listed
   /// before keeps its index.
   std::string list_json();
   /// A small picture: width, height, and a colour (0xRRGGBB) for each pixel. Errors: as make().
   schema::Result<std::vector<std::uint32_t>> thumbnail(std::size_t index);
-  /// Prepares a scene from its files as they are now, under a new number. Errors: not_found; as
-  /// make_live_scene.
-  schema::Result<std::size_t> make(std::size_t index);
+  /// Prepares a scene from its files as they are now, for a device of the folder or the scene's preset, under
+  /// a new number. Errors: not_found; as make_live_scene.
+  schema::Result<std::size_t> make(std::size_t index, std::optional<std::size_t> device);
   /// One of the last kMostMade that were made. Errors: not_found.
   schema::Result<std::shared_ptr<const LiveScene>> made(std::size_t number);
 
@@ -75,9 +78,11 @@ class LiveScenes {
     std::vector<std::uint32_t> thumbnail;  // empty: not made yet
   };
   schema::Result<std::string> file(std::size_t index) const;
+  std::vector<cli::Report> device_rows();
 
   std::string folder_;
-  std::vector<Listed> listed_;  // by index
+  std::vector<Listed> listed_;        // by index
+  std::vector<std::string> devices_;  // files, by index
   LastUsed<LiveScene, kMostMade> made_;
 };
 

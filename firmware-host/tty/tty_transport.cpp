@@ -16,6 +16,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "data-schema/base/open_by.hpp"
+
 namespace tacto::firmware_host {
 namespace {
 
@@ -27,9 +29,10 @@ using schema::Result;
 // The client repeats hello every 0.5 s, so that the last one is sent after these 2 s.
 constexpr double kStartUpS = 2.4;
 
-tl::unexpected<schema::Error> busy(const std::string& where) {
-  return fail(ErrorKind::device, "another program uses the port", where,
-              "stop that program (ModemManager, a terminal, another tactograph)");
+tl::unexpected<schema::Error> busy(const std::string& path, const std::string& where) {
+  return fail(
+      ErrorKind::device, "another program uses the port", where,
+      "stop " + schema::programs_with(path, "that program (ModemManager, a terminal, another tactograph)"));
 }
 
 std::string group_of(const std::string& path) {
@@ -39,7 +42,7 @@ std::string group_of(const std::string& path) {
 }
 
 tl::unexpected<schema::Error> not_opened(int code, const std::string& path, const std::string& where) {
-  if (code == EBUSY) return busy(where);
+  if (code == EBUSY) return busy(path, where);
   if (code == EACCES || code == EPERM) {
     const std::string group = group_of(path);
     return fail(ErrorKind::not_found,
@@ -72,7 +75,7 @@ Result<std::unique_ptr<TtyTransport>> TtyTransport::open(const TtyAddress& addre
   if (::tcgetattr(port.get(), &before) != 0)
     return fail(ErrorKind::usage, fmt::format("'{}' is not a serial port", address.path), where,
                 "'tactograph scan' lists the devices on USB serial ports");
-  if (::flock(port.get(), LOCK_EX | LOCK_NB) != 0) return busy(where);
+  if (::flock(port.get(), LOCK_EX | LOCK_NB) != 0) return busy(address.path, where);
   std::unique_ptr<TtyTransport> transport(new TtyTransport(std::move(port), where, before));
   TACTO_TRY(transport->configure(address.baud.value_or(kUsualBaud)));
   if (!address.baud && is_acm(address.path)) transport->baud_ = std::numeric_limits<double>::infinity();

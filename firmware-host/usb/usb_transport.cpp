@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/open_by.hpp"
 #include "firmware-host/core/firmware/usb_identity.hpp"
 
 namespace tacto::firmware_host {
@@ -108,6 +109,14 @@ std::string port_of(libusb_device* device) {
   std::string port = fmt::format("{}", libusb_get_bus_number(device));
   for (int i = 0; i < count; ++i) port += fmt::format("{}{}", i == 0 ? '-' : '.', ports[i]);
   return port;
+}
+
+tl::unexpected<schema::Error> busy(libusb_device* device, const std::string& where) {
+  schema::Error error = usb_failure(LIBUSB_ERROR_BUSY, "claiming its interface", where).value();
+  const std::string node = fmt::format("/dev/bus/usb/{:03}/{:03}", libusb_get_bus_number(device),
+                                       libusb_get_device_address(device));
+  error.remedy = "stop " + schema::programs_with(node, "that program");
+  return tl::unexpected(std::move(error));
 }
 
 // A serial that cannot be read is empty: opening the device will return the reason.
@@ -252,6 +261,7 @@ Result<void> UsbConnection::claim(const UsbFound& found) {
   handle_.reset(handle);
   libusb_set_auto_detach_kernel_driver(handle, 1);
   const int claimed = libusb_claim_interface(handle, interface_.number);
+  if (claimed == LIBUSB_ERROR_BUSY) return busy(found.device.get(), uri_);
   if (claimed != 0) return usb_failure(claimed, "claiming its interface", uri_);
   if (interface_.setting == 0) return {};
   const int set = libusb_set_interface_alt_setting(handle, interface_.number, interface_.setting);

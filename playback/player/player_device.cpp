@@ -14,6 +14,7 @@
 #include <memory>
 #include <utility>
 
+#include "data-schema/base/open_by.hpp"
 #include "firmware-host/open_device.hpp"
 #include "firmware-host/sim/device/sim_device.hpp"
 #include "firmware-host/sim/planar/planar_device.hpp"
@@ -150,7 +151,7 @@ Result<DeviceLock> DeviceLock::take(const std::string& device_name) {
   if (flock(opened, LOCK_EX | LOCK_NB) == 0) return DeviceLock(opened);
   ::close(opened);
   return fail(ErrorKind::unsuitable, "another program plays on the device", device_name,
-              "stop it: tactographd, or tactograph play");
+              "stop " + schema::programs_with(path, "it: tactographd, or tactograph play"));
 }
 
 Result<std::optional<FingerScript>> read_finger_script(const std::string& file) {

@@ -101,11 +101,15 @@ Result<void> check_placed(std::span<const PlacedTexture> textures, const Prepare
 Result<void> fill_levels(Prepared& prepared, const schema::SpaceSignal& path, const PrepareOptions& o) {
   const PyramidShape shape = pyramid_shape(highest_spatial_frequency(path), prepared.passes_to_hz, o);
   const std::size_t size = pyramid_size(path, shape);
-  if (size > o.most_samples)
-    return fail(ErrorKind::unsuitable,
-                fmt::format("the texture needs {} samples in {} levels, the memory holds {}", size,
-                            shape.levels, o.most_samples),
-                "texture", ways_to_fit(o.interpolation));
+  if (size > o.most_samples) {
+    const double fits = static_cast<double>(o.most_samples) / static_cast<double>(size);
+    return fail(
+        ErrorKind::unsuitable,
+        fmt::format("the texture needs {} samples in {} levels, the memory holds {}: about {} of its {}",
+                    size, shape.levels, o.most_samples, schema::length_for_people(fits * path.length_m()),
+                    schema::length_for_people(path.length_m())),
+        "texture", ways_to_fit(o.interpolation));
+  }
   Pyramid pyramid = make_pyramid(path, shape);
   prepared.samples = std::move(pyramid.samples);
   prepared.built.levels = pyramid.levels;

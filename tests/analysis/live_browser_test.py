@@ -5,25 +5,21 @@ same to the bit; every control has a name, texts have their contrast, the consol
 
 With --pictures FOLDER it writes screenshots (wide and narrow, light and dark) instead.
 """
-import base64
 import contextlib
 import json
-import os
 import pathlib
 import shutil
-import subprocess
 import sys
-import tempfile
 import time
 
 import netCDF4
 import numpy as np
-from live_client import WebSocket, live
+from chromium import browser
+from live_client import live
 from run_daemon import Client, daemon, prepare_files
 from tacto import in_folder, run, run_json
 
 ODD_NAME = "<img src=x onerror=alert(1)>"
-WAIT_S = 120  # until a test fails, not a time that is judged
 
 # Least contrast of all texts that are seen, over the nearest opaque ground behind them (WCAG 2.1).
 CONTRAST = """(() => {
@@ -44,93 +40,6 @@ CONTRAST = """(() => {
 })()"""
 
 
-class Browser:
-    """Chromium, by the DevTools protocol."""
-
-    def __init__(self, port, address):
-        self.socket, self.number, self.console = WebSocket(port, address), 0, []
-        for domain in ("Page", "Runtime", "Log", "Accessibility"):
-            self.ask(domain + ".enable")
-
-    def ask(self, method, **parameters):
-        self.number += 1
-        self.socket.send(json.dumps({"id": self.number, "method": method, "params": parameters}))
-        while True:
-            message = self.socket.receive()
-            if message.get("method") in ("Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded", "Page.javascriptDialogOpening"):
-                self.console.append(message["params"])
-            if message.get("id") == self.number:
-                assert "error" not in message, (method, message)
-                return message["result"]
-
-    def value(self, expression):
-        result = self.ask("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
-        assert "exceptionDetails" not in result, (expression, result)
-        return result["result"].get("value")
-
-    def wait(self, expression):
-        until = time.monotonic() + WAIT_S
-        while not self.value(expression):
-            assert time.monotonic() < until, (expression, self.value("document.body.innerText"), self.console)
-            time.sleep(0.05)
-
-    def text(self, name):
-        return self.value(f"document.getElementById({json.dumps(name)}).textContent")
-
-    def mouse(self, kind, x, y):
-        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=0 if kind == "mouseReleased" else 1, clickCount=1)
-
-    def click(self, name):
-        box = self.value(f"(() => {{ const e = document.getElementById({json.dumps(name)}); e.scrollIntoView({{block: 'center'}}); "
-                         "const r = e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
-        self.mouse("mousePressed", *box)
-        self.mouse("mouseReleased", *box)
-
-    def key(self, key, kinds=("rawKeyDown", "keyUp")):
-        codes = {"ArrowRight": 39, "ArrowLeft": 37, "Home": 36, "End": 35, "Tab": 9, "Enter": 13, "Escape": 27, " ": 32, "ArrowUp": 38, "ArrowDown": 40,
-                 "a": 65, "b": 66, "+": 187, "0": 48, "PageUp": 33, "PageDown": 34}
-        for kind in kinds:
-            text = {"Enter": "\r", " ": " "}.get(key) if kind == "rawKeyDown" else None
-            self.ask("Input.dispatchKeyEvent", type="keyDown" if text else kind, key=key, windowsVirtualKeyCode=codes[key],
-                     **({"text": text} if text else {}))
-
-    def picture(self, path, width, dark):
-        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=1050 if width > 700 else 2000, deviceScaleFactor=1, mobile=width < 700)
-        self.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
-        time.sleep(0.5)
-        path.write_bytes(base64.b64decode(self.ask("Page.captureScreenshot", format="webp", quality=80)["data"]))
-
-
-@contextlib.contextmanager
-def browser(address):
-    program = shutil.which("chromium")
-    if program is None:
-        print("skipped: no chromium")
-        sys.exit(77)
-    with tempfile.TemporaryDirectory(prefix="tacto-chromium-", ignore_cleanup_errors=True) as profile:
-        flags = ["--headless", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-                 "--disable-component-update", "--disable-sync", "--remote-debugging-port=0", f"--user-data-dir={profile}", "--window-size=1300,1000"]
-        if os.getuid() == 0:
-            flags.append("--no-sandbox")
-        process = subprocess.Popen([program, *flags, "about:blank"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        try:
-            until, told = time.monotonic() + WAIT_S, pathlib.Path(profile, "DevToolsActivePort")
-            while not told.exists() or len(told.read_text().split()) < 2:
-                assert time.monotonic() < until and process.poll() is None, "chromium does not start"
-                time.sleep(0.1)
-            port, path = told.read_text().split()
-            root = WebSocket(int(port), path)
-            target = root.ask(id=1, method="Target.getTargets")["result"]["targetInfos"]
-            page = next(t["targetId"] for t in target if t["type"] == "page")
-            chrome = Browser(int(port), f"/devtools/page/{page}")
-            chrome.ask("Page.navigate", url=address)
-            chrome.wait("document.readyState === 'complete' && document.querySelectorAll('#textures li').length > 0")
-            yield chrome
-        finally:
-            process.terminate()
-            process.wait()
-
-
 def choose_by_keys(chrome, name):
     chrome.value(f"[...document.querySelectorAll('#textures button')].find((b) => b.firstChild.textContent === {json.dumps(name)}).focus()")
     chrome.key("Enter")
@@ -138,8 +47,8 @@ def choose_by_keys(chrome, name):
 
 
 def strip_on(chrome):
-    """The left end, the middle of the height and the width of the strip, which is scrolled into view."""
-    return chrome.value("(() => { const s = document.getElementById('strip'); s.scrollIntoView({block: 'center'}); const r = s.getBoundingClientRect(); "
+    """The left end, the middle of the height and the width of the strip's picture, which is scrolled into view."""
+    return chrome.value("(() => { const s = document.getElementById('map'); s.scrollIntoView({block: 'center'}); const r = s.getBoundingClientRect(); "
                         "return [r.x, r.y + r.height / 2, r.width]; })()")
 
 
@@ -165,6 +74,42 @@ def stroke_by_touch(chrome):
     chrome.wait("Number(document.getElementById('strip').ariaValueNow) < 12 && document.getElementById('place').textContent.startsWith('finger touches')")
     touch("touchEnd")
     chrome.wait("document.getElementById('state-word').textContent === 'playing, finger lifted'")
+
+
+def check_scale(chrome):
+    """Millimetres per pixel are shown and set: then the pointer moves the finger by as much."""
+    choose_by_keys(chrome, ODD_NAME)
+    choose_by_keys(chrome, "C")  # its title appears once it is chosen
+    _, _, width = strip_on(chrome)
+    shown = chrome.value("Number(document.getElementById('scale').value)")
+    length_mm = chrome.value("Number(document.getElementById('strip').ariaValueMax)")
+    assert abs(shown * width / length_mm - 1) < 1e-3, (shown, width, length_mm)  # five digits, upwards
+    chrome.value("(() => { const s = document.getElementById('scale'); s.value = 0.01; s.dispatchEvent(new Event('input')); })()")
+    x, y, width = strip_on(chrome)
+    assert abs(chrome.value("Number(document.getElementById('strip').ariaValueMax)") - 0.01 * width) < 0.01
+    chrome.mouse("mousePressed", x + 100, y)
+    chrome.mouse("mouseMoved", x + 300, y)
+    chrome.wait("Math.abs(Number(document.getElementById('strip').ariaValueNow) - 3) < 0.051")  # 300 pixels; shown to 0.1 mm
+    chrome.mouse("mouseReleased", x + 300, y)
+    chrome.click("stop")
+    chrome.wait("document.getElementById('state-word').textContent.startsWith('stopped')")
+
+
+# Pictures of the tray's trace that are drawn within a second.
+PICTURES = """new Promise((done) => {
+  const own = CanvasRenderingContext2D.prototype.clearRect;
+  let drawn = 0;
+  CanvasRenderingContext2D.prototype.clearRect = function (...box) { drawn += this.canvas.id === 'trace'; own.apply(this, box); };
+  setTimeout(() => { CanvasRenderingContext2D.prototype.clearRect = own; done(drawn); }, 1000);
+})"""
+
+
+def check_calm(chrome):
+    """With prefers-reduced-motion pictures move at most every 250 ms."""
+    chrome.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
+    assert 1 <= chrome.value(PICTURES) <= 5
+    chrome.ask("Emulation.setEmulatedMedia", features=[])
+    assert chrome.value(PICTURES) > 5
 
 
 def keep(chrome, least_ticks):
@@ -342,6 +287,12 @@ def check_explorer(chrome, server):
     assert chrome.value(view) == whole
     check_names(chrome)
     check_looks(chrome)
+    # Other units and spacings are drawn, too; an error would be in the console.
+    pictures = set()
+    for name, value in (("unit", "mm"), ("unit", "Hz"), ("spacing", "linear"), ("unit", "1/mm"), ("colours", "grey"), ("range", "30")):
+        chrome.value(f"(() => {{ const e = document.getElementById('{name}'); e.value = '{value}'; e.dispatchEvent(new Event('input')); return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))); }})()")
+        pictures.add(chrome.value("document.getElementById('heat').toDataURL()"))
+    assert len(pictures) == 6, "each changes the picture"
     press(chrome, "part")
     chrome.value("document.querySelector('#exports button[data-form=\"png\"]').click()")
     chrome.wait("document.getElementById('exported').textContent === 'C.png: all'")
@@ -386,6 +337,10 @@ def check_looks(chrome):
         assert least["ratio"] >= 4.5, least
     chrome.ask("Emulation.setDeviceMetricsOverride", width=400, height=900, deviceScaleFactor=1, mobile=False)
     assert chrome.value("document.documentElement.scrollWidth") <= 400
+    # Stop is always visible, also at the end of the page.
+    chrome.value("scrollTo(0, document.documentElement.scrollHeight)")
+    assert chrome.value("(() => { const e = document.getElementById('stop'); if (e === null) return true; const r = e.getBoundingClientRect(); "
+                        "return document.elementFromPoint(r.x + r.width / 2, r.y + r.height / 2) === e; })()")
     chrome.ask("Emulation.clearDeviceMetricsOverride")
     chrome.wait("innerWidth > 400")
 
@@ -449,6 +404,10 @@ def check_device(chrome, server):
         shown = chrome.text("place")
         time.sleep(0.5)
         assert chrome.text("place") == shown and chrome.text("state-word") == "playing"
+        trace = "document.getElementById('trace').toDataURL()"
+        before = chrome.value(trace)
+        chrome.value("(() => { const s = document.getElementById('span'); s.value = '0.5'; s.dispatchEvent(new Event('input')); })()")
+        assert chrome.text("trace-words").startswith("last 0.5 s before the pause") and chrome.value(trace) != before  # zoom in a pause
         press(chrome, "pause")
         chrome.key("Escape")
         state(chrome, "armed")
@@ -495,6 +454,9 @@ def write_scenes(folder):
     ball = {"name": "ball", "shape": "sphere", "place": {"x_m": 0, "y_m": 0, "z_m": 0}, "radius_m": 0.03, "stiffness_n_per_m": 600}
     for name, members in (("bench", {"patches": [bench]}), ("ball", {"pieces": [ball]})):
         pathlib.Path(f"{folder}/{name}.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", **members}))
+    axes = [{"name": name, "mass_kg": 0.1, "viscous_n_s_per_m": 1, "coulomb_n": 0, "encoder_step_m": 1e-5, "travel_m": [-0.1, 0.1], "peak_force_n": 5, "continuous_force_n": 5} for name in "xy"]
+    pathlib.Path(f"{folder}/own.device.json").write_text(json.dumps({"kind": "device", "version": "1.0", "name": "own", "axes": axes, "peak_force_n": 5,
+                                                                     "continuous_force_n": 5, "slew_n_per_s": 5000, "delay_s": 0, "rates_hz": [500]}))
 
 
 def open_scene(chrome, server, name):
@@ -538,6 +500,14 @@ def check_scenes(chrome, server):
     check_names(chrome)
     check_looks(chrome)
     keep(chrome, 0.2 * 4000)  # 10 mm at 50 mm/s
+    # On the device of the folder.
+    chrome.value("(() => { const d = document.getElementById('device'); d.value = [...d.options].find((o) => o.text === 'own').value; d.dispatchEvent(new Event('input')); })()")
+    chrome.wait("document.getElementById('notes').textContent.startsWith('Device: own, 500 ticks')")
+    chrome.value("document.getElementById('view').focus()")
+    chrome.key("ArrowUp", ["rawKeyDown"])
+    chrome.wait("/y [1-9][0-9]/.test(document.getElementById('place').textContent)")
+    chrome.key("ArrowUp", ["keyUp"])
+    keep(chrome, 0.2 * 500)
     open_scene(chrome, server, "ball")
     box = into_the_ball(chrome)
     assert chrome.text("state-word") == "playing" and "0.000 from the hand" not in chrome.text("ghost"), chrome.text("ghost")
@@ -566,6 +536,8 @@ def live_in_chromium():
     with live("folder") as server, browser(server.address) as chrome:
         assert chrome.value("location.search") == "", "the token stays out of the address"
         check_playing(chrome)
+        check_scale(chrome)
+        check_calm(chrome)
         check_compare(chrome)
         check_shape(chrome)
         check_list(chrome)

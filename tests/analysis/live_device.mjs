@@ -40,6 +40,18 @@ const engine = new Engine(module, (report) => {
 const frames = new Uint8Array(readFileSync(upload)), taps = readFileSync(tray);
 engine.obey({what: 'texture', upload: frames, tray: new Float32Array(taps.buffer, taps.byteOffset, taps.length / 4), full_m: 1e-5});
 check(seen.accepted, 'the device accepts the upload');
+// No sound until it is asked for.
+engine.obey({what: 'play', gain_m_per_n: 1e-3});
+engine.obey({what: 'stroke', velocity_mps: 0.1, from_m: 0, end_m: 0.03});
+for (let ticks = 0; ticks < 0.2 * RATE_HZ; ticks += 64) {
+  engine.advance(64);
+  check(engine.sounds.subarray(0, 64).every((sample) => sample === 0), 'there is no sound before it is asked for');
+}
+check(seen.drivePeak_v > 0, 'the tray was driven without sound');
+engine.obey({what: 'stop'});
+for (let ticks = 0; ticks < RATE_HZ; ticks += 64) engine.advance(64);
+engine.tell();
+log.length = 0;  // as in the page: a session begins with its first command
 engine.obey({what: 'sound', volume: 1, velocity: kind === 'velocity'});
 if (kind === 'tone' || kind === 'velocity') {
   const sounds = [];

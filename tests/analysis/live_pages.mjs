@@ -7,7 +7,7 @@ import assert from 'node:assert';
 import {Axis, Cells, cellWords, exportQuery, frequencyMarks, marks, paint} from './cells.js';
 import {compareWords, fullScale, gainsOf, largestLevel} from './compare.js';
 import {arrange, countWords, recordingWords, withPrefix} from './library.js';
-import {effectiveWords, positionOf, queryOf, valueAt} from './shape.js';
+import {effectiveWords, positionOf, queryOf, valueAt, valueWords} from './shape.js';
 
 // The list: search, order, and those that can't be read at its end.
 const row = (name, length_m, rms, changed_s, surface) => ({name, length_m, rms, changed_s, unit: 'N', surface});
@@ -35,7 +35,10 @@ assert.deepEqual([valueAt({low: 0, high: 200, digits: 0}, 7), valueAt({low: -24,
 assert.equal(queryOf([stretch, low], [1, 0.05], true), '');
 assert.equal(queryOf([stretch, low], [1.3, 0.5], true), 'stretch=1.3&low_per_m=500&keep_slope=1');
 assert.equal(queryOf([stretch, low], [1, 0.5], true), 'low_per_m=500');
-assert.match(effectiveWords({factor: 1.3, period_m: 3e-3, low_per_m: 500, high_per_m: 5000, removed_share: 0}), /^stretch 1\.3, period 3 mm before, band from 0\.5 \/mm, to 5 \/mm$/);
+assert.match(effectiveWords({factor: 1.3, period_m: 3e-3, low_per_m: 500, high_per_m: 5000, removed_share: 0}), /^stretch 1\.3, period 3 mm before, band from 0\.5 \/mm \(2 mm\), to 5 \/mm \(0\.2 mm\)$/);
+// A spatial frequency is also a period.
+assert.deepEqual([0.05, 0.3, 4].map((value) => valueWords({...low, period: true}, value)), ['off', '0.3 /mm (3.33 mm)', '4 /mm (0.25 mm)']);
+assert.equal(valueWords({unit: ''}, 3), '3');
 
 // A and B: the same RMS of displacement, and no tray beyond its limit.
 const side = (gain_m_per_n, rms, tray_peak_m) => ({figures: {name: 'x', gain_m_per_n, rms, tray_peak_m, displacement_limit_m: 100e-6}});

@@ -48,6 +48,12 @@ def make_scenes():
     pathlib.Path("folder/broken.scene.json").write_text("{")
     write_scene("tray", layers=[{"type": "texture", "texture": "none", "at_m": 0}])
     write_scene("<img src=x onerror=alert(1)>", patches=[patch("bench", 0, 0, spring)])
+    device = json.loads((HERE.parents[1] / "data-schema/presets/sandpaper-1990.device.json").read_text())
+    for axis in device["axes"]:
+        axis.update(travel_m=[-0.07, 0.07], encoder_step_m=2e-5, peak_force_n=2, continuous_force_n=1)
+    device.update(name="own joystick", peak_force_n=2, continuous_force_n=1, rates_hz=[250, 1000])
+    pathlib.Path("folder/own.device.json").write_text(json.dumps(device))
+    pathlib.Path("folder/bent.device.json").write_text("{")
 
 
 def pixels(answer):
@@ -150,6 +156,23 @@ def crc32c(data):
     return check ^ 0xFFFFFFFF
 
 
+def check_devices(server, index):
+    """A device of the folder, with its own rate, travel, steps and limits; those that do not fit are refused."""
+    rows = {row["name"]: row for row in server.json("/scenes")["devices"]}
+    assert set(rows) == {"own", "bent"} and "reason" in rows["bent"] and "reason" not in rows["own"], rows
+    own = rows["own"]["index"]
+    for query, status, fault in ((f"device={rows['bent']['index']}", 422, 3), ("device=99", 404, 2), ("device=x", 404, None), ("device=", 404, None), ("x=1", 404, None), (f"device={own}&x=1", 404, None)):
+        refused = server.ask(f"/scene/{index['plane']}?{query}")
+        assert refused.status == status and (fault is None or json.loads(refused.body)["error"]["fault"] == fault), (query, refused.status, refused.body)
+    refused = server.ask(f"/scene/{index['room']}?device={own}")  # pieces need three axes
+    assert refused.status == 422 and json.loads(refused.body)["error"]["fault"] == 4, refused.body
+    plane = server.json(f"/scene/{index['plane']}?device={own}")
+    assert plane["device"] == "own joystick" and plane["rate_hz"] == 1000 and plane["peak_n"] == 2, plane
+    assert [(axis["from_m"], axis["to_m"], axis["encoder_step_m"]) for axis in plane["axes"]] == 2 * [(-0.07, 0.07, 2e-5)], plane
+    met = check_bits(server, plane, (3,), [[-0.02, -0.005]])
+    assert np.allclose(met["force_n"], [-1, 0.5], rtol=0, atol=2e-6) and met["pushed_n"] < 2.001, met
+
+
 def check_protocol(server, scene):
     page = server.page("/scene-session")
     assert page.ask(request="keep")["error"]["fault"] == 4
@@ -177,6 +200,7 @@ def live_scenes():
         # At rest only the spring: -100 N/m x (10, -5) mm.
         met = check_bits(server, plane, (1, 2), [[-0.02, -0.005]])
         assert np.allclose(met["force_n"], [-1, 0.5], rtol=0, atol=2e-6) and met["values"] == [100, 1] and met["ghost_m"] is None, met
+        check_devices(server, index)
         # Out of all pieces, then the ball from above: the ghost is on the sphere, the hand 2 mm deep: 1.2 N.
         # The ghost is at most 1 um inside of a piece (ghost_point.hpp).
         met = check_bits(server, room, (1, 2), [[-0.08, None, None], [None, None, 0.08], [0, 0, None], [None, None, RADIUS_M - 0.002]])

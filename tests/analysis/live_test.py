@@ -8,7 +8,9 @@ import hashlib
 import json
 import pathlib
 import random
+import re
 import shutil
+import socket
 import struct
 import subprocess
 import sys
@@ -66,6 +68,29 @@ def check_access(server):
     for size, status in ((256, 404), (257, 414), (5000, 414), (30_000, 414)):
         assert server.ask("/" + (size - 1) * "a").status == status, size
     assert server.ask("/" + 5000 * "a", cookie=False).status == 401
+    try:  # 127.0.0.1 only: another address of this computer does not answer
+        socket.create_connection(("127.0.0.2", server.port), timeout=10).close()
+        raise AssertionError("the server listens on more than 127.0.0.1")
+    except ConnectionRefusedError:
+        pass
+
+
+def check_sizes(server):
+    """Each page with all that it loads, but for data: at most 400 KB."""
+    for page in ("index.html", "scene.html", "explorer.html", "daemon.html", "jobs.html"):
+        sizes, wanted = {}, [page]
+        while wanted:
+            name = wanted.pop()
+            if name in sizes:
+                continue
+            answer = server.ask("/" + name)
+            assert answer.status == 200, (page, name)
+            sizes[name], text = len(answer.body), answer.body.decode(errors="replace")
+            if name.endswith((".html", ".js")):
+                wanted += re.findall(r"""(?:src=|<link[^>]* href=|from |addModule\(|get\()["']\.?/?([a-z_]+\.(?:js|css|svg|wasm))["']""", text)
+        assert "style.css" in sizes and ("core.wasm" in sizes) == (page in ("index.html", "scene.html")), (page, sizes)
+        print(f"{page}: {sum(sizes.values())} bytes in {len(sizes)} files")
+        assert sum(sizes.values()) <= 400_000, (page, sizes)
 
 
 def check_headers(server):
@@ -531,6 +556,7 @@ def live_page():
             assert second.port != server.port and second.token != server.token
         check_access(server)
         check_headers(server)
+        check_sizes(server)
         made, odd_made = check_textures(server)
         check_protocol(server, made)
         check_changes(server, made, odd_made)

@@ -98,7 +98,7 @@ def what_cannot_be_recorded_is_refused():
         refused(UNSUITABLE, "tty:slow,baud=115200", says=["560 Hz"])
         other = os.open("slow", os.O_RDWR | os.O_NOCTTY)
         fcntl.flock(other, fcntl.LOCK_EX)
-        refused(DEVICE, "tty:slow", says=["another program"])
+        refused(DEVICE, "tty:slow", says=["another program", f"(process {os.getpid()})"])
         os.close(other)
         tacto.run("record", "--time", "0.1s", "-o", "fast", "-d", "tty:slow,baud=3000000")
         again = subprocess.run([GADGET, "--pty", "slow"], capture_output=True, text=True, timeout=60)

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON from outside: the first byte selects whether the rest is a line to the daemon's socket ('c') or a
-// scene. Both are in one program because their common code takes minutes to compile.
-// A line gives a request or an error with a place; a valid request, written again, is still valid; replies to
-// it are lines that clients can parse. A valid scene has layers with numbers in their ranges, and one with
-// patches or pieces reads the same after it is written; an invalid one gives an error with a place.
+// JSON from outside: the first byte selects whether the rest is a line to the daemon's socket ('c'), a
+// message of the page of `tactograph live` ('l') or a scene. All are in one program because their common code
+// takes minutes to compile. A line gives a request or an error with a place; a valid request, written again,
+// is still valid; replies to it are lines that clients can parse. A valid scene has layers with numbers in
+// their ranges, and one with patches or pieces reads the same after it is written; an invalid one gives an
+// error with a place.
 #include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
 
 #include "data-schema/control/control.hpp"
+#include "data-schema/control/live_request.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "tests/fuzz/fuzzed_file.hpp"
 
@@ -42,6 +44,19 @@ void control_line(const std::string& text) {
   const auto reply = parse_control_reply(
       control_reply_line(request->id_json, {{"file", request->file}, {"not_finite", std::nan("")}}));
   demand(reply && reply->ok && control_text(reply->fields, "file") == request->file);
+}
+
+void live_message(const std::string& text) {
+  const auto request = parse_live_request(text);
+  if (!request) {
+    demand(request.error().kind == ErrorKind::malformed && !request.error().what.empty() &&
+           request.error().where.starts_with("request"));
+    return;
+  }
+  demand(request->verb <= LiveVerb::save && std::abs(request->times) <= kMostTimes &&
+         request->files.size() <= 2);
+  demand(request->verb != LiveVerb::load || request->texture.has_value());
+  demand(request->verb != LiveVerb::gain || std::isfinite(request->times_default.value()));
 }
 
 void number(const LayerNumber& number) {
@@ -106,6 +121,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const std::string text(reinterpret_cast<const char*>(data) + 1, size - 1);
   if (data[0] == 'c') control_line(text);
-  if (data[0] != 'c') scene(text);
+  if (data[0] == 'l') live_message(text);
+  if (data[0] != 'c' && data[0] != 'l') scene(text);
   return 0;
 }

@@ -73,6 +73,16 @@ export class Cells {
   }
   cell({row, bin}) { return this.cells[row * this.bins + bin]; }
   level_db({row, bin}) { return this.levels[row * this.bins + bin]; }
+  /** The colour of each cell, 0 to 255 from low_db to high_db, by frequencies: cell {row, bin} at bin * rows + row. Kept
+   * until the range changes, because a zoom needs them for each picture. */
+  shades({low_db, high_db}) {
+    if (this.shaded?.low_db === low_db && this.shaded.high_db === high_db) return this.shaded.shades;
+    const {bins, rows, levels} = this, shades = new Uint8Array(levels.length), scale = 256 / (high_db - low_db);
+    for (let row = 0, at = 0; row < rows; ++row)
+      for (let bin = 0; bin < bins; ++bin, ++at) shades[bin * rows + row] = Math.max(0, Math.min(255, Math.floor((levels[at] - low_db) * scale)));
+    this.shaded = {low_db, high_db, shades};
+    return shades;
+  }
   /** Whether the recording could know it; null if the texture does not say. */
   knows({row, bin}) {
     if (this.known.length === 0) return null;
@@ -85,8 +95,9 @@ export class Cells {
  * cells from the middle of cell 0. A pixel beyond them has none. */
 function spans(count, most, edge) {
   const first = new Int32Array(count), end = new Int32Array(count);
-  for (let i = 0; i < count; ++i) {
-    const [low, high] = [edge(i), edge(i + 1)].sort((a, b) => a - b), middle = Math.round((low + high) / 2);
+  for (let i = 0, before = edge(0); i < count; ++i) {
+    const after = edge(i + 1), low = Math.min(before, after), high = Math.max(before, after), middle = Math.round((low + high) / 2);
+    before = after;
     first[i] = Math.max(0, Math.round(low));
     end[i] = Math.min(most, Math.round(high));
     if (high - low < 1 || end[i] <= first[i]) [first[i], end[i]] = middle >= 0 && middle < most ? [middle, middle + 1] : [0, 0];
@@ -96,18 +107,29 @@ function spans(count, most, edge) {
 
 /** The colours of a view: a pixel shows the largest of its cells. `positions`, `frequencies`: axes; `colours`: 256 pixels (as
  * in ImageData, 32 bits); where there is no cell the pixel is 0. */
-export function paint(spectrogram, positions, frequencies, {low_db, high_db}, colours, width, height, pixels) {
-  const {bins, rows, levels} = spectrogram, scale = 256 / (high_db - low_db);
+export function paint(spectrogram, positions, frequencies, levels, colours, width, height, pixels) {
+  const {bins, rows} = spectrogram, shades = spectrogram.shades(levels), line = new Uint8Array(rows);
   const x = spans(width, rows, (i) => (positions.value(i / width) - spectrogram.first_position_m) / spectrogram.hop_m);
   const y = spans(height, bins, (i) => frequencies.value(1 - i / height) / spectrogram.frequency_step_per_m);
-  for (let i = 0; i < width; ++i)
-    for (let j = 0, pixel = i; j < height; ++j, pixel += width) {
-      let most = -Infinity;
-      for (let row = x.first[i]; row < x.end[i]; ++row)
-        for (let at = row * bins + y.first[j], end = row * bins + y.end[j]; at < end; ++at) if (levels[at] > most) most = levels[at];
-      const none = x.end[i] === 0 || y.end[j] === 0;
-      pixels[pixel] = none ? 0 : colours[Math.max(0, Math.min(255, Math.floor((most - low_db) * scale)))];
+  for (let j = 0; j < height; ++j) {
+    const begin = j * width;
+    if (j > 0 && y.first[j] === y.first[j - 1] && y.end[j] === y.end[j - 1]) {  // the same cells as above
+      pixels.copyWithin(begin, begin - width, begin);
+      continue;
     }
+    if (y.end[j] === 0) {
+      pixels.fill(0, begin, begin + width);
+      continue;
+    }
+    line.set(shades.subarray(y.first[j] * rows, (y.first[j] + 1) * rows));
+    for (let bin = y.first[j] + 1; bin < y.end[j]; ++bin)
+      for (let row = 0, at = bin * rows; row < rows; ++row, ++at) if (shades[at] > line[row]) line[row] = shades[at];
+    for (let i = 0; i < width; ++i) {
+      let most = line[x.first[i]];
+      for (let row = x.first[i] + 1; row < x.end[i]; ++row) if (line[row] > most) most = line[row];
+      pixels[begin + i] = x.end[i] === 0 ? 0 : colours[most];
+    }
+  }
 }
 
 /** Everything about a cell. A value has the nine digits that identify a float32. */

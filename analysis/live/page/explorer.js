@@ -16,6 +16,7 @@ let shown = null;               // the spectrogram: Cells
 let positions = null, frequencies = null;  // the view: axes
 let cross = null;               // the cell under the cross-hair
 let dragged = null;             // {from, to}: places on the plot
+let picture = null;             // of the cells: kept, because a new one for each frame would cost more than its pixels
 let heatDrawn = false, overDrawn = false, choices = 0;
 
 function put(id, text) { if (at(id).textContent !== text) at(id).textContent = text; }
@@ -204,7 +205,7 @@ function drawHeat() {
   const {ink, width, height, ratio} = sized(at('heat')), inner = innerOf(width, height, ratio);
   const range_db = Math.max(1, Number(at('range').value) || 60), high_db = Number(at('brightest').value);
   const levels = {high_db, low_db: high_db - range_db};
-  const picture = ink.createImageData(inner.width, inner.height);
+  if (picture?.width !== inner.width || picture.height !== inner.height) picture = ink.createImageData(inner.width, inner.height);
   paint(shown, positions, frequencies, levels, palette(at('colours').value), inner.width, inner.height, new Uint32Array(picture.data.buffer));
   ink.clearRect(0, 0, width, height);
   ink.putImageData(picture, inner.x, inner.y);

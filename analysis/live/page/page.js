@@ -288,7 +288,7 @@ async function keep() {
 let pointer = null;  // {id, touches, place_m}
 
 function placeOf(event) {
-  const box = strip.getBoundingClientRect(), {from_m, to_m} = view();
+  const box = at('map').getBoundingClientRect(), {from_m, to_m} = view();  // within the border
   const x = (event.clientX - box.left) / box.width, y = (event.clientY - box.top) / box.height;
   return {within: x >= 0 && x <= 1 && y >= 0 && y <= 1, place_m: from_m + x * (to_m - from_m)};
 }

@@ -3,7 +3,7 @@
 
 import {get} from './answers.js';
 import {Hand, runHand} from './hand.js';
-import {imageOf} from './scene_list.js';
+import {folderDevices, imageOf} from './scene_list.js';
 import {IDLE_S, KeptSession, LONGEST_S} from './kept_session.js';
 import {sized} from './strip.js';
 
@@ -53,7 +53,8 @@ async function choose() {
   at('scene-title').textContent = 'Preparing …';
   showState();
   try {
-    const figures = await (await get(`scene/${index}`)).json();
+    const device = at('device').value;
+    const figures = await (await get(`scene/${index}${device === '' ? '' : `?device=${device}`}`)).json();
     const upload = new Uint8Array(await (await get(`scene-upload/${figures.made}`)).arrayBuffer()), module = await compiled;
     if (mine !== choices) return;  // another one has been chosen since
     hand = new Hand(module, figures, upload, report);
@@ -293,7 +294,7 @@ async function keep() {
 // The pointer: it is the hand while it is pressed.
 let pointer = null;  // {id, place_m}
 function placeOf(event) {
-  const box = view.getBoundingClientRect(), place_m = [0, 0, 0];
+  const box = at('picture').getBoundingClientRect(), place_m = [0, 0, 0];  // within the border
   place_m[section.right] = section.left_m + (event.clientX - box.left) / box.width * section.columns * section.pixel_m;
   place_m[section.up] = section.top_m - (event.clientY - box.top) / box.height * section.rows * section.pixel_m;
   return place_m;
@@ -349,6 +350,7 @@ at('across').addEventListener('input', () => {
   hand.move(axis, Math.sign(to_m - hand.fingers[axis].place_m) * speed_mps, to_m);
   showPicture();
 });
+at('device').addEventListener('input', choose);
 at('keep').addEventListener('click', keep);
 at('stop').addEventListener('click', stop);
 addEventListener('keydown', (event) => { if (event.key === 'Escape') stop(); });
@@ -378,5 +380,13 @@ function draw(now_ms) {
   showValues();
 }
 
+async function listDevices() {
+  const devices = await folderDevices, broken = devices.filter(({reason}) => reason !== undefined);
+  at('device').append(...devices.filter(({reason}) => reason === undefined).map(({index, name}) => new Option(name, index)));
+  at('device-words').textContent = ['Its axes, largest rate and limits are used. Built in are sandpaper-1990 (patches) and arm (pieces); your own one is NAME.device.json in this folder.',
+    ...broken.map(({name, reason}) => `${name} can't be read: ${reason}`)].join(' ');
+}
+
 requestAnimationFrame(draw);
+listDevices();
 choose();

@@ -35,7 +35,7 @@ function mark() {
 }
 
 async function show() {
-  const {scenes, reason} = await (await get('scenes')).json();
+  const {scenes, devices, reason} = await (await get('scenes')).json();
   const seen = new IntersectionObserver((entries) => {
     for (const {isIntersecting, target} of entries)
       if (isIntersecting) {
@@ -54,7 +54,12 @@ async function show() {
       : scenes.length > 0 ? plural(scenes.length, 'scene')
       : 'This folder has no force scenes (NAME.scene.json with patches or pieces).';
   mark();
+  return devices;
 }
 
 addEventListener('hashchange', mark);
-show().catch((error) => { count.textContent = error.message; });
+/** The devices of the folder: {index, name, reason if one can't be read}. */
+export const folderDevices = show().catch((error) => {
+  count.textContent = error.message;
+  return [];
+});

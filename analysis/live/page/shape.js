@@ -9,8 +9,8 @@ const STEPS = 200;
 const KINDS = {
   texture: [
     {query: 'stretch', words: 'Stretch', unit: '×', times: 1, low: 0.5, high: 2, start: 1, logarithmic: true},
-    {query: 'low_per_m', words: 'Band from', unit: '/mm', times: 1e-3, low: 0.05, high: 20, start: 0.05, logarithmic: true, off: 0.05},
-    {query: 'high_per_m', words: 'Band to', unit: '/mm', times: 1e-3, low: 0.05, high: 20, start: 20, logarithmic: true, off: 20},
+    {query: 'low_per_m', words: 'Band from (longest period)', unit: '/mm', times: 1e-3, low: 0.05, high: 20, start: 0.05, logarithmic: true, off: 0.05, period: true},
+    {query: 'high_per_m', words: 'Band to (shortest period)', unit: '/mm', times: 1e-3, low: 0.05, high: 20, start: 20, logarithmic: true, off: 20, period: true},
   ],
   grating: [
     {query: 'period_m', words: 'Period', unit: 'mm', times: 1e3, low: 0.2, high: 20, start: 2, logarithmic: true},
@@ -39,7 +39,13 @@ export function positionOf({low, high, logarithmic}, value) {
 }
 
 const isOff = ({off}, value) => off !== undefined && value === off;
-const valueWords = (slider, value) => (isOff(slider, value) ? 'off' : `${value}${slider.unit === '' ? '' : ` ${slider.unit}`}`);
+const withPeriod = (per_mm) => `${per_mm} /mm (${Number((1 / per_mm).toPrecision(3))} mm)`;
+
+/** "1.3 ×", "off"; a spatial frequency also as its period: "0.5 /mm (2 mm)". */
+export function valueWords(slider, value) {
+  if (isOff(slider, value)) return 'off';
+  return slider.period ? withPeriod(value) : `${value}${slider.unit === '' ? '' : ` ${slider.unit}`}`;
+}
 
 /** The query of sliders with their values; empty for a texture as it is. */
 export function queryOf(sliders, values, keepSlope) {
@@ -50,7 +56,7 @@ export function queryOf(sliders, values, keepSlope) {
 
 /** What the server has made, in words: "stretch 1.3, its period 3 mm, ..." */
 export function effectiveWords(shape) {
-  const mm = (metres) => `${Number((1e3 * metres).toPrecision(4))} mm`, perMm = (per_m) => `${Number((1e-3 * per_m).toPrecision(4))} /mm`;
+  const mm = (metres) => `${Number((1e3 * metres).toPrecision(4))} mm`, perMm = (per_m) => withPeriod(Number((1e-3 * per_m).toPrecision(4)));
   const words = {
     factor: (x) => `stretch ${x}`, period_m: (x) => `period ${mm(x)}${shape.factor === undefined ? '' : ' before'}`, low_per_m: (x) => `band from ${perMm(x)}`,
     high_per_m: (x) => `to ${perMm(x)}`, removed_share: (x) => (x > 1e-3 ? `${(100 * x).toPrecision(2)} % of the RMS removed, above ${perMm(shape.removed_above_per_m)}` : ''),

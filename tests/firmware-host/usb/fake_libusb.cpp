@@ -161,6 +161,9 @@ void libusb_unref_device(libusb_device*) {
 std::uint8_t libusb_get_bus_number(libusb_device* device) {
   return of(device).bus;
 }
+std::uint8_t libusb_get_device_address(libusb_device*) {
+  return 0;  // no node of /dev has this number
+}
 int libusb_get_port_numbers(libusb_device* device, std::uint8_t* ports, int) {
   std::copy(of(device).ports.begin(), of(device).ports.end(), ports);
   return static_cast<int>(of(device).ports.size());
