@@ -161,8 +161,8 @@ Result<int> connect_control_socket(const std::string& path) {
     return fail(ErrorKind::not_found, "this user may not connect", path,
                 "become a member of the socket's group: `ls -l` names it");
   return fail(ErrorKind::not_found, "no daemon listens there: " + system_words(why), path,
-              "start one: tactographd --config FILE, or systemctl start tactographd; of one with another "
-              "socket give it with --socket");
+              "start one: tactographd --config FILE, or systemctl start tactographd; if it has another "
+              "socket, name it with --socket");
 }
 
 }  // namespace tacto::playback
