@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostJobs = 20;          // that are listed; the oldest ones that have ended leave
 constexpr std::size_t kMostText = 256U << 10;  // bytes of what a job prints; more is not kept
-constexpr std::size_t kMostPage = 64U << 20;    // bytes
+constexpr std::size_t kMostPage = 64U << 20;   // bytes
 constexpr double kEndsWithinS = 3;
 constexpr const char* kEnding = ".html";
 

@@ -27,9 +27,9 @@ struct Project {
 
 /// Reads the folder and its subfolders, except hidden ones and links to folders. A file of tactograph is a
 /// .json with a kind, a .nc or a .session; a .wav belongs to the sidecar that names it. An unreadable file
-/// or folder does not stop the rest; nor do pipes, sockets, devices and broken links, which are not opened. `leave_out`
-/// is a path to skip: the page itself. `progress` receives 0 to 1. Errors: not_found: the folder does not
-/// exist; unsuitable: it contains no file of tactograph.
+/// or folder does not stop the rest; nor do pipes, sockets, devices and broken links, which are not opened.
+/// `leave_out` is a path to skip: the page itself. `progress` receives 0 to 1. Errors: not_found: the folder
+/// does not exist; unsuitable: it contains no file of tactograph.
 schema::Result<Project> read_project(const std::string& folder, const std::string& leave_out,
                                      const std::function<void(double)>& progress = {});
 
