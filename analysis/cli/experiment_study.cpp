@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -572,15 +573,17 @@ struct PowerOptions {
   PowerAssumptions assumed;
 };
 
-// "8 people (83.4 %; 7: 77.3 %)": the fewest for the goal with their power, and that of one fewer.
+// "8 people (86.3 %; 7: 79.9 %)": the fewest for the goal with their power, and that of one fewer; rounded
+// down, so that none below the goal is printed as the goal.
 std::string people_in_words(const std::vector<StudyPower::Row>& rows, const std::optional<int>& people,
                             double StudyPower::Row::*power) {
   if (!people) return fmt::format("more than {} people", kMostPeople);
+  const auto percent = [&](const StudyPower::Row& row) { return std::floor(1000 * row.*power) / 10; };
   const auto row = std::ranges::find(rows, *people, &StudyPower::Row::people);
-  const std::string fewer = row == rows.begin() ? ""
-                                                : fmt::format("; {}: {:.1f} %", std::prev(row)->people,
-                                                              100 * (*std::prev(row)).*power);
-  return fmt::format("{} people ({:.1f} %{})", *people, 100 * (*row).*power, fewer);
+  const std::string fewer =
+      row == rows.begin() ? ""
+                          : fmt::format("; {}: {:.1f} %", std::prev(row)->people, percent(*std::prev(row)));
+  return fmt::format("{} people ({:.1f} %{})", *people, percent(*row), fewer);
 }
 
 Result<Report> run_study_power(PowerOptions o) {
