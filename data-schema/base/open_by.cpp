@@ -21,8 +21,8 @@ bool is_number(const std::string& name) {
 
 // Also of devices, which std::filesystem::equivalent() refuses.
 bool are_same(const std::string& one, const std::string& other) {
-  struct stat a {
-  }, b{};
+  struct stat a {};
+  struct stat b {};
   return ::stat(one.c_str(), &a) == 0 && ::stat(other.c_str(), &b) == 0 && a.st_dev == b.st_dev &&
          a.st_ino == b.st_ino;
 }
