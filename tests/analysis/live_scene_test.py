@@ -49,7 +49,7 @@ def make_scenes():
     write_scene("<img src=x onerror=alert(1)>", patches=[patch("bench", 0, 0, spring)])
     device = json.loads((HERE.parents[1] / "data-schema/presets/sandpaper-1990.device.json").read_text())
     for axis in device["axes"]:
-        axis.update(travel_m=[-0.07, 0.07], encoder_step_m=2e-5, peak_force_n=2, continuous_force_n=2)
+        axis.update(travel_m=[-0.07, 0.07], encoder_step_m=5e-6, peak_force_n=2, continuous_force_n=2)
     device.update(name="own joystick", peak_force_n=2, continuous_force_n=2, rates_hz=[250, 1000])
     pathlib.Path("folder/own.device.json").write_text(json.dumps(device))
     pathlib.Path("folder/bent.device.json").write_text("{")
@@ -146,7 +146,7 @@ def check_devices(server, index):
     assert refused.status == 422 and json.loads(refused.body)["error"]["fault"] == 4, refused.body
     plane = server.json(f"/scene/{index['plane']}?device={own}")
     assert plane["device"] == "own joystick" and plane["rate_hz"] == 1000 and plane["peak_n"] == 2, plane
-    assert [(axis["from_m"], axis["to_m"], axis["encoder_step_m"]) for axis in plane["axes"]] == 2 * [(-0.07, 0.07, 2e-5)], plane
+    assert [(axis["from_m"], axis["to_m"], axis["encoder_step_m"]) for axis in plane["axes"]] == 2 * [(-0.07, 0.07, 5e-6)], plane
     met = check_bits(server, plane, (3,), [[-0.02, -0.005]])
     assert np.allclose(met["force_n"], [-1, 0.5], rtol=0, atol=2e-6) and met["pushed_n"] < 2.001, met
 
