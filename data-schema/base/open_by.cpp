@@ -2,6 +2,7 @@
 #include "data-schema/base/open_by.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,11 +19,19 @@ bool is_number(const std::string& name) {
   return std::ranges::all_of(name, [](char c) { return '0' <= c && c <= '9'; });
 }
 
+// Also of devices, which std::filesystem::equivalent() refuses.
+bool are_same(const std::string& one, const std::string& other) {
+  struct stat a {};
+  struct stat b {};
+  return ::stat(one.c_str(), &a) == 0 && ::stat(other.c_str(), &b) == 0 && a.st_dev == b.st_dev &&
+         a.st_ino == b.st_ino;
+}
+
 // A process may end, and another user's may not be read: then it has no files.
-bool has_open(const fs::path& process, const fs::path& file) {
+bool has_open(const fs::path& process, const std::string& file) {
   std::error_code failed;
   for (fs::directory_iterator at(process / "fd", failed), end; !failed && at != end; at.increment(failed))
-    if (std::error_code unknown; fs::equivalent(at->path(), file, unknown)) return true;
+    if (are_same(at->path().string(), file)) return true;
   return false;
 }
 

@@ -266,7 +266,7 @@ def check_explorer(chrome, server):
     def cell():
         words = chrome.text("cell")
         at = (np.abs(positions - float(words.split()[1])).argmin(), np.abs(frequencies - float(words.split("frequency ")[1].split()[0])).argmin())
-        assert np.float32(words.split(" N2 mm")[0].split()[-1]) == density[at], (words, density[at])
+        assert np.float32(words.split(" N² mm")[0].split()[-1]) == density[at], (words, density[at])
         return at
 
     first = cell()

@@ -4,13 +4,17 @@ import base64
 import contextlib
 import json
 import os
+import pathlib
 import re
+import shutil
 import signal
 import socket
 import struct
 import subprocess
 
 from tacto import COMMAND
+
+HERE = pathlib.Path(__file__).resolve().parent
 
 
 class Answer:
@@ -124,3 +128,41 @@ def live(*arguments):
     finally:
         process.kill()
         process.wait()
+
+
+def fetch_page(server, files, scripts):
+    """Files of the page, and scripts of this folder that import them, for node: in the folder page."""
+    pathlib.Path("page").mkdir(exist_ok=True)
+    for name in files:
+        pathlib.Path("page", name).write_bytes(server.ask("/" + name).body)
+    pathlib.Path("page/package.json").write_text('{"type": "module"}')
+    for script in scripts:
+        shutil.copy(HERE / script, "page")
+
+
+class TickFrame:
+    """The last frame of ticks (of a `kind` of the wire) in the first half of a page's log."""
+
+    def __init__(self, log, kind):
+        self.log, self.begin = log, log.rfind(b"\xa5\x54\x01" + bytes([kind]), 0, len(log) // 2)
+        length = struct.unpack_from("<H", log, self.begin + 4)[0]
+        self.head, self.payload = log[self.begin:self.begin + 12], log[self.begin + 12:self.begin + 12 + length]
+        self.end = self.begin + 12 + length + 4
+
+    def with_one_bit_changed(self, at):
+        """The log with the lowest bit of a byte of the payload changed; the frame's check is right again."""
+        payload = bytearray(self.payload)
+        payload[at] ^= 1
+        return self.log[:self.begin] + self.head + payload + struct.pack("<I", crc32c(self.head + payload)) + self.log[self.end:]
+
+    def left_out(self):
+        return self.log[:self.begin] + self.log[self.end:]
+
+
+def crc32c(data):
+    check = 0xFFFFFFFF
+    for byte in data:
+        check ^= byte
+        for _ in range(8):
+            check = check >> 1 ^ (0x82F63B78 if check & 1 else 0)
+    return check ^ 0xFFFFFFFF

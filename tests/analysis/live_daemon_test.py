@@ -5,18 +5,16 @@ Pages come, steer, take over and leave; the daemon ends and comes back. The page
 import base64
 import json
 import pathlib
-import shutil
 import struct
 import subprocess
 import sys
 import time
 
 import numpy as np
-from live_client import live
+from live_client import fetch_page, live
 from run_daemon import Client, daemon, prepare_files
 from tacto import COMMAND, in_folder
 
-HERE = pathlib.Path(__file__).resolve().parent
 WAIT_S = 60  # until a test fails, not a time that is judged
 
 
@@ -238,18 +236,11 @@ def the_pictures_of_node():
         assert len(cells) == 299 and np.array_equal(cells, np.stack([whole.min(1), whole.max(1)], 1)[:299])  # the last one is open
 
 
-def fetch_page(server):
-    pathlib.Path("page").mkdir(exist_ok=True)
-    pathlib.Path("page/ticks.js").write_bytes(server.ask("/ticks.js").body)
-    pathlib.Path("page/package.json").write_text('{"type": "module"}')
-    shutil.copy(HERE / "live_ticks.mjs", "page")
-
-
 def live_daemon():
     prepare_files(device="sim:paced=0")
     pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.004\n0.5,0.034\n1,0.004\n")  # repeated without a jump
     with live(".", "--socket", "control") as server:
-        fetch_page(server)
+        fetch_page(server, ("ticks.js",), ("live_ticks.mjs",))
         the_pictures_of_node()
         who_may_use_it(server)
         the_daemon_ends_and_comes_back(server)

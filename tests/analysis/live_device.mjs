@@ -8,24 +8,12 @@ import {readFileSync, writeFileSync} from 'node:fs';
 import {Core, METRES_PER_COUNT, RATE_HZ} from './core.js';
 import {Engine} from './engine.js';
 import {FOLLOWER_HZ, Finger} from './finger.js';
+import {check, drawsOf} from './live_draws.mjs';
 
 const [wasm, upload, tray, seed, seconds, kind, output, list] = process.argv.slice(2);
 const module = new WebAssembly.Module(readFileSync(wasm));
 
-let state = Number(seed);
-function random() {  // mulberry32
-  state = (state + 0x6D2B79F5) | 0;
-  let t = Math.imul(state ^ (state >>> 15), 1 | state);
-  t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-  return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
-}
-const between = (least, most) => least + random() * (most - least);
-
-function check(holds, what) {
-  if (holds) return;
-  console.error(`not so: ${what}`);
-  process.exit(1);
-}
+const {random, between} = drawsOf(seed);
 
 const changes = list ? JSON.parse(readFileSync(list, 'utf8')).map(({frames, note}) => (
   {what: 'change', upload: new Uint8Array(readFileSync(frames)), fade_s: 0.05, note})) : [];

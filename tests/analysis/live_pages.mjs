@@ -4,7 +4,7 @@
 // page says of the cell at each place.
 import {readFileSync} from 'node:fs';
 import assert from 'node:assert';
-import {Axis, Cells, cellWords, exportQuery, frequencyMarks, marks, paint} from './cells.js';
+import {Axis, Cells, cellWords, exportQuery, frequencyMarks, marks, paint, powers} from './cells.js';
 import {compareWords, fullScale, gainsOf, largestLevel} from './compare.js';
 import {arrange, countWords, recordingWords, withPrefix} from './library.js';
 import {effectiveWords, positionOf, queryOf, valueAt, valueWords} from './shape.js';
@@ -88,6 +88,8 @@ close(few.level_db({row: 1, bin: 2}), 10);
 assert.deepEqual([few.knows({row: 0, bin: 3}), few.knows({row: 2, bin: 3}), few.knows({row: 0, bin: 0})], [false, true, false]);
 assert.match(cellWords(few, {row: 0, bin: 3}, 0.05), /position 10 mm; frequency 0\.3 \/mm \(period 3\.333 mm; 15 Hz at 50 mm\/s\); .*outside the valid band/);
 assert.doesNotMatch(cellWords(few, {row: 2, bin: 0}, 0.05), /period|Infinity/);
+
+assert.deepEqual(['N2 mm', '1 N^2 mm', 'm', '(m/s)2'].map(powers), ['N² mm', '1 N² mm', 'm', '(m/s)²']);
 
 // Pixels: the whole, larger than the cells and smaller; what is outside; every cell is in some pixel.
 const colours = Uint32Array.from({length: 256}, (_, i) => i + 1), levels = {low_db: -60, high_db: 60};  // 10 dB are 21.3 colours

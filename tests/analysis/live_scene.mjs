@@ -5,25 +5,13 @@
 // ghost_m, values}), the largest force and the time of a tick in us.
 import {readFileSync, writeFileSync} from 'node:fs';
 import {Hand} from './hand.js';
+import {check, drawsOf} from './live_draws.mjs';
 
 const [wasm, about, upload, seed, seconds, targets, output] = process.argv.slice(2);
 const scene = JSON.parse(readFileSync(about, 'utf8')), bytes = new Uint8Array(readFileSync(upload));
 const module = new WebAssembly.Module(readFileSync(wasm));
 
-let state = Number(seed);
-function random() {  // mulberry32
-  state = (state + 0x6D2B79F5) | 0;
-  let t = Math.imul(state ^ (state >>> 15), 1 | state);
-  t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-  return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
-}
-const between = (least, most) => least + random() * (most - least);
-
-function check(holds, what) {
-  if (holds) return;
-  console.error(`not so: ${what}`);
-  process.exit(1);
-}
+const {random, between} = drawsOf(seed);
 
 const log = [];
 let seen = {}, pushed_n = 0;

@@ -5,13 +5,12 @@ device in node, whose sessions `tactograph replay` computes again natively, to t
 """
 import json
 import pathlib
-import shutil
 import struct
 import subprocess
 import sys
 
 import numpy as np
-from live_client import live
+from live_client import TickFrame, fetch_page, live
 from tacto import COMMAND, in_folder, run, run_json
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -50,8 +49,8 @@ def make_scenes():
     write_scene("<img src=x onerror=alert(1)>", patches=[patch("bench", 0, 0, spring)])
     device = json.loads((HERE.parents[1] / "data-schema/presets/sandpaper-1990.device.json").read_text())
     for axis in device["axes"]:
-        axis.update(travel_m=[-0.07, 0.07], encoder_step_m=2e-5, peak_force_n=2, continuous_force_n=1)
-    device.update(name="own joystick", peak_force_n=2, continuous_force_n=1, rates_hz=[250, 1000])
+        axis.update(travel_m=[-0.07, 0.07], encoder_step_m=5e-6, peak_force_n=2, continuous_force_n=2)
+    device.update(name="own joystick", peak_force_n=2, continuous_force_n=2, rates_hz=[250, 1000])
     pathlib.Path("folder/own.device.json").write_text(json.dumps(device))
     pathlib.Path("folder/bent.device.json").write_text("{")
 
@@ -99,14 +98,6 @@ def check_sections(server, room):
         assert server.ask(f"/section/{path}").status == 404, path
 
 
-def fetch_page(server):
-    pathlib.Path("page").mkdir()
-    for name in ("core.js", "finger.js", "hand.js", "core.wasm"):
-        pathlib.Path("page", name).write_bytes(server.ask("/" + name).body)
-    pathlib.Path("page/package.json").write_text('{"type": "module"}')
-    shutil.copy(HERE / "live_scene.mjs", "page")
-
-
 def play(server, scene, seed, seconds, targets):
     pathlib.Path("about").write_text(json.dumps(scene))
     pathlib.Path("upload").write_bytes(server.ask(f"/scene-upload/{scene['made']}").body)
@@ -137,23 +128,10 @@ def check_bits(server, scene, seeds, targets):
         run("validate", kept["kept"])
         info = json.dumps(run_json("info", kept["kept"]))
         assert "simulated" in info and "browser" in info, info
-    # One bit of one force: the comparison is able to fail. The frame's check has to be right again.
-    frame = log.rfind(b"\xa5\x54\x01\x8a", 0, len(log) // 2)
-    length = struct.unpack_from("<H", log, frame + 4)[0]
-    payload = bytearray(log[frame + 12:frame + 12 + length])
-    payload[20 + 4 * len(scene["axes"])] ^= 1
-    changed = log[:frame + 12] + payload + struct.pack("<I", crc32c(log[frame:frame + 12] + payload)) + log[frame + 12 + length + 4:]
+    # One bit of one force: the comparison is able to fail.
+    changed = TickFrame(log, 0x8a).with_one_bit_changed(20 + 4 * len(scene["axes"]))
     assert not run_json("replay", keep(server, scene, changed)["kept"], code=5)["same_to_the_bit"]
     return met
-
-
-def crc32c(data):
-    check = 0xFFFFFFFF
-    for byte in data:
-        check ^= byte
-        for _ in range(8):
-            check = check >> 1 ^ (0x82F63B78 if check & 1 else 0)
-    return check ^ 0xFFFFFFFF
 
 
 def check_devices(server, index):
@@ -168,7 +146,7 @@ def check_devices(server, index):
     assert refused.status == 422 and json.loads(refused.body)["error"]["fault"] == 4, refused.body
     plane = server.json(f"/scene/{index['plane']}?device={own}")
     assert plane["device"] == "own joystick" and plane["rate_hz"] == 1000 and plane["peak_n"] == 2, plane
-    assert [(axis["from_m"], axis["to_m"], axis["encoder_step_m"]) for axis in plane["axes"]] == 2 * [(-0.07, 0.07, 2e-5)], plane
+    assert [(axis["from_m"], axis["to_m"], axis["encoder_step_m"]) for axis in plane["axes"]] == 2 * [(-0.07, 0.07, 5e-6)], plane
     met = check_bits(server, plane, (3,), [[-0.02, -0.005]])
     assert np.allclose(met["force_n"], [-1, 0.5], rtol=0, atol=2e-6) and met["pushed_n"] < 2.001, met
 
@@ -196,7 +174,7 @@ def live_scenes():
         assert np.linalg.norm(start_m) > RADIUS_M and start_m[2] > -0.06, start_m
         check_sections(server, room)
         check_protocol(server, room)
-        fetch_page(server)
+        fetch_page(server, ("core.js", "finger.js", "hand.js", "core.wasm"), ("live_scene.mjs", "live_draws.mjs"))
         # At rest only the spring: -100 N/m x (10, -5) mm.
         met = check_bits(server, plane, (1, 2), [[-0.02, -0.005]])
         assert np.allclose(met["force_n"], [-1, 0.5], rtol=0, atol=2e-6) and met["values"] == [100, 1] and met["ghost_m"] is None, met

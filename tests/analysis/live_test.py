@@ -19,7 +19,7 @@ import netCDF4
 import numpy as np
 import scipy.signal
 import soundfile
-from live_client import live
+from live_client import TickFrame, fetch_page, live
 from tacto import COMMAND, in_folder, run, run_json
 
 ODD_NAME = "<img src=x onerror=alert(1)>"
@@ -364,16 +364,6 @@ def check_protocol(server, made):
     assert not list(pathlib.Path("folder").glob("*.session"))
 
 
-def fetch_page(server):
-    """The modules that the page runs, for node."""
-    pathlib.Path("page").mkdir(exist_ok=True)
-    for name in ("answers.js", "cells.js", "compare.js", "core.js", "engine.js", "finger.js", "library.js", "shape.js", "strip.js", "core.wasm"):
-        pathlib.Path("page", name).write_bytes(server.ask("/" + name).body)
-    pathlib.Path("page/package.json").write_text('{"type": "module"}')
-    for script in ("live_device.mjs", "live_pages.mjs"):
-        shutil.copy(HERE / script, "page")
-
-
 def device_log(server, made, seed, seconds, kind="", changes=()):
     """`changes`: (number of another prepared texture, factor of its samples)."""
     for part in ("upload", "tray"):
@@ -482,17 +472,12 @@ def check_bits(server, made, odd_made):
     assert report["same_to_the_bit"] and report["ticks_compared"] == answer["ticks"] > 90_000, report
     wrong = [{**change, "note": {**change["note"], "times": 0.26}} for change in changes]
     assert not run_json("replay", kept(server, made, change_log, wrong)["kept"], code=5)["same_to_the_bit"]
-    # One bit of one drive: the comparison is able to fail. The frame's check has to be right again.
-    frame = log.rfind(b"\xa5\x54\x01\x86", 0, len(log) // 2)
-    length = struct.unpack_from("<H", log, frame + 4)[0]
-    payload = bytearray(log[frame + 12:frame + 12 + length])
-    payload[20 + 4] ^= 1
-    changed = log[:frame + 12] + payload + struct.pack("<I", crc32c(log[frame:frame + 12] + payload)) + log[frame + 12 + length + 4:]
+    # One bit of one drive: the comparison is able to fail.
+    frame = TickFrame(log, 0x86)
     check_damaged_logs(server, made, log)
-    assert not run_json("replay", kept(server, made, changed)["kept"], code=5)["same_to_the_bit"]
+    assert not run_json("replay", kept(server, made, frame.with_one_bit_changed(20 + 4))["kept"], code=5)["same_to_the_bit"]
     # A part of the log that is missing is a loss in the session.
-    lacking = log[:frame] + log[frame + 12 + length + 4:]
-    assert run_json("replay", kept(server, made, lacking)["kept"], code=5)["lost_ticks"] == 64
+    assert run_json("replay", kept(server, made, frame.left_out())["kept"], code=5)["lost_ticks"] == 64
 
 
 def check_sound(server):
@@ -532,15 +517,6 @@ def check_damaged_logs(server, made, log):
     assert server.ask("/").status == 200
 
 
-def crc32c(data):
-    check = 0xFFFFFFFF
-    for byte in data:
-        check ^= byte
-        for _ in range(8):
-            check = check >> 1 ^ (0x82F63B78 if check & 1 else 0)
-    return check ^ 0xFFFFFFFF
-
-
 def check_command():
     run("live", "nowhere", code=3)
     run("live", "folder", "--transducer", "nothing", code=3)
@@ -560,7 +536,8 @@ def live_page():
         made, odd_made = check_textures(server)
         check_protocol(server, made)
         check_changes(server, made, odd_made)
-        fetch_page(server)
+        fetch_page(server, ("answers.js", "cells.js", "compare.js", "core.js", "engine.js", "finger.js", "library.js", "shape.js", "strip.js", "core.wasm"),
+                   ("live_device.mjs", "live_draws.mjs", "live_pages.mjs"))
         check_spectrogram(server)
         check_bits(server, made, odd_made)
         check_sound(server)

@@ -132,12 +132,15 @@ export function paint(spectrogram, positions, frequencies, levels, colours, widt
   }
 }
 
+/** A unit as people write it: "N² mm" for "N2 mm" (netCDF) and "N^2 mm". */
+export const powers = (unit) => unit.replace(/\^?2\b/g, '²');
+
 /** Everything about a cell. A value has the nine digits that identify a float32. */
 export function cellWords(spectrogram, cell, speed_mps) {
   const per_m = spectrogram.frequency_per_m(cell.bin), known = spectrogram.knows(cell), level = spectrogram.level_db(cell);
   const wave = per_m > 0 ? ` (period ${plain(1e3 / per_m, 4)} mm; ${plain(per_m * speed_mps, 4)} Hz at ${plain(1e3 * speed_mps, 4)} mm/s)` : '';
   return `position ${plain(1e3 * spectrogram.position_m(cell.row), 7)} mm; frequency ${plain(1e-3 * per_m, 6)} /mm${wave}; ` +
-      `${spectrogram.cell(cell).toExponential(8)} ${spectrogram.cell_unit}, ${Number.isFinite(level) ? level.toFixed(1) : '−∞'} dB re ${spectrogram.level_unit}` +
+      `${spectrogram.cell(cell).toExponential(8)} ${powers(spectrogram.cell_unit)}, ${Number.isFinite(level) ? level.toFixed(1) : '−∞'} dB re ${powers(spectrogram.level_unit)}` +
       (known === false ? '; outside the valid band: not measured' : '');
 }
 

@@ -2,7 +2,7 @@
 // The page of a spectrogram: its cells under a cross-hair, zoom, formants, files.
 
 import {get} from './answers.js';
-import {Axis, Cells, cellWords, exportQuery, frequencyMarks, marks, paint} from './cells.js';
+import {Axis, Cells, cellWords, exportQuery, frequencyMarks, marks, paint, powers} from './cells.js';
 import {css, palette, sized} from './strip.js';
 
 const LEFT = 62, RIGHT = 10, TOP = 8, BOTTOM = 44;  // around the cells, CSS pixels
@@ -210,8 +210,8 @@ function drawHeat() {
   ink.clearRect(0, 0, width, height);
   ink.putImageData(picture, inner.x, inner.y);
   drawAxes(ink, inner, ratio);
-  put('scale-words', `Colours from ${levels.low_db} to ${levels.high_db} dB re ${shown.level_unit}, dark to light; a pixel shows the largest of its cells. ` +
-      'Without colour: no whole window.' + (shown.known.length > 0 ? ' Dashed lines: limits of the valid band; beyond them nothing was measured.' : ''));
+  put('scale-words', `Colours from ${levels.low_db} to ${levels.high_db} dB re ${powers(shown.level_unit)}, dark to light; a pixel shows the largest of its cells. ` +
+      `At the ends, without colour, a window of ${mm(shown.window_m)} would reach beyond the texture.` + (shown.known.length > 0 ? ' Dashed lines: limits of the valid band; beyond them nothing was measured.' : ''));
 }
 
 function innerOf(width, height, ratio) {

@@ -48,7 +48,7 @@ function show(recording) {
   const {state, name, device, late_s, time_s, strokes, lost_frames, speed_mps, channels = []} = recording, idle = state === 'idle';
   at('record-begin').disabled = at('record-name').disabled = !idle;
   at('record-mark').disabled = at('record-end').disabled = idle;
-  put('record-words', idle ? `Records from ${device}.` : state === 'opening' ? `${name}: opening ${device} …`
+  put('record-words', idle ? `Records from the device “${device}” (option --device).` : state === 'opening' ? `${name}: opening ${device} …`
       : `${name}: ${seconds(time_s)}, ${strokes} strokes, ${lost_frames} frames lost, ${(recording.disk_left_bytes / 1e9).toFixed(1)} GB free` +
         (speed_mps === undefined ? '' : `, ${(1e3 * speed_mps).toFixed(0)} mm/s`));
   if (idle) return;

@@ -376,7 +376,7 @@ function draw(now_ms) {
   at('place').textContent = placeWords();
   at('ghost').textContent = last.ghost_m === null ? 'ghost: none while stopped'
       : `ghost at ${components(last.ghost_m, 2, 1e3)} mm, ${mm(Math.hypot(...last.ghost_m.map((m, i) => m - last.place_m[i])), 3)} from the hand`;
-  at('arrow-words').textContent = `An arrow of ${(100 * LONGEST_ARROW).toFixed(0)} % of the picture's smaller side is ${three(full_n)} N; it shows the two components in the picture.`;
+  at('arrow-words').textContent = `Ring: the hand. Arrow: the force on it, its two components in the picture; ${(100 * LONGEST_ARROW).toFixed(0)} % of the picture's smaller side are ${three(full_n)} N.${scene.ghost ? ' Diamond: the ghost point, which stays outside of the pieces.' : ''}`;
   showValues();
 }
 
