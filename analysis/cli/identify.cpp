@@ -278,7 +278,8 @@ void declare_measuring(CLI::App& app, IdentifyOptions& o) {
                     "Peak of the drive; default: 1V with joint (a fifth of the loops' peak), else 0.5V. The "
                     "loops go up to the limits; with --method loop this is their peak");
   cli::add_quantity(app, "--low", o.plan.low_hz, Dimension::frequency, "Lowest frequency");
-  cli::add_quantity(app, "--high", o.plan.high_hz, Dimension::frequency, "Highest frequency");
+  cli::add_quantity(app, "--high", o.high_hz, Dimension::frequency,
+                    "Highest frequency; default: 1kHz, and on a device at most 0.45 of its rate");
   app.add_option("--frequencies", o.plan.frequencies, "Number of frequencies, evenly spaced by octaves")
       ->check(cli::from_one());
   cli::add_quantity(app, "--rate", o.rate_hz, Dimension::frequency,
@@ -658,6 +659,7 @@ cli::Action declare_identify(CLI::App& app) {
   declare_tables(app, *options);
   return [options, &app]() -> Result<Report> {
     if (options->method == IdentifyMethod::contact) TACTO_TRY(check_contact_options(app));
+    options->plan.high_hz = options->high_hz.value_or(options->plan.high_hz);
     ModelChoice& model = options->model;
     model.open = !(model.second_mode || model.lag || model.finger);
     return run_identify(*options);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/cli/identify_options.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "analysis/cli/results_output.hpp"
@@ -16,6 +17,7 @@ ExcitationPlan plan_on(const IdentifyOptions& o, const firmware_host::Device& de
   ExcitationPlan plan = o.plan;
   plan.rate_hz = drive_rate_hz(device);
   plan.amplitude_v = o.amplitude_v.value_or(usual_v);
+  if (!o.high_hz) plan.high_hz = std::min(plan.high_hz, kMostOfRate * plan.rate_hz);
   return plan;
 }
 

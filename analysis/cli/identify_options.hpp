@@ -28,6 +28,7 @@ struct IdentifyOptions {
   std::size_t taps_fitted = 0;
   bool invert = false, implausible = false;
   schema::Existing existing = schema::Existing::keep;
+  std::optional<double> high_hz;  ///< --high, if it was given
 };
 
 /// The source of a measurement: a device or a file.
@@ -38,7 +39,8 @@ struct IdentifySource {
   bool has_device() const { return device.device != nullptr; }
 };
 
-/// The plan at the device's rate. Its peak is the requested one, by default `usual_v`.
+/// The plan at the device's rate. Its peak is the requested one, by default `usual_v`; its highest frequency,
+/// if none was requested, at most the device's rate allows.
 ExcitationPlan plan_on(const IdentifyOptions& options, const firmware_host::Device& device, double usual_v);
 std::string transducer_name_of(const IdentifyOptions& options);
 std::string transducer_file_of(const IdentifyOptions& options);

@@ -77,13 +77,19 @@ Result<ComediCard> open_comedi_card(const schema::Wiring& wiring) {
               "load the card's comedi driver with modprobe, or correct 'card' in the wiring");
 }
 
-std::string comedi_card_name(comedi_t* card, const schema::Wiring& wiring) {
-  return fmt::format("{} at {}", comedi_get_board_name(card), wiring.card);
-}
-
 std::string comedi_version(comedi_t* card) {
   const int version = comedi_get_version_code(card);
   return fmt::format("{}.{}.{}", version >> 16, (version >> 8) & 255, version & 255);
+}
+
+Capabilities described(comedi_t* card, const schema::Wiring& wiring, const std::string& uri) {
+  Capabilities about;
+  about.uri = uri;
+  about.name = fmt::format("{} at {}", comedi_get_board_name(card), wiring.card);
+  about.serial = wiring.name;
+  about.firmware = fmt::format("comedi {}, driver {}", comedi_version(card), comedi_get_driver_name(card));
+  about.transducer = wiring.transducer;
+  return about;
 }
 
 Result<unsigned> comedi_range_of(comedi_t* card, const schema::Wiring& wiring, unsigned subdevice,

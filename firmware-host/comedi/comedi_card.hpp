@@ -15,6 +15,7 @@
 #include "data-schema/base/error.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/wiring/wiring.hpp"
+#include "firmware-host/link/device.hpp"
 
 namespace tacto::firmware_host {
 
@@ -28,8 +29,9 @@ schema::Result<schema::Wiring> read_comedi_wiring(const std::string& uri, std::s
 
 /// Errors: not_found: no such card, or no permission.
 schema::Result<ComediCard> open_comedi_card(const schema::Wiring& wiring);
-/// The board and its file, as in "pci-6221 at /dev/comedi0".
-std::string comedi_card_name(comedi_t* card, const schema::Wiring& wiring);
+/// URI, name ("pci-6221 at /dev/comedi0"), serial (a card has none; the calibration belongs to the wiring's
+/// name), firmware (the kernel's comedi and driver) and transducer; the caller sets the rest.
+Capabilities described(comedi_t* card, const schema::Wiring& wiring, const std::string& uri);
 /// Of the kernel's comedi, as in "0.7.76".
 std::string comedi_version(comedi_t* card);
 

@@ -42,13 +42,8 @@ class ComediDevice final : public Device {
     auto device = std::make_unique<ComediDevice>();
     device->card_ = std::move(*card);
     Capabilities& about = device->about_;
-    about.uri = uri;
-    about.name = comedi_card_name(device->card_.get(), wiring);
-    about.serial = wiring.name;  // a card has none; the calibration belongs to the wiring
-    about.firmware = fmt::format("comedi {}, driver {}", comedi_version(device->card_.get()),
-                                 comedi_get_driver_name(device->card_.get()));
+    about = described(device->card_.get(), wiring, uri);
     about.clock = "device";
-    about.transducer = wiring.transducer;
     TACTO_TRY(device->find_inputs(wiring));
     TACTO_TRY(device->plan_command(wiring.rate_hz));
     const auto asked_bytes = static_cast<unsigned>(kBuffer_s * about.sample_rate_hz) *

@@ -250,9 +250,10 @@ class ComediBoard {
 
   core::Board about() {
     wire::Welcome welcome;
-    put_text(welcome.name, comedi_card_name(card_.get(), wiring_));
-    put_text(welcome.serial, wiring_.name);
-    put_text(welcome.firmware,
+    const Capabilities said = described(card_.get(), wiring_, {});
+    put_text(welcome.name, said.name);
+    put_text(welcome.serial, said.serial);
+    put_text(welcome.firmware,  // shorter, because it has 23 characters
              fmt::format("{} {}", comedi_get_driver_name(card_.get()), comedi_version(card_.get())));
     welcome.features = wire::kFeatureDrive;
     welcome.clock_hz = 1'000'000'000;
@@ -450,13 +451,8 @@ class CountedDevice final : public Device {
     auto device = std::make_unique<CountedDevice>();
     device->board_ = std::move(*board);
     Capabilities& about = device->about_;
-    comedi_t* const card = device->board_->card();
-    about.uri = uri;
-    about.name = comedi_card_name(card, wiring);
-    about.serial = wiring.name;
-    about.firmware = fmt::format("comedi {}, driver {}", comedi_version(card), comedi_get_driver_name(card));
+    about = described(device->board_->card(), wiring, uri);
     about.clock = "host";
-    about.transducer = wiring.transducer;
     about.channels = device->board_->channels();
     const double possible_hz = std::min(wiring.rate_hz, device->board_->most_rate_hz());
     about.sample_rate_hz = 1e9 / std::floor(1e9 / possible_hz);  // whole nanoseconds, as TickClock has them

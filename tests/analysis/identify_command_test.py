@@ -105,6 +105,9 @@ def quick_methods_agree():
         for has, code in (("hysteresis=0.16", 5), ("second_mode=850Hz", 0)):
             said = json.loads(tacto.run("identify", "-d", f"sim:tray_sensor=on,seed=3,{has}", "--method", method, "-o", f"{method}-{code}", "--json", code=code)[0])
             assert said["verdict"].startswith("MISFIT" if code else "fits") and (said["model"] == "second mode") == (code == 0) and said["r_squared"] > 0.9, said
+    slow = tacto.run_json("identify", "-d", "sim:tray_sensor=on,rate=2kHz", "--method", "multisine", "-o", "slow")
+    assert abs(values(slow)["resonance_hz"]["value"] / 547.73 - 1) < 2e-3
+    assert json.loads(pathlib.Path("slow.transducer.json").read_text())["identification"]["high_hz"] <= 900  # 0.45 of the rate
 
 
 def scipy_finds_the_same():
@@ -290,6 +293,7 @@ def bad_input_is_one_clear_error():
     refused("line 8", code=4)
     err = tacto.run("identify", "-d", "sim:", "-o", "bad", code=5)[1]
     assert "tray_sensor=on" in err, err
+    tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", "--method", "multisine", "--amplitude", "1uV", code=5)  # only noise
     for words, *options in (["--low", "--low", "100Hz", "--high", "50Hz"], ["--amplitude", "--amplitude", "0V"],
                             ["--frequencies", "--frequencies", "100000"]):
         assert words in tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", *options, code=2)[1]
@@ -297,6 +301,8 @@ def bad_input_is_one_clear_error():
     endless = tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", "--low", "1mHz", code=5)[1]
     assert "2.87e+04 s" in endless, endless
     assert tacto.error_of("identify", "-d", "sim:tray_sensor=on", "-o", "bad", "--high", "5kHz", code=5)["where"] == "--high"
+    for band in ("--low", "950Hz"), ("--high", "950Hz"):  # the rate allows 900 Hz
+        assert tacto.error_of("identify", "-d", "sim:tray_sensor=on,rate=2kHz", "-o", "bad", *band, code=5)["where"] == band[0]
     # Additional whole turns do no harm: values are complex.
     write_table("turns.csv", f, h)
     table = np.loadtxt("turns.csv", delimiter=",", skiprows=1)

@@ -9,6 +9,7 @@ import contextlib
 import os
 import pty
 import random
+import re
 import select
 import socket
 import struct
@@ -22,6 +23,10 @@ from wire_document_test import frame
 HELLO, WELCOME, TICKS, FAULT = 0x01, 0x81, 0x86, 0x88
 
 
+# What QEMU's log says of a register that it does not emulate: the DAC's, and the set and reset bits of port B (13: enable).
+PIN = re.compile(r"(?:(DAC).*offset 0x0*8|GPIOB.*offset 0x0*18), value 0x0*([0-9a-f]+)\)")
+
+
 class QemuBoard:
     """`port` is the path of the line's end at the host. corrupt(N) changes about one of N bytes from then on; 0: none."""
     def __init__(self, image, folder="."):
@@ -31,8 +36,10 @@ class QemuBoard:
         with socket.socket(socket.AF_UNIX) as waiting:
             waiting.bind(path)
             waiting.listen(1)
+            self._log, self._debugger = os.path.join(folder, "pins.log"), os.path.join(folder, "debugger")
             self._qemu = subprocess.Popen(["qemu-system-arm", "-M", "netduinoplus2", "-display", "none", "-monitor", "stdio",
-                                           "-serial", f"unix:{path}", "-kernel", image], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL)
+                                           "-D", self._log, "-gdb", f"unix:{self._debugger},server=on,wait=off", "-serial",
+                                           f"unix:{path}", "-kernel", image], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL)
             waiting.settimeout(60)
             self._uart, _ = waiting.accept()
         os.unlink(path)
@@ -71,8 +78,34 @@ class QemuBoard:
 
     def restart(self):
         """As after a brown-out: the chip begins again, the line stays."""
-        self._qemu.stdin.write(b"system_reset\n")
+        self._ask_qemu("system_reset")
+
+    def _ask_qemu(self, command):
+        self._qemu.stdin.write(f"{command}\n".encode())
         self._qemu.stdin.flush()
+
+    def see_pins(self, on):
+        """From now on pins() gets what is written to the outputs, which slows the board down."""
+        self._ask_qemu("log unimp" if on else "log none")
+
+    def pins(self):
+        """In order: ("drive", code of 12 bits) and ("enable", whether it is high)."""
+        for line in open(self._log):
+            if found := PIN.search(line):
+                value = int(found[2], 16)
+                yield ("drive", value) if found[1] else ("enable", value == 1 << 13)
+
+    def spoil(self, address):
+        """Writes an undefined instruction there, by GDB's remote protocol, which stops the machine for it."""
+        with socket.socket(socket.AF_UNIX) as debugger:
+            debugger.connect(self._debugger)
+            debugger.settimeout(60)
+            for packet in (f"M{address:x},2:00de", "D"):
+                debugger.sendall(f"${packet}#{sum(packet.encode()) % 256:02x}".encode())
+                said = b""
+                while b"$OK#9a" not in said:
+                    said += debugger.recv(100)
+                debugger.sendall(b"+")
 
     def greet(self):
         """Greets the board until it answers; a board that starts loses what it receives."""

@@ -17,17 +17,22 @@ import numpy as np
 import soundfile
 
 import tacto
+from boards_test import Elf
 from qemu_board import QemuBoard
 from wire_document_test import crc32c
 
 IMAGE = pathlib.Path(sys.argv[1])
 VECTORS = 4 * 98                     # bytes; then comes the check of the flash
 SAMPLES = 12_000                     # of a texture, in the board's RAM
+DRIVE_ZERO = 2048                    # the code for 0 V at the amplifier's input
 UNSUITABLE, DEVICE = 5, 8            # exit codes
 PLAYING, FAULTED, HOST_SILENT = 2, 4, 1  # flags of a tick, the code of a fault (core/WIRE.md)
 RATE_HZ = 2000
 RECORD_S, NOISY_S = 60, 5
 PITCH_M = 10e-6
+MASS_KG, STIFFNESS, DAMPING = 6.8e-3, 8.052e4, 4.49  # N/m, N s/m
+TRAY = {"resonance_hz": np.sqrt(STIFFNESS / MASS_KG) / (2 * np.pi), "damping_ratio": DAMPING / (2 * np.sqrt(STIFFNESS * MASS_KG)),
+        "gain_m_per_v": 20e-6, "pole_hz": 1 / (2 * np.pi * 680 * 1.636e-6)}
 
 
 def checks(port, code=0):
@@ -171,12 +176,29 @@ def a_texture_that_is_too_large(board):
     assert not pathlib.Path("none.session").exists()
 
 
-def identify_needs_a_sensor_at_the_tray(board):
-    """The board's wiring has none, so nothing is driven: identification over a serial port is in tests/usb/serial_test.py."""
-    board.forget()
-    _, error = tacto.run("identify", "-d", f"tty:{board.port}", "--method", "multisine", "--high", "800Hz", "-o", "none", code=UNSUITABLE)
-    assert "displacement" in error and not pathlib.Path("none.transducer.json").exists(), error
-    assert all(drive_v == 0 for _, drive_v, _ in board.ticks())
+def identify(board, code, *options):
+    for _ in range(5):  # the drive may come too late on a busy computer
+        done = subprocess.run([tacto.COMMAND, "identify", "-d", f"tty:{board.port}", "-o", "bench", "--json", *options], capture_output=True,
+                              text=True, timeout=600)
+        if done.returncode == code:
+            return done
+        assert done.returncode == DEVICE and not pathlib.Path("bench.transducer.json").exists(), done
+    raise AssertionError(f"the drive came too late in five attempts: {done}")
+
+
+def identify_finds_the_tray(board):
+    """The image moves a tray in place of QEMU, which has none. Its true values are those of the equations in emulated_tray.hpp.
+    A drive below half a step of the DAC (2.4 mV) does not move it, which is refused."""
+    identify(board, UNSUITABLE, "--method", "multisine", "--amplitude", "1mV")
+    assert not pathlib.Path("bench.transducer.json").exists()
+    said = json.loads(identify(board, 0).stdout)
+    assert said["verdict"] == "fits" and "QEMU" in said["simulated"], said
+    found = {row["parameter"]: row for row in said["parameters"]}
+    for name, truth in TRAY.items():
+        row = found[name]
+        # A true value is three half widths of a 95 % interval away once in 2e8.
+        assert abs(row["value"] - truth) < 1.5 * (row["high_of_95"] - row["low_of_95"]), (name, truth, row)
+        print(f"{name}: {row['value']:.7g} ({row['low_of_95']:.7g} to {row['high_of_95']:.7g}), true {truth:.7g}")
 
 
 def damaged_bytes_are_gaps(board):
@@ -195,6 +217,25 @@ def damaged_bytes_are_gaps(board):
     assert checks(board.port)["device"]["state"] == "works"
 
 
+def its_outputs_are_safe():
+    """By what the program writes to its pins: the amplifier is off while the board is idle, on while it plays; and a hardware
+    fault then (an undefined instruction in the tick) ends in a drive of zero, then with the amplifier off, and nothing more."""
+    with QemuBoard(str(IMAGE)) as board:
+        board.greet()
+        board.see_pins(True)
+        checks(board.port)
+        assert {("enable", False)} <= set(board.pins()) <= {("drive", DRIVE_ZERO), ("enable", False)}, set(board.pins())
+        board.see_pins(False)
+        program = start_playing(board, "spoiled")
+        board.see_pins(True)
+        board.wait_for(lambda: any(pin == "drive" and value != DRIVE_ZERO for pin, value in board.pins()))
+        assert ("enable", True) in board.pins()
+        board.spoil(Elf(IMAGE).symbols["systick_handler"] & ~1)
+        _, error = program.communicate(timeout=120)
+        assert program.returncode == DEVICE, (program.returncode, error)
+        assert list(board.pins())[-2:] == [("drive", DRIVE_ZERO), ("enable", False)]
+
+
 def a_damaged_flash_is_refused():
     image = bytearray(IMAGE.read_bytes())
     image[image.index(b"QEMU: encoder")] ^= 1
@@ -208,11 +249,11 @@ def test():
     make_texture()
     with QemuBoard(str(IMAGE)) as board:
         board.greet()
-        for step in (doctor_works_twice, every_frame_comes, a_texture_replays, a_texture_that_is_too_large, identify_needs_a_sensor_at_the_tray,
-                     damaged_bytes_are_gaps):
+        for step in (doctor_works_twice, every_frame_comes, a_texture_replays, a_texture_that_is_too_large,
+                     identify_finds_the_tray, damaged_bytes_are_gaps):
             step(board)
             print(step.__name__, flush=True)
-    for step in (a_stopped_host, an_unplugged_board, a_board_that_restarts, a_damaged_flash_is_refused):
+    for step in (a_stopped_host, an_unplugged_board, a_board_that_restarts, its_outputs_are_safe, a_damaged_flash_is_refused):
         step()
         print(step.__name__, flush=True)
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "firmware-host/link/client.hpp"
 #include "firmware-host/link/wire_fields.hpp"
@@ -19,17 +20,22 @@ using schema::Result;
 
 constexpr std::uint8_t kFramesOfMessage = 32;
 constexpr std::uint16_t kWatchdogMs = 500;
-constexpr std::size_t kLeastRefill = 128;  // samples; smaller messages have more overhead than content
+constexpr std::size_t kLeastRefill = 32;  // samples: 128 bytes, in a message of 20 more
 constexpr double kWaitS = 5e-3, kIdleWaitS = 1;
+// Silence before the drive. Ticks also take samples before `play` is in effect, and do not play them.
+constexpr double kLeadS = 0.25;
+constexpr std::size_t kMostWaits = 20;  // one after another: 0.1 s, well within the watchdog's time
 constexpr std::uint32_t kLimited =
     wire::kTickAmplitudeLimited | wire::kTickSlewLimited | wire::kTickEnergyLimited | wire::kTickGated;
 
 Result<std::size_t> tray_channel(const firmware_host::Capabilities& about) {
   const auto found = std::ranges::find(about.channels, "displacement", &schema::Channel::quantity);
   if (found != about.channels.end()) return static_cast<std::size_t>(found - about.channels.begin());
-  return fail(ErrorKind::unsuitable,
-              "the device does not measure its tray: it has no channel of displacement", about.uri,
-              "for an emulated device add tray_sensor=on; else give a file of measured values");
+  return fail(
+      ErrorKind::unsuitable, "the device does not measure its tray: it has no channel of displacement",
+      about.uri,
+      "for an emulated device add tray_sensor=on, on a board connect the pin for the tray's sensor to "
+      "ground (firmware-host/RIG.md); else give a file of measured values");
 }
 
 // One run: the frames and ticks so far, by the device's numbers.
@@ -48,14 +54,22 @@ class Run {
     if (done) done = client_.command(wire::Arm{wire::DriveSource::host, rate});
     return done;
   }
+  // What waits in the device is known from its ticks, and is not more: to ask each time would take as many
+  // bytes as the drive. It is asked at the end, and if it is silent.
   Result<void> feed(std::span<const float> drive_v) {
-    const auto pulse = client_.heartbeat();
-    TACTO_TRY(pulse);
-    const std::size_t room = client_.description().welcome.drive_queue - pulse->drive_queued;
-    empty_ = pulse->drive_queued == 0 && sent_ >= drive_v.size();
     const std::size_t left = drive_v.size() - sent_;
-    const std::size_t count = std::min({room, left, wire::kMaxChunk});
-    if (count > 0 && (count >= kLeastRefill || count == left)) return send(drive_v.subspan(sent_, count));
+    const std::size_t waiting = sent_ - std::min(sent_, played_);
+    const std::size_t queue = client_.description().welcome.drive_queue;
+    const std::size_t count = std::min({queue - std::min(queue, waiting), left, wire::kMaxChunk});
+    if (count > 0 && count >= std::min(kLeastRefill, left)) {
+      waits_ = 0;
+      return send(drive_v.subspan(sent_, count));
+    }
+    if (left == 0 || ++waits_ % kMostWaits == 0) {
+      const auto pulse = client_.heartbeat();
+      TACTO_TRY(pulse);
+      empty_ = left == 0 && pulse->drive_queued == 0;
+    }
     return client_.receive(kWaitS);
   }
   Result<void> take() {
@@ -87,10 +101,10 @@ class Run {
 
   // Aligns frames and ticks in time, from the first sample of the plan on.
   Result<DrivenTray> paired(std::span<const float> plan) const {
-    if (!first_frame_s_ || drive_.empty())
+    if (displacement_m_.empty() || drive_.empty())
       return fail(ErrorKind::device, "the device sent no samples", about_.uri);
     const auto shift =
-        static_cast<std::ptrdiff_t>(std::llround((first_tick_s_ - *first_frame_s_) * about_.sample_rate_hz));
+        static_cast<std::ptrdiff_t>(std::llround((first_tick_s_ - first_frame_s_) * about_.sample_rate_hz));
     const auto loud = [](float v) { return v != 0; };
     const auto in_plan = std::ranges::find_if(plan, loud) - plan.begin();
     const auto in_ticks = std::ranges::find_if(drive_, loud) - drive_.begin();
@@ -125,6 +139,9 @@ class Run {
     sent_ += part.size();
     return sent && first ? client_.command(wire::Play{}) : sent;
   }
+  double begin_s(double device_s, std::uint64_t number) const {
+    return device_s - static_cast<double>(number) / about_.sample_rate_hz;
+  }
   void take_frames() {
     const std::size_t channels = about_.channels.size();
     codes_.resize(client_.samples().frames() * channels);
@@ -132,20 +149,19 @@ class Run {
     const schema::Channel& tray = about_.channels[channel_];
     for (std::size_t i = 0; i < frames; ++i)
       displacement_m_.push_back(tray.physical(codes_[i * channels + channel_]));
-    if (!first_frame_s_ && client_.last_arrival())
-      first_frame_s_ = client_.last_arrival()->device_s -
-                       static_cast<double>(client_.last_arrival()->frame) / about_.sample_rate_hz;
+    if (const auto& last = client_.last_arrival())
+      first_frame_s_ = std::min(first_frame_s_, begin_s(last->device_s, last->frame));
   }
   Result<void> keep(const wire::Ticks& block) {
-    if (drive_.empty())
-      first_tick_s_ = static_cast<double>(block.device_ticks) / client_.description().welcome.clock_hz -
-                      static_cast<double>(block.first_tick) / about_.sample_rate_hz;
+    const double device_s = static_cast<double>(block.device_ticks) / client_.description().welcome.clock_hz;
+    first_tick_s_ = std::min(first_tick_s_, begin_s(device_s, block.first_tick));
     if (block.first_tick != drive_.size())
       return fail(ErrorKind::device, "ticks were lost on the link", about_.uri,
                   "identify again, with less other load on the computer");
     for (std::size_t i = 0; i < block.count; ++i) {
       drive_.push_back(block.ticks[i].drive_v);
       limited_ += (block.ticks[i].flags & kLimited) != 0;
+      played_ += (block.ticks[i].flags & wire::kTickPlaying) != 0;
     }
     return {};
   }
@@ -164,13 +180,14 @@ class Run {
   Client& client_;
   const firmware_host::Capabilities& about_;
   std::size_t channel_;
-  std::size_t sent_ = 0, limited_ = 0;
+  std::size_t sent_ = 0, played_ = 0, limited_ = 0, waits_ = 0;
   bool empty_ = false;
   std::vector<std::int32_t> codes_;
   std::vector<double> displacement_m_;
   std::vector<float> drive_;
-  std::optional<double> first_frame_s_;
-  double first_tick_s_ = 0;
+  // The time of number 0 by the device's clock: a device can read it late, but not early, so the least of
+  // all.
+  double first_frame_s_ = std::numeric_limits<double>::infinity(), first_tick_s_ = first_frame_s_;
 };
 
 Result<void> played(Run& run, std::span<const float> drive_v, const std::function<bool()>& stop_asked,
@@ -200,8 +217,10 @@ Result<DrivenTray> drive_tray(firmware_host::Device& device, std::span<const flo
   const auto channel = tray_channel(device.capabilities());
   TACTO_TRY(channel);
   Run run(*client, device.capabilities(), *channel);
+  std::vector<float> sent_v(static_cast<std::size_t>(kLeadS * drive_rate_hz(device)));
+  sent_v.insert(sent_v.end(), drive_v.begin(), drive_v.end());
   auto done = run.begin();
-  if (done) done = played(run, drive_v, stop_asked, progress);
+  if (done) done = played(run, sent_v, stop_asked, progress);
   const auto ended = run.end();
   if (done) done = ended;
   if (done) done = run.take();

@@ -19,7 +19,6 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-constexpr double kMostOfRate = 0.45;
 constexpr double kLongestSweepS = 3600;  // the whole sweep is in memory: 36e6 samples at 10 kHz
 
 double largest_gain(const ExcitationPlan& plan, const schema::Transducer& base) {
@@ -32,11 +31,13 @@ double largest_gain(const ExcitationPlan& plan, const schema::Transducer& base) 
 // Checks the drive against the limits as the base transducer predicts. If the transducer is unknown the
 // prediction may be wrong; the device has its own limits.
 Result<void> check_amplitude(const ExcitationPlan& plan, const schema::Transducer& base) {
-  if (plan.high_hz > kMostOfRate * plan.rate_hz)
-    return fail(
-        ErrorKind::unsuitable,
-        fmt::format("{:g} Hz is too near half the device's rate of {:g} Hz", plan.high_hz, plan.rate_hz),
-        "--high", fmt::format("at most {:g} Hz", kMostOfRate * plan.rate_hz));
+  const bool low = plan.low_hz >= plan.high_hz;  // which then is the most that the rate allows
+  if (low || plan.high_hz > kMostOfRate * plan.rate_hz)
+    return fail(ErrorKind::unsuitable,
+                fmt::format("{:g} Hz is too near half the device's rate of {:g} Hz",
+                            low ? plan.low_hz : plan.high_hz, plan.rate_hz),
+                low ? "--low" : "--high",
+                fmt::format("{} {:g} Hz", low ? "below" : "at most", kMostOfRate * plan.rate_hz));
   const double most_m = plan.amplitude_v * largest_gain(plan, base);
   const char* const remedy = "use a smaller --amplitude";
   if (plan.amplitude_v > base.drive_limit_v)

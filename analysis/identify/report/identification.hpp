@@ -22,6 +22,9 @@ struct DrivenResponse {
   SweptDrive drive;
 };
 
+/// The highest frequency of a sweep over the rate.
+inline constexpr double kMostOfRate = 0.45;
+
 /// Measures the actuator's response on a device by sweep, multisine or chirp. Errors: those of drive_tray();
 /// unsuitable: an amplitude that exceeds the limits by the base's prediction.
 schema::Result<DrivenResponse> driven_response(firmware_host::Device& device, IdentifyMethod method,

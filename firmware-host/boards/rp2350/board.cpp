@@ -8,6 +8,7 @@
 //   GP7               enable output to the amplifier: high while the device is not idle
 //   GP17, GP18, GP19  CS, SCK and SDI of an MCP4921, the drive: 1.65 V is 0 V at the amplifier's input
 //   GP26, GP27        tangential force, normal force: 0 to 3.3 V
+//   GP28              displacement of the tray: 0 to 3.3 V; GP8 to ground while its sensor is connected
 #include "firmware-host/boards/rp2350/quadrature.hpp"
 #include "firmware-host/boards/rp2350/registers.hpp"
 #include "firmware-host/boards/shared/start.hpp"
@@ -33,7 +34,8 @@ using namespace boards;
 constexpr const Board& kRow = *board_named("rp2350");
 constexpr uint32_t kClockHz = kRow.clock_hz, kCrystalHz = 12'000'000, kBaud = 1'000'000;
 constexpr unsigned kSendPin = 0, kReceivePin = 1, kEncoderA = 2, kEncoderB = 3, kEnableInput = 6,
-                   kEnableOutput = 7, kDacSelect = 17, kDacClock = 18, kDacData = 19, kFirstAdcPin = 26;
+                   kEnableOutput = 7, kTraySensor = 8, kDacSelect = 17, kDacClock = 18, kDacData = 19,
+                   kFirstAdcPin = 26;
 // A sample of the encoder takes at most ten periods of the state machine: 0.53 us, 1.9 million edges a
 // second.
 constexpr uint32_t kPioDivider = 8;
@@ -42,6 +44,7 @@ constexpr uint32_t kWatchdogUs = 50'000;
 Bytes received, to_send;
 TickTimer<kClockHz> timer;     // on core 1
 core::Shared<uint32_t> turns;  // of the main loop on core 1, one after each tick at most
+bool has_tray_sensor = false;
 
 void drive_zero();
 
@@ -102,8 +105,9 @@ void start_ports() {
   set_pin(kEnableInput, Function::sio, kInput | kPullDown);
   set_pin(kEncoderA, Function::pio0, kInput);
   set_pin(kEncoderB, Function::pio0, kInput);
-  set_pin(kFirstAdcPin, Function::none, kOutputOff);
-  set_pin(kFirstAdcPin + 1, Function::none, kOutputOff);
+  set_pin(kTraySensor, Function::sio, kInput | kPullUp);
+  for (unsigned channel = 0; channel < 3; ++channel)
+    set_pin(kFirstAdcPin + channel, Function::none, kOutputOff);
 }
 
 void start_link() {
@@ -170,20 +174,14 @@ bool convert(uint32_t channel, int32_t& code) {
 }
 
 core::Hal make_hal() {
-  core::Hal hal;
+  core::Hal hal = timed_hal<timer, received, to_send>();
   hal.read_encoder = [](void*) noexcept { return static_cast<int32_t>(pio_count); };
   hal.read_channels = [](void*, int32_t* codes) noexcept {
     codes[0] = static_cast<int32_t>(pio_count);
-    return convert(0, codes[1]) && convert(1, codes[2]);
+    return convert(0, codes[1]) && convert(1, codes[2]) && (!has_tray_sensor || convert(2, codes[3]));
   };
   hal.write_drive = [](void*, float volts) noexcept { write_dac(drive_code(volts)); };
   hal.enable_closed = [](void*) noexcept { return (sio_in & 1U << kEnableInput) != 0; };
-  hal.clock = [](void*) noexcept { return timer.clock(); };
-  hal.set_rate = [](void*, uint32_t rate) noexcept { timer.set_rate(rate); };
-  hal.receive = [](void*, uint8_t* bytes, size_t capacity) noexcept {
-    return take(received, bytes, capacity);
-  };
-  hal.send = [](void*, const uint8_t* bytes, size_t size) noexcept { return put(to_send, bytes, size); };
   hal.restart = [](void*) noexcept {
     drive_zero();
     watchdog_ctrl = kRestart;
@@ -196,7 +194,9 @@ Tray tray;
 core::Firmware* firmware = nullptr;
 
 core::Board make_board(uint32_t check) {
-  core::Board board = describe(kRow, tray, profile_memory, "adc 0", "adc 1", check, TACTO_VERSION " build ");
+  has_tray_sensor = (sio_in & 1U << kTraySensor) == 0;
+  core::Board board = describe(kRow, tray, profile_memory, {"adc 0", "adc 1", "adc 2"}, has_tray_sensor,
+                               check, TACTO_VERSION " build ");
   const uint32_t id[2] = {at(kUniqueId + 4), at(kUniqueId)};
   put_hex(board.about.serial, id, 2);
   return board;

@@ -12,6 +12,8 @@ class TickTimer {
  public:
   /// Since the rate was set.
   uint32_t ticks() const { return ticks_; }
+  /// Of a tick.
+  float period_s() const { return static_cast<float>(period_) / kClockHz; }
 
   /// Whether the device has to tick.
   bool interrupt() {

@@ -6,6 +6,7 @@
 #include "firmware-host/boards/boards.hpp"
 #include "firmware-host/boards/shared/cortex_m.hpp"
 #include "firmware-host/core/firmware/board.hpp"
+#include "firmware-host/core/firmware/hal.hpp"
 #include "firmware-host/core/kernel/ring.hpp"
 #include "firmware-host/core/wire/crc32c.hpp"
 
@@ -19,6 +20,14 @@ extern const uint8_t image_begin, image_check, image_end;  // memory.ld, in the 
 
 namespace tacto::boards {
 
+// The numbers of your rig: change them, make the firmware again, and flash it.
+constexpr double kEncoderStepM = 1e-6;  ///< of a count
+constexpr double kForceFullN = 10;      ///< of the load cell for 1.65 V at the pin; `calibrate` measures it
+constexpr double kTrayMPerV = 10e-6;    ///< of the displacement sensor
+constexpr char kTransducer[] = "wiertlewski2011";
+
+/// Volts before the divider of signals.svg for 1.65 V behind it, which has 0.1596 of them.
+constexpr double kDividedFullV = 1.65 / 0.1596;
 constexpr float kDriveFullV = 5;
 constexpr uint32_t kDriveZero = 2048;  ///< of a converter of 12 bits
 
@@ -26,6 +35,10 @@ constexpr uint32_t kDriveZero = 2048;  ///< of a converter of 12 bits
 inline uint32_t drive_code(float volts) {
   const float code = static_cast<float>(kDriveZero) + 0.5F + volts * (2047 / kDriveFullV);
   return static_cast<uint32_t>(code < 0 ? 0 : code > 4095 ? 4095 : code);
+}
+
+inline float volts_of(uint32_t drive_code) {
+  return (static_cast<float>(drive_code) - static_cast<float>(kDriveZero)) * (kDriveFullV / 2047);
 }
 
 /// 12 bits, left-justified around their middle.
@@ -61,6 +74,19 @@ inline size_t put(Bytes& ring, const uint8_t* bytes, size_t size) {
   return accepted;
 }
 
+/// The part of the hardware layer that needs only the timer and the bytes.
+template <auto& kTimer, Bytes& kReceived, Bytes& kToSend>
+core::Hal timed_hal() {
+  core::Hal hal;
+  hal.clock = [](void*) noexcept { return kTimer.clock(); };
+  hal.set_rate = [](void*, uint32_t rate) noexcept { kTimer.set_rate(rate); };
+  hal.receive = [](void*, uint8_t* bytes, size_t capacity) noexcept {
+    return take(kReceived, bytes, capacity);
+  };
+  hal.send = [](void*, const uint8_t* bytes, size_t size) noexcept { return put(kToSend, bytes, size); };
+  return hal;
+}
+
 inline uint32_t stored_check() {
   return at(static_cast<uint32_t>(reinterpret_cast<uintptr_t>(&image_check)));
 }
@@ -84,7 +110,7 @@ inline void put_hex(char* digits, const uint32_t* words, uint32_t count) {
 }
 
 struct Tray {
-  wire::Channel channels[3];
+  wire::Channel channels[4];
   wire::Note notes[2];
 };
 
@@ -109,16 +135,18 @@ inline wire::Note note(uint8_t index, wire::NoteKind kind, const char* text) {
   return about;
 }
 
-/// A code of 2^31 is 1.65 V at the pin. The normal force is a load cell of 10 N there; `calibrate` measures
-/// its scale. The transducer is that of RIG.md. `check` is that of the flash: image.py prints the same
-/// digits, which follow `version` ("0.1.0 build "). The caller sets the serial number.
+/// A code of 2^31 is 1.65 V at the pin. `sources` are the inputs of the three channels behind the encoder's;
+/// without a sensor at the tray the last one is missing. `check` is that of the flash: image.py prints the
+/// same digits, which follow `version` ("0.1.0 build "). The caller sets the serial number.
 template <size_t kVersionSize>
-core::Board describe(const Board& row, Tray& tray, float* profile_memory, const char* tangential_source,
-                     const char* normal_source, uint32_t check, const char (&version)[kVersionSize]) {
-  tray.channels[0] = channel(0, "position", "m", 1e-6, "encoder");
-  tray.channels[1] = channel(1, "tangential_force", "V", 1.65 / 2147483648.0, tangential_source);
-  tray.channels[2] = channel(2, "normal_force", "N", 10 / 2147483648.0, normal_source);
-  tray.notes[0] = note(0, wire::NoteKind::transducer, "wiertlewski2011");
+core::Board describe(const Board& row, Tray& tray, float* profile_memory, const char* const (&sources)[3],
+                     bool has_tray_sensor, uint32_t check, const char (&version)[kVersionSize]) {
+  constexpr double kFullCode = 2147483648.0;
+  tray.channels[0] = channel(0, "position", "m", kEncoderStepM, "encoder");
+  tray.channels[1] = channel(1, "tangential_force", "V", kDividedFullV / kFullCode, sources[0]);
+  tray.channels[2] = channel(2, "normal_force", "N", kForceFullN / kFullCode, sources[1]);
+  tray.channels[3] = channel(3, "displacement", "m", kTrayMPerV * kDividedFullV / kFullCode, sources[2]);
+  tray.notes[0] = note(0, wire::NoteKind::transducer, kTransducer);
   core::Board board;
   put(board.about.name, row.name);
   put(board.about.firmware, version);
@@ -132,7 +160,7 @@ core::Board describe(const Board& row, Tray& tray, float* profile_memory, const 
   board.about.drive_limit_v = kDriveFullV;
   board.about.slew_limit_v_per_s = 15'000;
   board.channels = tray.channels;
-  board.channel_count = 3;
+  board.channel_count = has_tray_sensor ? 4 : 3;
   board.profile_memory = profile_memory;
   board.profile_samples = row.samples;
   board.notes = tray.notes;

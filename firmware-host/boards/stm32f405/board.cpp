@@ -5,11 +5,13 @@
 //   PA9, PA10   USART1 to and from the host, 1,000,000 baud
 //   PA0, PA1    encoder A and B
 //   PB0, PB1    tangential force, normal force: 0 to 3.3 V
+//   PA6         displacement of the tray: 0 to 3.3 V; PB14 to ground while its sensor is connected
 //   PA4         drive: 1.65 V is 0 V at the amplifier's input, 0 and 3.3 V are -5 and +5 V
 //   PB12        enable input: 3.3 V through the emergency stop; an open wire reads as open
 //   PB13        enable output to the amplifier: high while the device is not idle
 #include "firmware-host/boards/shared/tick_timer.hpp"
 #include "firmware-host/boards/shared/tray_board.hpp"
+#include "firmware-host/boards/stm32f405/emulated_tray.hpp"
 #include "firmware-host/boards/stm32f405/registers.hpp"
 #include "firmware-host/core/firmware/firmware.hpp"
 
@@ -25,6 +27,8 @@ Bytes received, to_send;
 volatile bool sending = false;  // the interrupt of the empty sender is on
 TickTimer<kClockHz> timer;
 bool emulated = false;  // QEMU: clocks, ports and converters are not there
+EmulatedTray emulated_tray;
+bool has_tray_sensor = false;
 
 // QEMU has no reset and clock control: it reads as 0, but on the chip the internal oscillator always runs
 // here.
@@ -62,8 +66,10 @@ void start_ports() {
   kPortB.set_reset() = 1U << (13 + 16);
   set_mode(kPortB, 13, Mode::output);
   pull(kPortB, 12, Pull::down);
+  pull(kPortB, 14, Pull::up);
   set_mode(kPortB, 0, Mode::analog);
   set_mode(kPortB, 1, Mode::analog);
+  set_mode(kPortA, 6, Mode::analog);
   set_function(kPortA, 0, 1);
   set_function(kPortA, 1, 1);
   set_function(kPortA, 9, 7);
@@ -80,7 +86,7 @@ void start_encoder() {
 
 void start_converter() {
   adc_ccr = 1U << 16;  // 84 / 4 MHz
-  adc_smpr2 = (1U << 24) | (1U << 27);
+  adc_smpr2 = (1U << 18) | (1U << 24) | (1U << 27);
   adc_cr2 = 1;
 }
 
@@ -122,35 +128,39 @@ bool convert(uint32_t channel, int32_t& code) {
   return true;
 }
 
-// In QEMU a finger moves back and forth over 30,000 counts, 20 counts per tick, and the codes contain the
-// tick.
+// In QEMU a finger moves back and forth over 30,000 counts, 20 counts per tick, and the codes of the forces
+// contain the tick.
 int32_t emulated_count() {
   const uint32_t at = timer.ticks() * 20 % 60'000;
   return static_cast<int32_t>(at < 30'000 ? at : 60'000 - at);
 }
 
+bool emulated_channels(int32_t* codes) {
+  codes[0] = emulated_count();
+  codes[1] = static_cast<int32_t>(timer.ticks() << 12);
+  codes[2] = static_cast<int32_t>(~timer.ticks() << 12);
+  codes[3] = emulated_tray.code();
+  return true;
+}
+
+bool read_channels(int32_t* codes) {
+  if (emulated) return emulated_channels(codes);
+  codes[0] = static_cast<int32_t>(tim2_cnt);
+  return convert(8, codes[1]) && convert(9, codes[2]) && (!has_tray_sensor || convert(6, codes[3]));
+}
+
 core::Hal make_hal() {
-  core::Hal hal;
+  core::Hal hal = timed_hal<timer, received, to_send>();
   hal.read_encoder = [](void*) noexcept {
     return emulated ? emulated_count() : static_cast<int32_t>(tim2_cnt);
   };
-  hal.read_channels = [](void*, int32_t* codes) noexcept {
-    codes[0] = emulated ? emulated_count() : static_cast<int32_t>(tim2_cnt);
-    if (emulated) {
-      codes[1] = static_cast<int32_t>(timer.ticks() << 12);
-      codes[2] = static_cast<int32_t>(~timer.ticks() << 12);
-      return true;
-    }
-    return convert(8, codes[1]) && convert(9, codes[2]);
+  hal.read_channels = [](void*, int32_t* codes) noexcept { return read_channels(codes); };
+  hal.write_drive = [](void*, float volts) noexcept {
+    const uint32_t code = drive_code(volts);
+    dac_value = code;
+    if (emulated) emulated_tray.hold(code, timer.period_s());
   };
-  hal.write_drive = [](void*, float volts) noexcept { dac_value = drive_code(volts); };
   hal.enable_closed = [](void*) noexcept { return emulated || (kPortB.input() & (1U << 12)) != 0; };
-  hal.clock = [](void*) noexcept { return timer.clock(); };
-  hal.set_rate = [](void*, uint32_t rate) noexcept { timer.set_rate(rate); };
-  hal.receive = [](void*, uint8_t* bytes, size_t capacity) noexcept {
-    return take(received, bytes, capacity);
-  };
-  hal.send = [](void*, const uint8_t* bytes, size_t size) noexcept { return put(to_send, bytes, size); };
   hal.restart = [](void*) noexcept {
     drive_zero();
     scb_aircr = 0x05FA0004;
@@ -162,8 +172,9 @@ float profile_memory[kRow.samples];
 Tray tray;
 
 core::Board make_board() {
-  core::Board board =
-      describe(kRow, tray, profile_memory, "adc 8", "adc 9", stored_check(), TACTO_VERSION " build ");
+  has_tray_sensor = (kPortB.input() & (1U << 14)) == 0;  // also in QEMU, where a port reads as 0
+  core::Board board = describe(kRow, tray, profile_memory, {"adc 8", "adc 9", "adc 6"}, has_tray_sensor,
+                               stored_check(), TACTO_VERSION " build ");
   if (!emulated) {
     const uint32_t id[3] = {at(kUniqueId), at(kUniqueId + 4), at(kUniqueId + 8)};  // QEMU has none
     put_hex(board.about.serial, id, 3);
@@ -172,7 +183,7 @@ core::Board make_board() {
   put(board.about.serial, "qemu");
   board.about.features |= wire::kFeatureSimulated;
   board.note_count = 2;
-  tray.notes[1] = note(1, wire::NoteKind::simulated_by, "QEMU: encoder and converters are simulated");
+  tray.notes[1] = note(1, wire::NoteKind::simulated_by, "QEMU: encoder, converters and tray are simulated");
   return board;
 }
 

@@ -49,8 +49,7 @@ inline constexpr uint32_t kUsartOn = 1U << 13, kSendEmptyInterrupt = 1U << 7, kR
 
 // TIM2, a counter of 32 bits (18.4).
 inline volatile uint32_t &tim2_cr1 = at(0x40000000), &tim2_smcr = at(0x40000008),
-                         &tim2_ccmr1 = at(0x40000018), &tim2_ccer = at(0x40000020),
-                         &tim2_cnt = at(0x40000024), &tim2_arr = at(0x4000002C);
+                         &tim2_ccmr1 = at(0x40000018), &tim2_cnt = at(0x40000024), &tim2_arr = at(0x4000002C);
 
 // ADC1 (13.13) and the DAC (14.5).
 inline volatile uint32_t &adc_sr = at(0x40012000), &adc_cr2 = at(0x40012008), &adc_smpr2 = at(0x40012010),
