@@ -51,9 +51,9 @@ void TouchVolume(benchmark::State& state) {
   static const schema::Volume volume = ball_of_values();
   schema::Piece piece;
   piece.value_per_m = 1e6;
-  const auto words = volume_table(piece, volume, core::PieceTable{}, {kCount_m, kCount_m, 1e-3, kCount_m},
-                                  ball_of_points(static_cast<std::size_t>(state.range(0))));
-  const auto& table = *reinterpret_cast<const core::VolumeTable*>(words.data());
+  auto words = volume_table(piece, volume, core::PieceTable{}, {kCount_m, kCount_m, 1e-3, kCount_m},
+                            ball_of_points(static_cast<std::size_t>(state.range(0))));
+  auto& table = *reinterpret_cast<core::VolumeTable*>(words.data());
   std::vector<double> ticks_ns;
   double tick = 0;
   for (auto _ : state) {
@@ -63,7 +63,7 @@ void TouchVolume(benchmark::State& state) {
     for (int i = 0; i < 3; ++i)
       counts[i] = static_cast<std::int32_t>(std::lround(kCircle_m * way[i] / kCount_m));
     const auto begin = Clock::now();
-    core::VolumeTouch touch = core::touch_volume(table, counts, 1, nullptr);
+    core::VolumeTouch touch = core::touch_volume(table, counts, 1);
     benchmark::DoNotOptimize(touch);
     ticks_ns.push_back(std::chrono::duration<double, std::nano>(Clock::now() - begin).count());
   }

@@ -74,6 +74,13 @@ ExactGhost::ExactGhost(const PreparedScene& scene, const schema::Device& device,
       carved_.push_back(CarvedVolume{*volume, std::ranges::min(volume->stored), 0});
     else
       carved_.emplace_back();
+  for (const Piece& piece : scene.pieces)
+    if (piece.clay) clay_.emplace(piece.name, scene.reliefs.of(*piece.relief));
+}
+
+const Relief& ExactGhost::relief_of(const Piece& piece) const {
+  const auto clay = clay_.find(piece.name);
+  return clay != clay_.end() ? clay->second : scene_.reliefs.of(*piece.relief);
 }
 
 ExactGhost::Surface ExactGhost::surface_at(const Piece& piece, const SpaceMetres& place_m) const {
@@ -85,7 +92,7 @@ ExactGhost::Surface ExactGhost::surface_at(const Piece& piece, const SpaceMetres
     const double above_m = inner(n, p), below_m = -piece.thickness_m - above_m;
     if (piece.thickness_m > 0 && below_m > above_m) return {below_m - radius_m, sum_of({}, -1, n)};
     if (!schema::is_raised(piece)) return {above_m - radius_m, n};
-    const Relief& relief = scene_.reliefs.of(*piece.relief);
+    const Relief& relief = relief_of(piece);
     const auto [u, v] = relief_axes(piece);
     const SplineValue at =
         spline_of(relief.levels.front(), place_on_level(relief, relief.levels.front(), 0, inner(u, p)),
@@ -489,6 +496,50 @@ void ExactGhost::carve(std::size_t index, const SpaceMetres& place_m, double fal
       }
 }
 
+// As core::press_clay, in double precision: the share of each grid point by its distance from the middle of
+// the cell, and for each of the 16 points that rise the nearest point from which it gets its part.
+void ExactGhost::press_clay(const Piece& piece, const SpaceMetres& place_m) {
+  Relief& relief = clay_.at(piece.name);
+  ReliefLevel& level = relief.levels.front();
+  const auto axes = relief_axes(piece);
+  const SpaceMetres p = sum_of(place_m, -1, {piece.x_m, piece.y_m, piece.z_m});
+  double middle[2];
+  for (int i = 0; i < 2; ++i)
+    middle[i] =
+        std::floor(place_on_level(relief, level, i, inner(axes[static_cast<std::size_t>(i)], p))) + 0.5;
+  const auto height = [&](double column, double row) -> float* {
+    const bool there = column >= 0 && row >= 0 && column < static_cast<double>(level.columns) &&
+                       row < static_cast<double>(level.rows);
+    return there ? &level.coefficients[static_cast<std::size_t>(row) * level.columns +
+                                       static_cast<std::size_t>(column)]
+                 : nullptr;
+  };
+  if (height(middle[0] - 0.5, middle[1] - 0.5) == nullptr ||
+      height(middle[0] + 0.5, middle[1] + 0.5) == nullptr)
+    return;
+  struct Point {
+    double x, y, r2;
+  };
+  std::vector<Point> points;
+  for (double y = -2.5; y < 3; ++y)
+    for (double x = -2.5; x < 3; ++x) points.push_back({x, y, x * x + y * y});
+  for (const Point& to : points) {
+    if (to.r2 < 5 || to.r2 > 9) continue;
+    const double of = to.r2 > 7 ? 0.5 : 2.5;
+    const Point from = *std::ranges::min_element(points, {}, [&](const Point& point) {
+      return std::hypot(point.x - to.x, point.y - to.y) + (point.r2 == of ? 0 : 100);
+    });
+    float *const lower = height(middle[0] + from.x, middle[1] + from.y), *const higher =
+                                                                             height(middle[0] + to.x,
+                                                                                    middle[1] + to.y);
+    const schema::Clay& clay = *piece.clay;
+    if (lower == nullptr || *lower - clay.half_m < clay.least_m) continue;
+    if (clay.kept && (higher == nullptr || *higher + clay.half_m > clay.most_m)) continue;
+    *lower = static_cast<float>(*lower - clay.half_m);
+    if (clay.kept) *higher = static_cast<float>(*higher + clay.half_m);
+  }
+}
+
 SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {
   const bool arrives = !placed_;
   if (arrives) ghost_m_ = hand_m;
@@ -518,6 +569,8 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
     own = sum_of(own, force_n, held[i].normal);
     own = sum_of(own, 1, friction_force(piece, walls_[i], force_n, held[i].normal, on, relative_mps));
     sum = sum_of(sum, 1, own);
+    if (piece.clay && spring_n(piece, held[i].depth_m) > piece.clay->force_n)
+      press_clay(scene_.pieces[i], on);
     if (piece.slide) push_n[i] = -inner(own, unit_of(piece.slide->direction));
   }
   for (std::size_t i = 0; i < pieces_.size(); ++i)
