@@ -6,13 +6,37 @@
 namespace tacto::core {
 namespace {
 
-// A part d / 2 and where it goes, from the first grid point of the cell; of one side, the other three are
-// turned by quarters around the middle of the cell.
-struct ClayPart {
-  int8_t from[2], to[2];
+// A point that sinks by this many parts d / 2, and the points that may get them, as places from the first
+// grid point of the cell.
+struct ClayPlace {
+  int8_t x = 0, y = 0;
 };
-constexpr ClayPart kPartsOfASide[] = {
-    {{1, 0}, {3, -1}}, {{1, 1}, {3, 2}}, {{2, 0}, {3, 0}}, {{2, 1}, {3, 1}}};
+struct ClayPoint {
+  ClayPlace from, to[2];
+  int parts = 0;
+};
+struct ClayPattern {
+  ClayPoint points[12];
+};
+
+// Of a quarter, which is turned around the middle of the cell.
+constexpr ClayPattern whole_pattern() noexcept {
+  constexpr ClayPoint kQuarter[] = {
+      {{1, 1}, {{3, 2}, {2, 3}}, 2}, {{2, 0}, {{3, 0}, {}}, 1}, {{2, 1}, {{3, 1}, {}}, 1}};
+  const auto turn = [](ClayPlace& place) {
+    const int8_t x = place.x;
+    place.x = static_cast<int8_t>(1 - place.y), place.y = x;
+  };
+  ClayPattern whole{};
+  int count = 0;
+  for (ClayPoint point : kQuarter)
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      whole.points[count++] = point;
+      turn(point.from), turn(point.to[0]), turn(point.to[1]);
+    }
+  return whole;
+}
+constexpr ClayPattern kPattern = whole_pattern();
 
 // The grid points around one; beyond the edges the outermost ones continue, as in relief_at().
 class ClayGrid {
@@ -34,9 +58,19 @@ class ClayGrid {
   const float* rows_[kSide];
 };
 
-void keep_larger(float& most, float value) noexcept {
-  const float size = value < 0 ? -value : value;
-  most = size > most ? size : most;
+// The largest change from one step to the next, absolute: step(line, at) of all places of the lines.
+template <class Step>
+float largest_change(int first_line, int last_line, int first, int last, Step step) noexcept {
+  float most = 0;
+  for (int line = first_line; line <= last_line; ++line) {
+    float before = step(line, first);
+    for (int at = first + 1; at <= last; ++at) {
+      const float after = step(line, at), size = __builtin_fabsf(after - before);
+      most = size > most ? size : most;
+      before = after;
+    }
+  }
+  return most;
 }
 
 const float* heights_of(const ReliefPieceTable& table) noexcept {
@@ -50,16 +84,13 @@ const float* heights_of(const ReliefPieceTable& table) noexcept {
 float clay_bend_per_m(const ReliefPieceTable& table, int32_t column, int32_t row, int reach) noexcept {
   const ReliefLevelTable& level = levels_of(relief_of(table))[0];
   const ClayGrid h(heights_of(table), level, column, row);
-  float along_x = 0, along_y = 0, mixed = 0;
   const int end = reach + 1;
-  for (int j = -reach; j <= end; ++j)
-    for (int i = -reach - 1; i <= end + 1; ++i) {
-      keep_larger(along_x, (h.at(i - 1, j) - h.at(i, j)) + (h.at(i + 1, j) - h.at(i, j)));
-      keep_larger(along_y, (h.at(j, i - 1) - h.at(j, i)) + (h.at(j, i + 1) - h.at(j, i)));
-    }
-  for (int j = -reach - 1; j <= end; ++j)
-    for (int i = -reach - 1; i <= end; ++i)
-      keep_larger(mixed, (h.at(i + 1, j + 1) - h.at(i, j + 1)) - (h.at(i + 1, j) - h.at(i, j)));
+  float along_x = largest_change(-reach, end, -reach - 2, end + 1,
+                                 [&](int y, int x) { return h.at(x + 1, y) - h.at(x, y); }),
+        along_y = largest_change(-reach, end, -reach - 2, end + 1,
+                                 [&](int x, int y) { return h.at(x, y + 1) - h.at(x, y); });
+  const float mixed = largest_change(-reach - 1, end, -reach - 1, end + 1,
+                                     [&](int x, int y) { return h.at(x + 1, y) - h.at(x, y); });
   const float* const per_m = level.samples_per_m;
   along_x *= per_m[0] * per_m[0], along_y *= per_m[1] * per_m[1];
   return (along_x > along_y ? along_x : along_y) + per_m[0] * per_m[1] * mixed;
@@ -76,26 +107,25 @@ void press_clay(ReliefPieceTable& table, SpaceVector place) noexcept {
     if (cell[i] < 0 || static_cast<uint32_t>(cell[i]) + 1 >= counts[i]) return;
   }
   auto* const heights = const_cast<float*>(heights_of(table));
-  const auto height = [&](int x, int y) -> float* {
-    const int32_t column = cell[0] + x, row = cell[1] + y;
-    const bool there = column >= 0 && static_cast<uint32_t>(column) < level.columns && row >= 0 &&
-                       static_cast<uint32_t>(row) < level.rows;
+  const auto height = [&](ClayPlace place) -> float* {
+    const auto column = static_cast<uint32_t>(cell[0] + place.x),
+               row = static_cast<uint32_t>(cell[1] + place.y);
+    const bool there = column < level.columns && row < level.rows;  // below 0: a large one
     return there ? heights + static_cast<size_t>(row) * level.columns + column : nullptr;
   };
   const ClayTable& clay = table.clay;
-  for (const ClayPart& part : kPartsOfASide) {
-    int x = part.from[0], y = part.from[1], to_x = part.to[0], to_y = part.to[1];
-    for (int side = 0; side < 4; ++side) {
-      float *const from = height(x, y), *const to = height(to_x, to_y);
-      const bool sinks = from != nullptr && *from - clay.half_m >= clay.least_m,
-                 rises = clay.kept == 0 || (to != nullptr && *to + clay.half_m <= clay.most_m);
-      if (sinks && rises) {
-        *from -= clay.half_m;
-        if (clay.kept != 0) *to += clay.half_m;
-      }
-      const int turned_x = 1 - y, turned_to_x = 1 - to_y;
-      y = x, x = turned_x, to_y = to_x, to_x = turned_to_x;
+  for (const ClayPoint& point : kPattern.points) {
+    const float sinks_m = static_cast<float>(point.parts) * clay.half_m;
+    const int rising = clay.kept != 0 ? point.parts : 0;
+    float *const from = height(point.from), *to[2] = {};
+    bool moves = from != nullptr && *from - sinks_m >= clay.least_m;
+    for (int k = 0; k < rising; ++k) {
+      to[k] = height(point.to[k]);
+      moves = moves && to[k] != nullptr && *to[k] + clay.half_m <= clay.most_m;
     }
+    if (!moves) continue;
+    *from -= sinks_m;
+    for (int k = 0; k < rising; ++k) *to[k] += clay.half_m;
   }
   const float bend_per_m = clay_bend_per_m(table, cell[0], cell[1], clay.kept != 0 ? 2 : 1);
   if (bend_per_m > table.bend_per_m) table.bend_per_m = bend_per_m;

@@ -497,7 +497,7 @@ void ExactGhost::carve(std::size_t index, const SpaceMetres& place_m, double fal
 }
 
 // As core::press_clay, in double precision: the share of each grid point by its distance from the middle of
-// the cell, and for each of the 16 points that rise the nearest point from which it gets its part.
+// the cell, and of the 16 points that may rise those to which it is the nearest.
 void ExactGhost::press_clay(const Piece& piece, const SpaceMetres& place_m) {
   Relief& relief = clay_.at(piece.name);
   ReliefLevel& level = relief.levels.front();
@@ -523,20 +523,22 @@ void ExactGhost::press_clay(const Piece& piece, const SpaceMetres& place_m) {
   std::vector<Point> points;
   for (double y = -2.5; y < 3; ++y)
     for (double x = -2.5; x < 3; ++x) points.push_back({x, y, x * x + y * y});
-  for (const Point& to : points) {
-    if (to.r2 < 5 || to.r2 > 9) continue;
-    const double of = to.r2 > 7 ? 0.5 : 2.5;
-    const Point from = *std::ranges::min_element(points, {}, [&](const Point& point) {
-      return std::hypot(point.x - to.x, point.y - to.y) + (point.r2 == of ? 0 : 100);
-    });
-    float *const lower = height(middle[0] + from.x, middle[1] + from.y), *const higher =
-                                                                             height(middle[0] + to.x,
-                                                                                    middle[1] + to.y);
-    const schema::Clay& clay = *piece.clay;
-    if (lower == nullptr || *lower - clay.half_m < clay.least_m) continue;
-    if (clay.kept && (higher == nullptr || *higher + clay.half_m > clay.most_m)) continue;
-    *lower = static_cast<float>(*lower - clay.half_m);
-    if (clay.kept) *higher = static_cast<float>(*higher + clay.half_m);
+  const schema::Clay& clay = *piece.clay;
+  for (const Point& point : points) {
+    if (point.r2 > 3) continue;
+    const double of = point.r2 < 1 ? 8.5 : 6.5, sinks_m = clay.half_m * (point.r2 < 1 ? 2 : 1);
+    float* const lower = height(middle[0] + point.x, middle[1] + point.y);
+    bool moves = lower != nullptr && *lower - sinks_m >= clay.least_m;
+    std::vector<float*> higher;
+    for (const Point& to : points) {
+      const bool gets = std::hypot(to.x - point.x, to.y - point.y) < (point.r2 < 1 ? 2.5 : 1.1);
+      if (!clay.kept || to.r2 != of || !gets) continue;
+      higher.push_back(height(middle[0] + to.x, middle[1] + to.y));
+      moves = moves && higher.back() != nullptr && *higher.back() + clay.half_m <= clay.most_m;
+    }
+    if (!moves) continue;
+    *lower = static_cast<float>(*lower - sinks_m);
+    for (float* const each : higher) *each = static_cast<float>(*each + clay.half_m);
   }
 }
 
