@@ -136,6 +136,11 @@ cli::Report row_of(const Piece& piece) {
     row.add("relief", piece.relief->file);
     row.add("normals", piece.relief->interpolated ? "interpolated" : "exact");
   }
+  if (piece.clay)
+    row.add("clay_force_n", piece.clay->force_n)
+        .add("clay_sink_m_per_s", piece.clay->sink_m_per_s)
+        .add("clay_thickness_m", piece.clay->thickness_m)
+        .add("clay_volume", piece.clay->kept ? "kept" : "lost");
   return row;
 }
 

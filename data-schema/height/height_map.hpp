@@ -41,6 +41,12 @@ std::string height_map_path(const std::string& name);
 /// the texts as attributes. Errors: as check_height_map, PendingFiles.
 Result<void> write_height_map(const std::string& path, const HeightMap& map, Existing existing);
 
+/// A solid with the heights above and a flat face at `base_m` below, as binary STL in millimetres: closed,
+/// each edge of two triangles, (0, 0) is the first height. Errors: unsuitable: fewer than 2 columns or rows,
+/// a height at `base_m` or below it, more than 2^31 triangles; PendingFiles.
+Result<void> write_height_stl(const std::string& path, const HeightMap& map, double base_m,
+                              Existing existing);
+
 /// By stem or NAME.height.nc. Errors: not_found; malformed: not netCDF, or of another kind, without a pitch
 /// or without heights; as check_height_map; unsupported_version.
 Result<HeightMap> read_height_map(const std::string& name);

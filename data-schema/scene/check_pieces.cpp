@@ -172,6 +172,10 @@ Result<void> check_members(const Piece& piece, const std::string& where) {
     return refused("coefficients", "quadric");
   if (!piece.mesh.empty() && piece.shape != PieceShape::mesh) return refused("mesh", "mesh");
   if (piece.relief && piece.shape != PieceShape::plane) return refused("relief", "plane");
+  if (piece.clay && !is_raised(piece))
+    return fail(ErrorKind::unsuitable, "clay is a plane with a relief of exact normals", where + "/clay",
+                piece.relief ? "leave \"normals\": \"interpolated\" out"
+                             : "give `relief` with a height map; one of equal heights is a flat block");
   TACTO_TRY(check_volume_members(piece, where));
   const auto& d = piece.direction;
   if (!(std::hypot(d[0], d[1], d[2]) > 1e-9))

@@ -60,6 +60,17 @@ struct Carving {
   double force_n = 0, value_per_s = 0;
 };
 
+/// A relief of clay: above this force of the wall's spring the 4 grid points around the point sink, and the 8
+/// next to them half as fast (Massie 1996, section 3.7).
+struct Clay {
+  double force_n = 0, sink_m_per_s = 0;
+  double thickness_m = 0;  ///< below the lowest height of the map: nothing sinks deeper
+  bool kept = false;       ///< the volume: the surroundings rise by what sinks
+  /// Not in the file, once its map was read for a device: half of what a height sinks in a tick, and between
+  /// which ones the heights stay.
+  double half_m = 0, least_m = 0, most_m = 0;
+};
+
 /// The last one is not in a file: a relief with interpolated normals is one.
 enum class PieceTextureType { recording, bump, sine, normals };
 
@@ -87,6 +98,7 @@ struct PieceRelief {
   /// Not in the file, once it was read: the largest slope, the largest curvature, 1/m, and the difference of
   /// the highest and the lowest height.
   double largest = 0, steepest = 0, range_m = 0;
+  std::string surface = {};  ///< the same: its name among the surfaces that were read
 };
 
 /// A piece that moves along one direction, from its place on, between two stops: a mass with viscous and dry
@@ -151,6 +163,7 @@ struct Piece {
   std::optional<Carving> carve = std::nullopt;      ///< volume: how the point removes material
   /// Not in the file, once its volume was read: the largest slope of the depth, squared.
   double steepness = 1;
+  std::optional<Clay> clay = std::nullopt;  ///< plane with a relief of exact normals
 };
 
 struct PieceNumber {

@@ -160,6 +160,11 @@ Piece piece_from(const Json& body) {
   piece.iso = number_or(body, "iso", 0);
   piece.value_per_m = number_or(body, "value_per_m", 0);
   if (body.contains("carve")) piece.carve = {body["carve"]["force_n"], body["carve"]["value_per_s"]};
+  if (body.contains("clay")) {
+    const Json& clay = body["clay"];
+    piece.clay = {clay["force_n"], clay["sink_m_per_s"], clay["thickness_m"],
+                  text_or(clay, "volume") == "kept"};
+  }
   for (const auto& [name, value, changes] : kShapeNumbers) piece.*value = number_or(body, name, 0);
   read_wall(piece, body);
   if (body.contains("transient")) {
@@ -221,6 +226,11 @@ Json piece_body(const Piece& piece) {
     body["relief"] = {{"file", piece.relief->file},
                       {"axes", piece.relief->axes},
                       {"normals", piece.relief->interpolated ? "interpolated" : "exact"}};
+  if (piece.clay)
+    body["clay"] = {{"force_n", piece.clay->force_n},
+                    {"sink_m_per_s", piece.clay->sink_m_per_s},
+                    {"thickness_m", piece.clay->thickness_m},
+                    {"volume", piece.clay->kept ? "kept" : "lost"}};
   return body;
 }
 

@@ -346,6 +346,10 @@ Result<Report> row_of_piece(const SceneOnDevice& on, const schema::Piece& piece)
         .add("slide_to_m", piece.slide->to_m)
         .add("slide_stiffest_n_per_m", stiffest_slide_n_per_m(piece, on.scene.steps.tick_s));
   if (schema::is_raised(piece)) add_relief(row, *piece.relief, on);
+  if (piece.clay)
+    row.add("clay_force_n", piece.clay->force_n)
+        .add("clay_sink_m_per_tick", 2 * piece.clay->half_m)
+        .add("clay_lowest_m", piece.clay->least_m);
   if (const double energy_j = most_energy_j(piece, on.device); energy_j > 0) row.add("may_give_j", energy_j);
   if (piece.arrest_mass_kg > 0)
     row.add("arrest_in_one_tick_to_mps",

@@ -101,7 +101,7 @@ def main():
     flash, ram = int(size[0]) + int(size[1]), int(size[1]) + int(size[2])
     print(f"the kernel of a scene of four patches and twelve layers {scene:.0f}, at most {scene_most:.0f} instructions a tick")
     print(f"the kernel of seven pieces in space {instructions(figures['pieces_counts'] / figures['kernel_ticks']):.0f}, at most {instructions(figures['pieces_most_counts']):.0f} instructions a tick")
-    print(f"the kernel of two volumes, one with a tool of three points that carves {instructions(figures['volume_counts'] / figures['kernel_ticks']):.0f}, at most {instructions(figures['volume_most_counts']):.0f} instructions a tick")
+    print(f"the kernel of two volumes, one with a tool of three points that carves, and clay {instructions(figures['volume_counts'] / figures['kernel_ticks']):.0f}, at most {instructions(figures['volume_most_counts']):.0f} instructions a tick")
     print(f"a texture's kernel (two levels, 64 taps) {texture:.0f}, at most {instructions(figures['texture_most_counts']):.0f}; "
           f"while it changes {change:.0f}, at most {change_most:.0f}; kernel of eight sections {kernel:.0f}, whole tick {tick:.0f}, poll {poll:.0f} instructions a tick, of {CYCLES} cycles; "
           f"flash {flash} B, RAM {ram} B with this program's buffers, of which the firmware "

@@ -12,22 +12,23 @@ namespace tacto::tests {
 
 inline constexpr uint32_t kVolumeFingerprint = 1657481873;
 
-/// A volume that a tool of three points carves, and a second one around it, with a wall's damper and
-/// friction.
+/// A volume that a tool of three points carves, a second one around it, and clay whose volume is kept, with a
+/// wall's damper and friction.
 class VolumeWorkload {
-  static constexpr uint32_t kVolumes = 2, kWords = core::kPieceNumbers + core::kWallStateWords;
+  static constexpr uint32_t kVolumes = 2, kLayers = 3, kWords = core::kPieceNumbers + core::kWallStateWords;
 
  public:
-  static constexpr uint16_t kKinds[kVolumes] = {24, 24};
+  static constexpr uint16_t kKinds[kLayers] = {24, 24, 22};
   VolumeWorkload() noexcept {
-    constexpr uint32_t kTable = sizeof block_.carved / sizeof(uint32_t);
-    block_.header.patches = 1, block_.header.layers = kVolumes;
-    block_.header.numbers = kVolumes * kWords;
-    block_.header.table_words = (sizeof block_.carved + sizeof block_.whole) / sizeof(uint32_t);
-    block_.patch = {0, 0, 1, 0, 1000, 1000, 0, kVolumes, 0};
+    constexpr uint32_t kCarved = sizeof(Carved) / sizeof(uint32_t), kWhole = sizeof(Whole) / sizeof(uint32_t),
+                       kTables[kLayers] = {0, kCarved, kCarved + kWhole};
+    block_.header.patches = 1, block_.header.layers = kLayers;
+    block_.header.numbers = kLayers * kWords;
+    block_.header.table_words = kTableWords;
+    block_.patch = {0, 0, 1, 0, 1000, 1000, 0, kLayers, 0};
     const float wall[core::kPieceNumbers] = {800, 2, 0.05F, 0, 0, 0, 0.5F, 0.3F, 1, 1};
-    for (uint32_t i = 0; i < kVolumes; ++i) {
-      block_.layers[i] = {kKinds[i], static_cast<uint16_t>(i * kWords), i * kTable};
+    for (uint32_t i = 0; i < kLayers; ++i) {
+      block_.layers[i] = {kKinds[i], static_cast<uint16_t>(i * kWords), kTables[i]};
       for (uint32_t j = 0; j < core::kPieceNumbers; ++j) block_.numbers[i * kWords + j] = wall[j];
     }
     WorkloadRandom value{10};
@@ -47,6 +48,12 @@ class VolumeWorkload {
     block_.carved.table.points = 3;
     block_.carved.points[1] = {{0, 1, -1}, {7, 1U << 30, 9}};
     block_.carved.points[2] = {{-1, 0, 0}, {3U << 30, 0, 1U << 31}};
+    auto& clay = block_.clay;
+    clay.table = {{{0, 0, -500}, {}, {0, 0, 1}, {}}, {{0.8F, 0.6F, 0}, {-0.6F, 0.8F, 0}}, {}, 700};
+    clay.table.clay = {1, 0x1p-14F, -0x1p-7F, 0x1p-7F, 1};
+    clay.relief = {500, 1};
+    clay.levels[0] = {{{4, 0, {}}, {4, 7, {}}}, {200, 200}, kClaySide, kClaySide, 0};
+    for (float& height : clay.heights) height = static_cast<float>(value()) * 0x1p-24F;
     const uint32_t bytes = sizeof block_;
     block_.header.check = core::scene_check(&block_, bytes);
     core::SceneView view;
@@ -75,25 +82,36 @@ class VolumeWorkload {
 
  private:
   static constexpr uint32_t kSide = 8, kValues = kSide * kSide * kSide;
+  static constexpr uint32_t kClaySide = 9;
+  struct Carved {
+    core::VolumeTable table;
+    core::ToolPoint points[3];
+    int16_t values[kValues] = {};
+  };
+  struct Whole {
+    core::VolumeTable table;
+    int16_t values[kValues] = {};
+  };
+  struct Clay {
+    core::ReliefPieceTable table;
+    core::ReliefTable relief;
+    core::ReliefLevelTable levels[1];
+    float heights[kClaySide * kClaySide] = {};
+  };
+  static constexpr uint32_t kTableWords = (sizeof(Carved) + sizeof(Whole) + sizeof(Clay)) / sizeof(uint32_t);
   struct Block {
     core::SceneHeader header;
     core::ScenePatch patch;
-    core::SceneLayer layers[kVolumes];
-    float numbers[kVolumes * kWords] = {};
-    struct {
-      core::VolumeTable table;
-      core::ToolPoint points[3];
-      int16_t values[kValues] = {};
-    } carved;
-    struct {
-      core::VolumeTable table;
-      int16_t values[kValues] = {};
-    } whole;
+    core::SceneLayer layers[kLayers];
+    float numbers[kLayers * kWords] = {};
+    Carved carved;
+    Whole whole;
+    Clay clay;
   } block_;
   WorkloadRandom next_{1999};
   uint32_t ticks_ = 0;
   int32_t counts_[3] = {}, speed_[3] = {};
-  float live_[kVolumes * kWords + core::kPatchWords + 1 + kValues / 2];
+  float live_[kLayers * kWords + core::kPatchWords + kTableWords];
   core::SceneKernel kernel_;
 };
 

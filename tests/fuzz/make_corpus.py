@@ -184,20 +184,20 @@ def mesh(size_m):
     return kind, numbers, table + struct.pack("<fIII", size_m * 2**-18, 3, 4, 4) + tree + triangles + struct.pack("<12f", *[0] * 3, size_m, 0, 0, 0, size_m, 0, 0, 0, size_m)
 
 
-def raised(origin, bend_per_m, samples_per_m, columns, rows):
+def raised(origin, bend_per_m, samples_per_m, columns, rows, clay=(0, 0, 0, 0, 0)):
     """A plane with the relief of a map."""
     kind, numbers, table = piece(RELIEF, origin, (0, 0.6, 0.8))
-    return kind, numbers, table + struct.pack("<9f", 1, 0, 0, 0, 0.8, -0.6, 1e-3, -1, bend_per_m) + relief_table(1000, ((0, 0, samples_per_m, columns, rows),))
+    return kind, numbers, table + struct.pack("<9f", 1, 0, 0, 0, 0.8, -0.6, 1e-3, -1, bend_per_m) + struct.pack("<4fI", *clay) + relief_table(1000, ((0, 0, samples_per_m, columns, rows),))
 
 
-def volume(samples, spacing_m, m_per_value, carve=(0, 0, 0, 0), points=()):
+def volume(samples, spacing_m, m_per_value, carve=(0, 0, 0), points=()):
     """Values that fall along the sum of the three places, around 0; places per count of an encoder of 10 um."""
     kind, numbers, table = piece(VOLUME, (3, -4, 5), (0, 0, 1, 0.1))
     axes = b"".join(struct.pack("<iIiIfI", (n - 1) // 2, (n - 1) % 2 << 31, int(1e-5 / spacing_m), int(1e-5 / spacing_m % 1 * 2**32), 1 / spacing_m, n) for n in samples)
     values = [1000 - 300 * (x + y + z) for z in range(samples[2]) for y in range(samples[1]) for x in range(samples[0])]
     values += [0] * (len(values) % 2)
     offsets = b"".join(struct.pack("<3i3I", *whole, *part) for whole, part in points)
-    return kind, numbers, table + axes + struct.pack("<fffIiII", 12.5, m_per_value, *carve, len(points)) + offsets + struct.pack(f"<{len(values)}h", *values)
+    return kind, numbers, table + axes + struct.pack("<fffIiII", 12.5, m_per_value, *carve, 0, len(points)) + offsets + struct.pack(f"<{len(values)}h", *values)
 
 
 SCENES = {
@@ -225,9 +225,9 @@ SCENES = {
     "hard_pieces": scene((2**31 - 1, -70, 2**20, 40), [(0, 0, 1, 0, 1000, 1000, 1, [piece(QUADRIC, (0, 0, 0), (1e9, -1e9, 1e9, 1e9, -1e9, 0, 1e9, 0, 0, -1e9), (1e6, 1e4, 100, 1e7, 1000, 1000, 10, 10, 1e4, -1000), (-1e6, 1e6, -1.9, 0.1, -0.1, -1.9)),
                                                                                    piece(PLANE, (2**31 - 1, 0, -2**31), (1, 0, 0, 20), (1e6, 1e4, 100, 1e7, 1000, 1000, 1e-6, 10, 1e4, 1000), (0, 0, -1, 0, 0, -1), recording(1e6, 2), [(0, 1000), (0, 0), (20, 1000)], HARD_SLIDE)])]),
     "mesh": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [mesh(0.002), piece(PLANE, (0, 0, -90), (0, 0.6, 0.8, 0.001))])]),
-    "reliefs": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [raised((0, 0, 90), 1e7, 500, 6, 5), raised((2**31 - 1, 0, -2**31), 0, 1e8, 1, 2), piece(PLANE, (0, 0, -90), (0, 0, 1, 0.001))])]),
-    "volume": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [volume((4, 5, 6), 5e-4, 1e-6, (0.01, 70000, -3500, 0), [((0, 0, 0), (0, 0, 0)), ((-1, 0, 1), (7, 2**31, 9))]), piece(PLANE, (0, 0, -90), (0, 0.6, 0.8, 0.001)),
-                                                                  volume((3, 3, 3), 1e-7, 0.1, (1000, 0xFFFF0000, 32767, 61))])]),
+    "reliefs": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [raised((0, 0, 90), 1e7, 500, 6, 5, (1e-3, 1e-6, -0.01, 0.01, 1)), raised((2**31 - 1, 0, -2**31), 0, 1e8, 1, 2), piece(PLANE, (0, 0, -90), (0, 0, 1, 0.001))])]),
+    "volume": scene((3, -2, 50, 7), [(0, 0, 1, 0, 1000, 1000, 0, [volume((4, 5, 6), 5e-4, 1e-6, (0.01, 70000, -3500), [((0, 0, 0), (0, 0, 0)), ((-1, 0, 1), (7, 2**31, 9))]), piece(PLANE, (0, 0, -90), (0, 0.6, 0.8, 0.001)),
+                                                                  volume((3, 3, 3), 1e-7, 0.1, (1000, 0xFFFF0000, 32767))])]),
     "jumps": scene((2**31 - 1, -2**31, 2**30, 7), [(0, 0, 1, 0, 1000, 1000, 1, [(SPRING, (1e6, 10, -10)), (DAMPER, (1e4,)), (TICK_DAMPER, (1e4,))])]),
 }
 

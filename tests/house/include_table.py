@@ -100,7 +100,7 @@ MAY_INCLUDE = {
         "data-schema/{base files texture} spatial/{dsp/filter dsp/resample numbers texture}",
     "playback/choose": "data-schema/{results scene} firmware-host/{boards core/scene} playback/{model prepare}",
     "playback/cli":
-        "data-schema/{base command control device files recording report scene session texture volume} "
+        "data-schema/{base command control device files height recording report scene session texture volume} "
         "firmware-host/{boards core/firmware core/scene link} playback/{choose control host-loop model player prepare/relief prepare/scene "
         "render session strokes}",
     "playback/control": "data-schema/{base control files}",

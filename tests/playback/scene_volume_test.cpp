@@ -194,6 +194,7 @@ TEST(SceneVolume, ABlockThatWouldReadBeyondItsEndIsRefused) {
   EXPECT_EQ(changed([](core::VolumeTable& t) { t.iso = INFINITY; }), core::SceneFault::value);
   EXPECT_EQ(changed([](core::VolumeTable& t) { t.piece.travel = 4; }), core::SceneFault::structure);
   EXPECT_EQ(changed([](core::VolumeTable& t) { t.piece.slide = 4; }), core::SceneFault::structure);
+  EXPECT_EQ(changed([](core::VolumeTable& t) { t.carve_rest = 1; }), core::SceneFault::value);
 }
 
 // Of values that grow linearly along z the force is that of a spring of the stiffness.
@@ -234,11 +235,10 @@ struct CarvedScene {
     piece.iso = 0.5;
     piece.carve = {force_n, value_per_s};
     std::vector<std::uint32_t> table = table_words(volume, piece);
-    std::uint32_t carved = 0;
-    EXPECT_TRUE(set_carving(piece, volume, 1000, "s", carved, table));
+    EXPECT_TRUE(set_carving(piece, volume, 1000, "s", table));
     block = block_around(table, 500);
     EXPECT_EQ(fault_of(block, view), core::SceneFault::none);
-    EXPECT_EQ(view.carved_words, carved);
+    EXPECT_TRUE(view.tables_change);
     for (int i = 0; i < 3; ++i) setup.axes[i] = {static_cast<core::AxisAlong>(i), 1e-5F, 1e9F, 1e9F};
     setup.axis_count = 3, setup.peak_n = setup.continuous_n = 1e9F, setup.slew_n_per_s = 1e12F;
     setup.rate_hz = 1000;
@@ -246,7 +246,8 @@ struct CarvedScene {
     kernel.set(view, setup, live.data());
   }
   std::vector<std::int16_t> values(const schema::Volume& volume) const {
-    const std::int16_t* const first = kernel.carved_values(0);
+    const core::SceneView now = kernel.scene_now();
+    const std::int16_t* const first = values_of(core::table_of<core::VolumeTable>(now, now.layers[0]));
     return {first, first + volume.stored.size()};
   }
 };
@@ -344,12 +345,12 @@ TEST(SceneVolume, TheForceOfAToolIsTheSumOverItsPoints) {
   for (auto& point_m : tool_m)
     for (double& each : point_m) each = at_m(random);
   tool_m[0] = {0, 0, 0};
-  const auto words = volume_table(piece, volume, core::PieceTable{}, {1e-5, 1e-5, 1, 1e-5}, tool_m);
-  const auto& table = *reinterpret_cast<const core::VolumeTable*>(words.data());
+  auto words = volume_table(piece, volume, core::PieceTable{}, {1e-5, 1e-5, 1, 1e-5}, tool_m);
+  auto& table = *reinterpret_cast<core::VolumeTable*>(words.data());
   for (int n = 0; n < 50; ++n) {
     std::int32_t counts[3];
     for (std::int32_t& count : counts) count = static_cast<std::int32_t>(1e5 * at_m(random));
-    const core::SpaceVector push = core::touch_volume(table, counts, 500, nullptr).push_m;
+    const core::SpaceVector push = core::touch_volume(table, counts, 500).push_m;
     Place3 sum = {};
     double absolute = 0;
     for (const auto& point_m : tool_m) {

@@ -76,7 +76,7 @@ Reply SceneUpload::part(const wire::ScenePart& message) noexcept {
   here_ = end > here_ ? end : here_;
   if (here_ < bytes_) return {};
   const SceneFault fault = read_scene_block(memory_, bytes_, view_);
-  // The values of volumes that can be carved are there twice.
+  // Tables that the hand changes are there twice.
   if (fault == SceneFault::none && view_.live_words() > words_ - bytes_ / 4)
     return {AnswerCode::too_large, most_bytes() / 2};
   complete_ = fault == SceneFault::none;

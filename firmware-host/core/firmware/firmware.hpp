@@ -84,8 +84,8 @@ class SceneUpload {
   }
 
  private:
-  // SceneView::live_words() of the largest scene that is not carved; in a small memory a block of half of it
-  // cannot need more.
+  // SceneView::live_words() of the largest scene whose tables do not change; in a small memory a block of
+  // half of it cannot need more.
   uint32_t live_words() const noexcept {
     constexpr uint32_t kMost =
         kMostSceneLayers * (kMostLayerNumbers + kPatchWords) + kMostSceneBodies * (kBodyStateWords + 1);

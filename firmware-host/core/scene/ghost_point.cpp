@@ -2,6 +2,7 @@
 #include "firmware-host/core/scene/ghost_point.hpp"
 
 #include "firmware-host/core/kernel/finite.hpp"
+#include "firmware-host/core/scene/clay.hpp"
 #include "firmware-host/core/scene/piece_relief.hpp"
 #include "firmware-host/core/scene/piece_slide.hpp"
 #include "firmware-host/core/scene/piece_texture.hpp"
@@ -335,6 +336,14 @@ bool is_inside(const SceneView& scene, const SpacePlace& place, const float (&st
   return false;
 }
 
+// The table is in the memory of the kernel if it is clay.
+[[gnu::noinline]] void press(const PieceTable& table, float stiffness, float depth_m,
+                             SpaceVector on) noexcept {
+  auto& relief = const_cast<ReliefPieceTable&>(relief_piece(table));
+  if (relief.clay.force_n > 0 && spring_force(table, stiffness, depth_m) > relief.clay.force_n)
+    press_clay(relief, on);
+}
+
 }  // namespace
 
 void GhostPoint::move(SpaceVector way, const float (&step_m)[3]) noexcept {
@@ -524,8 +533,7 @@ SpaceVector GhostPoint::push_of(const Holding& holding, uint32_t piece) noexcept
 
 SpaceVector GhostPoint::force(const SceneView& block, float* live, const SpaceHand& hand,
                               const float (&step_m)[3], const ForceSetup& setup) noexcept {
-  SceneView scene = block;
-  scene.numbers = live;
+  const SceneView scene = block.as_in(live);
   const SpacePlace place{{hand.counts[0], hand.counts[1], hand.counts[2]}, {}};
   const auto far = [&](const SpacePlace& a, const SpacePlace& b) {
     return !(length(difference(a, b, step_m)) <= kFarthestInSpace_m);
@@ -557,10 +565,8 @@ SpaceVector GhostPoint::force(const SceneView& block, float* live, const SpaceHa
       if (state.touched != 0 && !beyond && is_near(mesh_of(scene, i), from, kLetGo_m)) touch.outside_m = 0;
     }
     if (is_volume(scene, i) && !beyond) {
-      const auto& volume = table_of<VolumeTable>(scene, scene.layers[i]);
-      auto* const carved = reinterpret_cast<uint32_t*>(live + scene.uncarved_words()) + volume.carved;
-      const VolumeTouch in =
-          touch_volume(volume, hand.counts, number[kPieceStiffness], volume.carve_n > 0 ? carved : nullptr);
+      auto& volume = const_cast<VolumeTable&>(table_of<VolumeTable>(scene, scene.layers[i]));
+      const VolumeTouch in = touch_volume(volume, hand.counts, number[kPieceStiffness]);
       touch.depth_m = length(in.push_m), touch.outside_m = in.outside_m;
       if (touch.depth_m > 0) normal = (1 / touch.depth_m) * in.push_m;
     }
@@ -590,6 +596,7 @@ SpaceVector GhostPoint::force(const SceneView& block, float* live, const SpaceHa
     const SpaceVector own =
         normal_n * normal + of_texture + friction_force(number, state, normal_n, normal, on, speed_mps);
     sum = sum + own;
+    if (kind_of(scene, i) == SceneLayerKind::relief) press(table, number[kPieceStiffness], touch.depth_m, on);
     if (table.slide == 0) continue;
     push_slide(slide_of(table), state, -dot(own, axis_of(slide_of(table))));
     slides = true;

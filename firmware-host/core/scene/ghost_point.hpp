@@ -35,7 +35,8 @@ struct SpaceHand {
 /// give the force. Of a mesh each triangle is a piece of its own: one that the ghost met holds it as long as
 /// it is within one and a half skins (first_hit()); the force is that of a ghost without a skin, along the
 /// sum of the pushes of all its triangles. A hand that begins in a mesh touches nothing until it has left it.
-/// A volume does not hold the ghost: its force is that of its potential at the hand (touch_volume()).
+/// A volume does not hold the ghost: its force is that of its potential at the hand (touch_volume()). Clay
+/// sinks at the ghost (press_clay()), after its force, so the next tick is the first one on the new surface.
 /// Along each piece that holds it come texture_force() and friction_force(). Their sum of a piece that slides
 /// pushes it (push_slide()); where it passes the ghost it takes it along at the end of the tick, and it stops
 /// where another piece holds the ghost. `contact: add`: each piece by

@@ -360,14 +360,19 @@ bool sound(const ReliefPieceTable& table) noexcept {
   return sound(table.piece, SceneLayerKind::relief) && across(n, u) && across(n, v) && across(u, v) &&
          unit(u) && unit(v) && within(table.origin_m[0], -kLargestPiece_m, kLargestPiece_m) &&
          within(table.origin_m[1], -kLargestPiece_m, kLargestPiece_m) &&
-         within(table.bend_per_m, 0, kMostBend_per_m);
+         within(table.bend_per_m, 0, kMostBend_per_m) && within(table.clay.force_n, 0, kMostKappa_n) &&
+         within(table.clay.half_m, 0, kDeepest_m) &&
+         within(table.clay.least_m, -kLargestCoefficient_m, kLargestCoefficient_m) &&
+         within(table.clay.most_m, table.clay.least_m, kLargestCoefficient_m) && table.clay.kept <= 1;
 }
 
-SceneFault check_relief_piece(const SceneView& view, const SceneLayer& layer, uint32_t room,
+SceneFault check_relief_piece(SceneView& view, const SceneLayer& layer, uint32_t room,
                               uint32_t& words) noexcept {
   constexpr uint32_t kHead = sizeof(ReliefPieceTable) / sizeof(uint32_t);
   if (room < kHead) return SceneFault::structure;
-  if (!sound(table_of<ReliefPieceTable>(view, layer))) return SceneFault::value;
+  const auto& table = table_of<ReliefPieceTable>(view, layer);
+  if (!sound(table)) return SceneFault::value;
+  view.tables_change = view.tables_change || table.clay.force_n > 0;
   const SceneLayer behind{layer.kind, layer.first_number, layer.table + kHead};
   const SceneFault fault = check_relief(view, behind, 1, kLargestCoefficient_m, room - kHead, words);
   words += kHead;
@@ -378,7 +383,7 @@ bool sound(const VolumeAxis& axis) noexcept {
   return axis.samples >= 2 && axis.samples <= kMostVolumeSamples && within(axis.per_m, 0, kMostVoxels_per_m);
 }
 
-// Without a travel, a texture and a slide. Adds its carved words.
+// Without a travel, a texture and a slide.
 SceneFault check_volume(SceneView& view, const SceneLayer& layer, uint32_t room, uint32_t& words) noexcept {
   constexpr uint32_t kHead = sizeof(VolumeTable) / sizeof(uint32_t);
   if (room < kHead) return SceneFault::structure;
@@ -394,12 +399,9 @@ SceneFault check_volume(SceneView& view, const SceneLayer& layer, uint32_t room,
   const uint64_t all = kHead + table.points * (sizeof(ToolPoint) / sizeof(uint32_t)) + (values + 1) / 2;
   if (all > room) return SceneFault::structure;
   words = static_cast<uint32_t>(all);
-  if (table.carve_n > 0) {
-    if (table.carved != view.carved_words) return SceneFault::structure;
-    view.carved_words += carved_words_of(table);
-  }
+  view.tables_change = view.tables_change || table.carve_n > 0;
   return within(table.carve_n, 0, kMostKappa_n) && table.carve_per_tick <= kMostFall &&
-                 table.carve_to >= INT16_MIN && table.carve_to <= INT16_MAX &&
+                 table.carve_rest == 0 && table.carve_to >= INT16_MIN && table.carve_to <= INT16_MAX &&
                  sound(table.piece, SceneLayerKind::volume) && within(table.iso, -kMostIso, kMostIso) &&
                  within(table.m_per_value, 0, kMost_m_per_value)
              ? SceneFault::none

@@ -373,14 +373,25 @@ inline const ReliefTable& relief_of(const PieceTextureTable& texture) noexcept {
   return *reinterpret_cast<const ReliefTable*>(&texture + 1);
 }
 
+/// How the heights of a relief sink: press_clay(). All of these lengths and the heights are whole multiples
+/// of one power of two of a metre, at most 2^24 times it: so in single precision their sums are exact.
+struct ClayTable {
+  float force_n = 0;              ///< of the spring above which the point presses them; 0: never
+  float half_m = 0;               ///< d / 2: of a tick
+  float least_m = 0, most_m = 0;  ///< no height falls below, or rises above
+  uint32_t kept = 0;              ///< 1: the surroundings rise by what sinks
+};
+static_assert(sizeof(ClayTable) == 20);
+
 /// A plane that a height map raises along its normal: this, then the map (ReliefTable) of one level.
 struct ReliefPieceTable {
   PieceTable piece;                           ///< of its form the normal of the plane
   float axes[2][3] = {{1, 0, 0}, {0, 1, 0}};  ///< of the map, unit vectors across each other and the normal
   float origin_m[2] = {};                     ///< on the map: the origin of the piece
   float bend_per_m = 0;  ///< at least the largest second derivative of the heights, in any direction
+  ClayTable clay = {};
 };
-static_assert(sizeof(ReliefPieceTable) == 136);
+static_assert(sizeof(ReliefPieceTable) == 156);
 
 inline const ReliefTable& relief_of(const ReliefPieceTable& table) noexcept {
   return *reinterpret_cast<const ReliefTable*>(&table + 1);
@@ -393,14 +404,21 @@ struct SceneView {
   const float* numbers = nullptr;
   const uint32_t* tables = nullptr;
   uint32_t patch_count = 0, layer_count = 0, number_count = 0, table_words = 0;
-  bool needs_speed = false;   ///< it has a layer whose force depends on the speed
-  bool in_space = false;      ///< its layers are pieces, all of one patch; that adds: contact `add`
-  uint32_t carved_words = 0;  ///< of volumes that can be carved
+  bool needs_speed = false;    ///< it has a layer whose force depends on the speed
+  bool in_space = false;       ///< its layers are pieces, all of one patch; that adds: contact `add`
+  bool tables_change = false;  ///< the hand changes its tables: volumes that are carved, clay
 
-  /// Of 4 bytes, of the memory that a kernel needs beside the block.
-  uint32_t live_words() const noexcept { return uncarved_words() + carved_words; }
-  /// Of these before the carved words.
-  uint32_t uncarved_words() const noexcept { return number_count + patch_count * kPatchWords; }
+  /// Of 4 bytes, of the memory that a kernel needs beside the block: the numbers, the places and the order of
+  /// the patches and, if they change, the tables.
+  uint32_t live_words() const noexcept { return words_before_tables() + (tables_change ? table_words : 0); }
+  uint32_t words_before_tables() const noexcept { return number_count + patch_count * kPatchWords; }
+  /// With the numbers and tables as they are now in such a memory. Safe in the tick.
+  SceneView as_in(const float* live) const noexcept {
+    SceneView now = *this;
+    now.numbers = live;
+    if (tables_change) now.tables = reinterpret_cast<const uint32_t*>(live + words_before_tables());
+    return now;
+  }
 };
 
 enum class SceneFault : uint8_t {

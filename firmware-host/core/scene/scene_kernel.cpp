@@ -5,7 +5,6 @@
 #include "firmware-host/core/scene/body.hpp"
 #include "firmware-host/core/scene/field.hpp"
 #include "firmware-host/core/scene/grooves.hpp"
-#include "firmware-host/core/scene/volume.hpp"
 
 namespace tacto::core {
 
@@ -19,7 +18,8 @@ void SceneKernel::set(const SceneView& scene, const ForceSetup& setup, float* li
     moved_[i][0] = moved_[i][1] = 0;
     order_[i] = i;
   }
-  uncarve(scene, reinterpret_cast<uint32_t*>(live + scene.uncarved_words()));
+  if (scene.tables_change)
+    __builtin_memcpy(live + scene.words_before_tables(), scene.tables, scene.table_words * sizeof(uint32_t));
   for (Ramp& ramp : ramps_) ramp.left = 0;
   for (Move& move : moves_) move.left = 0;
   next_ramp_ = next_move_ = 0;
@@ -50,16 +50,6 @@ void SceneKernel::change(uint32_t layer, uint32_t number, float value, float ram
   }
   const auto ticks = ramp_ticks > 1 ? static_cast<uint32_t>(ramp_ticks) : UINT32_C(1);
   ramps_[place] = {at, ticks, (value - live_[at]) / static_cast<float>(ticks), value};
-}
-
-const int16_t* SceneKernel::carved_values(uint32_t layer) const noexcept {
-  if (layer >= scene_.layer_count ||
-      scene_.layers[layer].kind != static_cast<uint16_t>(SceneLayerKind::volume))
-    return nullptr;
-  const auto& table = table_of<VolumeTable>(scene_, scene_.layers[layer]);
-  return table.carve_n > 0
-             ? reinterpret_cast<const int16_t*>(live_ + scene_.uncarved_words() + table.carved + 1)
-             : nullptr;
 }
 
 void SceneKernel::advance_ramps() noexcept {

@@ -80,8 +80,8 @@ class SceneKernel {
     return reinterpret_cast<const WallState*>(number + changeable_numbers_of(kind))->slid_m;
   }
   const SceneView& scene() const noexcept { return scene_; }
-  /// The values of a volume that can be carved, as they are after the last tick; null of other layers.
-  const int16_t* carved_values(uint32_t layer) const noexcept;
+  /// The same with the numbers and tables as they are after the last tick.
+  SceneView scene_now() const noexcept { return scene_.as_in(live_); }
   float rate_hz() const noexcept { return setup_.rate_hz; }
   bool at_rest() const noexcept { return envelope_.at_rest() && limiter_.at_rest(); }
 

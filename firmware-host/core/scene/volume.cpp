@@ -65,14 +65,10 @@ VolumePlace moved(const VolumePlace& hand, const ToolPoint& point) noexcept {
   return place;
 }
 
-int16_t* carved_values(uint32_t* carved) noexcept {
-  return reinterpret_cast<int16_t*>(carved + 1);
-}
-
 // Whole values; the rest is kept for the next tick that carves.
-int32_t fall_of_tick(const VolumeTable& table, uint32_t& rest) noexcept {
-  const uint32_t sum = rest + table.carve_per_tick;
-  rest = sum & 0xFFFF;
+int32_t fall_of_tick(VolumeTable& table) noexcept {
+  const uint32_t sum = table.carve_rest + table.carve_per_tick;
+  table.carve_rest = sum & 0xFFFF;
   return static_cast<int32_t>(sum >> 16);
 }
 
@@ -109,9 +105,8 @@ VolumeDepth depth_at(const VolumeTable& table, const int16_t* values, const Volu
 
 // The sum is that of values, without a branch on which points are inside: 1,000 of them are read while others
 // are on their way from memory.
-VolumeTouch touch_volume(const VolumeTable& table, const int32_t (&counts)[3], float stiffness,
-                         uint32_t* carved) noexcept {
-  const int16_t* const values = carved != nullptr ? carved_values(carved) : values_of(table);
+VolumeTouch touch_volume(VolumeTable& table, const int32_t (&counts)[3], float stiffness) noexcept {
+  auto* const values = const_cast<int16_t*>(values_of(table));
   const VolumePlace hand = place_in(table, counts);
   const ToolPoint origin, *const points = table.points > 0 ? points_of(table) : &origin;
   SpaceVector sum;
@@ -124,23 +119,12 @@ VolumeTouch touch_volume(const VolumeTable& table, const int32_t (&counts)[3], f
     highest = level.above > highest ? level.above : highest;
     const SpaceVector push = (level.above > 0 ? level.above : 0) * level.rise;
     sum = sum + push;
-    if (carved == nullptr) continue;
+    if (!(table.carve_n > 0)) continue;
     if (!(stiffness * length(table.m_per_value * outwards(table, push)) > table.carve_n)) continue;
-    if (fall < 0) fall = fall_of_tick(table, *carved);
-    carve(table, cell, fall, carved_values(carved));
+    if (fall < 0) fall = fall_of_tick(table);
+    carve(table, cell, fall, values);
   }
   return {table.m_per_value * outwards(table, sum), highest > 0 ? 0 : -table.m_per_value * highest};
-}
-
-void uncarve(const SceneView& scene, uint32_t* carved_words) noexcept {
-  for (uint32_t i = 0; i < scene.layer_count && scene.carved_words > 0; ++i) {
-    if (scene.layers[i].kind != static_cast<uint16_t>(SceneLayerKind::volume)) continue;
-    const auto& table = table_of<VolumeTable>(scene, scene.layers[i]);
-    if (!(table.carve_n > 0)) continue;
-    uint32_t* const own = carved_words + table.carved;
-    *own = 0;
-    __builtin_memcpy(own + 1, values_of(table), value_words_of(table) * sizeof(uint32_t));
-  }
 }
 
 }  // namespace tacto::core

@@ -31,7 +31,7 @@ struct VolumeTable {
   float carve_n = 0;            ///< force of the spring above which the point removes material; 0: never
   uint32_t carve_per_tick = 0;  ///< how much then the eight values around it fall, x 2^16
   int32_t carve_to = 0;         ///< no value falls below this one
-  uint32_t carved = 0;          ///< with carve_n: place of its state among the carved words
+  uint32_t carve_rest = 0;      ///< of carve_per_tick: what the last fall left; 0 in a block
   uint32_t points = 0;          ///< of the tool; 0: the hand is the point
 };
 static_assert(sizeof(VolumeTable) == 200);
@@ -45,15 +45,6 @@ static_assert(sizeof(ToolPoint) == 24);
 
 inline const ToolPoint* points_of(const VolumeTable& table) noexcept {
   return reinterpret_cast<const ToolPoint*>(&table + 1);
-}
-
-inline uint32_t value_words_of(const VolumeTable& table) noexcept {
-  return (table.along[0].samples * table.along[1].samples * table.along[2].samples + 1) / 2;
-}
-
-/// Of the state of a volume that can be carved: a rest of carve_per_tick, then the values as they are.
-inline uint32_t carved_words_of(const VolumeTable& table) noexcept {
-  return table.carve_n > 0 ? 1 + value_words_of(table) : 0;
 }
 
 inline const int16_t* values_of(const VolumeTable& table) noexcept {
@@ -86,12 +77,8 @@ struct VolumeTouch {
 
 /// With the stiffness K the force is K x push_m, the gradient of the potential K depth^2 / 2 of the depths
 /// above 0, summed over the points: so a closed path gains no energy. Where that of a point is above carve_n
-/// the values around it fall, from the next point on: a potential that falls gives no energy either.
-/// `carved`: its state, or null if it has none. Safe in the tick: one step per point.
-VolumeTouch touch_volume(const VolumeTable& table, const int32_t (&counts)[3], float stiffness,
-                         uint32_t* carved) noexcept;
-
-/// Sets the state of all volumes that can be carved to their tables. Between ticks.
-void uncarve(const SceneView& scene, uint32_t* carved_words) noexcept;
+/// the values around it fall, from the next point on: a potential that falls gives no energy either. A table
+/// with carve_n is in the kernel's own memory (SceneView::as_in()). Safe in the tick: one step per point.
+VolumeTouch touch_volume(VolumeTable& table, const int32_t (&counts)[3], float stiffness) noexcept;
 
 }  // namespace tacto::core

@@ -11,6 +11,7 @@
 #include <memory>
 #include <utility>
 
+#include "playback/prepare/scene/clay_block.hpp"
 #include "playback/prepare/scene/contact_transient.hpp"
 #include "playback/prepare/scene/judged_piece.hpp"
 #include "playback/prepare/scene/mesh_block.hpp"
@@ -195,6 +196,7 @@ void append_relief(const Piece& piece, const Reliefs& reliefs, const PlaneSteps&
   words.clear();
   append_words(words, std::vector{table});
   append_words(words, relief_table(reliefs.of(*piece.relief), 0, {}, {0, 0}));
+  if (piece.clay) set_clay(*piece.clay, words);
 }
 
 // Behind the other words of its piece.
@@ -285,10 +287,10 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
   std::vector<core::SceneLayer> layers;
   std::vector<float> numbers;
   std::vector<std::uint32_t> tables;
-  std::uint32_t carved = 0;
   for (const Piece& piece : scene.pieces) {
     const std::string at = fmt::format("{}#/pieces/{}", where, layers.size());
     for (const Piece& end : slider_ends(piece)) TACTO_TRY(check_wall(end, device, rate_hz, hand, at));
+    TACTO_TRY(check_clay(piece, device, at));
     const auto transient = transient_table(piece, rate_hz, at);
     TACTO_TRY(transient);
     const SceneLayerKind kind = is_raised(piece) ? SceneLayerKind::relief : kind_of_piece(piece.shape);
@@ -310,7 +312,7 @@ Result<PreparedScene> prepare_pieces(schema::Scene scene, const std::string& whe
       placed->transient = *transient;
       auto table =
           volume_table(piece, *base.reliefs.volumes.at(piece.volume), *placed, base.steps, base.tool_m);
-      TACTO_TRY(set_carving(piece, *base.reliefs.volumes.at(piece.volume), rate_hz, at, carved, table));
+      TACTO_TRY(set_carving(piece, *base.reliefs.volumes.at(piece.volume), rate_hz, at, table));
       append_words(tables, table);
       continue;
     }

@@ -17,6 +17,7 @@
 #include "playback/prepare/relief/groove_series.hpp"
 #include "playback/prepare/relief/noise_octaves.hpp"
 #include "playback/prepare/scene/body_motion.hpp"
+#include "playback/prepare/scene/clay_block.hpp"
 #include "playback/prepare/scene/field_section.hpp"
 #include "playback/prepare/scene/field_stiffness.hpp"
 #include "playback/prepare/scene/piece_block.hpp"
@@ -382,8 +383,8 @@ std::size_t PreparedScene::layer_bytes(const schema::Patch& patch, const ForceLa
 std::string PreparedScene::remedy_for(std::size_t room) const {
   if (!reliefs.volumes.empty()) return remedy_for_volumes(*this, room);
   if (!meshes.empty()) return remedy_for_meshes(*this, room);
-  if (!pieces.empty() && reliefs.textures.empty() && reliefs.height_maps.empty() && reliefs.surfaces.empty())
-    return {};
+  if (!reliefs.surfaces.empty()) return remedy_for_reliefs(*this, room);
+  if (!pieces.empty() && reliefs.textures.empty() && reliefs.height_maps.empty()) return {};
   if (!pieces.empty()) return "make its textures shorter, or give its height maps a larger pitch";
   std::size_t maps = 0, textures = 0;
   for (const schema::Patch& patch : patches)
@@ -403,7 +404,8 @@ std::string PreparedScene::remedy_for(std::size_t room) const {
 
 namespace {
 
-Result<void> read_relief(schema::Piece& piece, const std::string& where, Reliefs& reliefs) {
+Result<void> read_relief(schema::Piece& piece, const std::string& where, const std::string& at,
+                         double rate_hz, Reliefs& reliefs) {
   schema::PieceRelief& of = *piece.relief;
   const auto map = schema::read_height_map(schema::texture_in_scene(where, of.file));
   TACTO_TRY(map);
@@ -413,8 +415,15 @@ Result<void> read_relief(schema::Piece& piece, const std::string& where, Reliefs
     piece.texture = schema::PieceTexture{schema::PieceTextureType::normals, of.file, relief_axes(piece)};
     return {};
   }
-  auto& surface = reliefs.surfaces[of.file];
-  if (!surface) surface = std::make_shared<const Relief>(surface_relief(*map));
+  of.surface = piece.clay ? fmt::format("{}#{}", of.file, piece.name) : of.file;
+  auto& surface = reliefs.surfaces[of.surface];
+  if (piece.clay) {
+    auto clay = clay_relief(piece, *map, rate_hz, at);
+    TACTO_TRY(clay);
+    surface = std::make_shared<const Relief>(std::move(*clay));
+  } else if (!surface) {
+    surface = std::make_shared<const Relief>(surface_relief(*map));
+  }
   of.largest = surface->largest_slope();
   of.steepest = surface->curvature_per_m(INFINITY, INFINITY);
   return {};
@@ -473,11 +482,11 @@ Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, dou
     layer.curl_n_per_m = slopes.curl_n_per_m;
     return {};
   };
-  for (std::size_t i = 0; i < scene.pieces.size(); ++i)
-    TACTO_TRY(read_piece_volume(scene.pieces[i], where, fmt::format("{}#/pieces/{}", where, i),
-                                scene.tool_m.size(), reliefs.volumes));
-  for (schema::Piece& piece : scene.pieces) {
-    if (piece.relief) TACTO_TRY(read_relief(piece, where, reliefs));
+  for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
+    schema::Piece& piece = scene.pieces[i];
+    const std::string at = fmt::format("{}#/pieces/{}", where, i);
+    TACTO_TRY(read_piece_volume(piece, where, at, scene.tool_m.size(), reliefs.volumes));
+    if (piece.relief) TACTO_TRY(read_relief(piece, where, at, rate_hz, reliefs));
     if (!piece.texture || piece.texture->type == schema::PieceTextureType::sine) continue;
     const std::string file = schema::texture_in_scene(where, piece.texture->file);
     const bool bump = piece.texture->type != schema::PieceTextureType::recording;

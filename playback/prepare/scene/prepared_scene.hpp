@@ -38,7 +38,8 @@ inline constexpr double kFastestHandMps = 10;
 /// The height maps, textures, atoms, force maps and volumes of a scene, by the names in their layers.
 struct Reliefs {
   std::map<std::string, std::shared_ptr<const Relief>> height_maps, textures;
-  std::map<std::string, std::shared_ptr<const Relief>> surfaces = {};  ///< of planes: surface_relief()
+  /// Of planes, by PieceRelief::surface: surface_relief() or clay_relief().
+  std::map<std::string, std::shared_ptr<const Relief>> surfaces = {};
   std::map<std::string, std::shared_ptr<const ForceRelief>> force_maps;
   std::map<std::string, std::shared_ptr<const std::vector<schema::Atom>>> atoms;
   std::map<std::string, std::shared_ptr<const schema::Volume>> volumes = {};  ///< by Piece::volume
@@ -47,7 +48,7 @@ struct Reliefs {
     const bool recording = texture.type == schema::PieceTextureType::recording;
     return *(recording ? textures : height_maps).at(texture.file);
   }
-  const Relief& of(const schema::PieceRelief& relief) const { return *surfaces.at(relief.file); }
+  const Relief& of(const schema::PieceRelief& relief) const { return *surfaces.at(relief.surface); }
   const Relief& of(const schema::HeightMapLayer& layer) const { return *height_maps.at(layer.file); }
   const Relief& of(const schema::TextureForceLayer& layer) const { return *textures.at(layer.file); }
   const ForceRelief& of(const schema::ForceMapLayer& layer) const { return *force_maps.at(layer.file); }
@@ -69,14 +70,17 @@ struct PreparedScene {
   std::vector<std::array<double, 3>> tool_m = {};  ///< schema::Scene::tool_m
 
   std::size_t bytes() const { return words.size() * sizeof(std::uint32_t); }
-  /// What the device needs to have free for it: the block, and the values of volumes that can be carved.
-  std::size_t room_bytes() const { return bytes() + view().carved_words * sizeof(std::uint32_t); }
+  /// What the device needs to have free for it: the block, and tables that the hand changes once more.
+  std::size_t room_bytes() const {
+    const core::SceneView of = view();
+    return bytes() + (of.tables_change ? of.table_words * sizeof(std::uint32_t) : 0);
+  }
   /// Points into this object.
   core::SceneView view() const;
   /// Other patches for the same device, each of them once part of such a scene.
   PreparedScene with(std::vector<schema::Patch> others) const;
-  /// What makes a scene with height maps, force maps, textures or meshes small enough for this many bytes, in
-  /// words; empty if nothing does.
+  /// What makes a scene with height maps, force maps, textures, meshes or volumes small enough for this many
+  /// bytes, in words; empty if nothing does.
   std::string remedy_for(std::size_t room) const;
   /// The bytes of a layer in the block.
   std::size_t layer_bytes(const schema::Patch& patch, const schema::ForceLayer& layer) const;
@@ -106,8 +110,8 @@ schema::Result<void> set_filters(schema::Scene& scene, double limit_n_per_m, con
 /// tray (TextureLookup); those of pieces are less their mean, with the sign of a stroke that goes forth; a
 /// relief with interpolated normals becomes a texture of the type normals. `where` is the scene's file.
 /// Errors: as read_height_map, relief_levels, read_texture, check_playable, read_atoms, check_section,
-/// read_force_grid, force_levels, read_piece_volume; unsuitable: a texture whose mean force is too large for
-/// its length.
+/// read_force_grid, force_levels, read_piece_volume, clay_relief; unsuitable: a texture whose mean force is
+/// too large for its length.
 schema::Result<Reliefs> read_reliefs(schema::Scene& scene, const std::string& where, double rate_hz);
 
 /// Of a patch along a direction in it: the length of its shadow.

@@ -106,7 +106,7 @@ double carve_per_tick(const Piece& piece, const Volume& volume, double rate_hz) 
 }
 
 Result<void> set_carving(const Piece& piece, const Volume& volume, double rate_hz, const std::string& where,
-                         std::uint32_t& carved, std::vector<std::uint32_t>& words) {
+                         std::vector<std::uint32_t>& words) {
   if (!piece.carve) return {};
   constexpr double kMost = 65535 * 0x1p16;
   const double per_tick = carve_per_tick(piece, volume, rate_hz);
@@ -123,8 +123,6 @@ Result<void> set_carving(const Piece& piece, const Volume& volume, double rate_h
   table.carve_n = static_cast<float>(piece.carve->force_n);
   table.carve_per_tick = static_cast<std::uint32_t>(per_tick);
   table.carve_to = std::ranges::min(volume.stored);
-  table.carved = carved;
-  carved += carved_words_of(table);
   std::memcpy(words.data(), &table, sizeof table);
   return {};
 }
@@ -142,12 +140,10 @@ bool solid_at_border(const Piece& piece, const Volume& volume) {
 }
 
 std::string remedy_for_volumes(const PreparedScene& scene, std::size_t room) {
-  std::size_t values = 0, bytes = 0;
-  for (const Piece& piece : scene.pieces) {
-    if (piece.volume.empty()) continue;
-    const std::size_t own = scene.reliefs.volumes.at(piece.volume)->stored.size();
-    values += own, bytes += sizeof(std::int16_t) * own * (piece.carve ? 2 : 1);
-  }
+  std::size_t values = 0;
+  for (const Piece& piece : scene.pieces)
+    if (!piece.volume.empty()) values += scene.reliefs.volumes.at(piece.volume)->stored.size();
+  const std::size_t bytes = sizeof(std::int16_t) * values * (scene.view().tables_change ? 2 : 1);
   const std::size_t others = scene.room_bytes() - bytes;
   if (others >= room) return "leave pieces out";
   return fmt::format("crop its volumes, or give them a larger spacing: of {} values {:.0f} fit", values,

@@ -27,12 +27,10 @@ std::vector<std::uint32_t> volume_table(const schema::Piece& piece, const schema
                                         const core::PieceTable& placed, const PlaneSteps& steps,
                                         const std::vector<std::array<double, 3>>& tool_m = {});
 
-/// How a tick removes material, in such a table; `carved`: the carved words of the volumes before it, to
-/// which its own are added. Errors: unsuitable: more than 65,535 steps of the stored values a tick, or less
-/// than 2^-16.
+/// How a tick removes material, in such a table. Errors: unsuitable: more than 65,535 steps of the stored
+/// values a tick, or less than 2^-16.
 schema::Result<void> set_carving(const schema::Piece& piece, const schema::Volume& volume, double rate_hz,
-                                 const std::string& where, std::uint32_t& carved,
-                                 std::vector<std::uint32_t>& table);
+                                 const std::string& where, std::vector<std::uint32_t>& table);
 
 /// Steps of the stored values by which they fall in a tick that carves, x 2^16. Precondition: it has `carve`.
 double carve_per_tick(const schema::Piece& piece, const schema::Volume& volume, double rate_hz);

@@ -74,6 +74,13 @@ ExactGhost::ExactGhost(const PreparedScene& scene, const schema::Device& device,
       carved_.push_back(CarvedVolume{*volume, std::ranges::min(volume->stored), 0});
     else
       carved_.emplace_back();
+  for (const Piece& piece : scene.pieces)
+    if (piece.clay) clay_.emplace(piece.name, scene.reliefs.of(*piece.relief));
+}
+
+const Relief& ExactGhost::relief_of(const Piece& piece) const {
+  const auto clay = clay_.find(piece.name);
+  return clay != clay_.end() ? clay->second : scene_.reliefs.of(*piece.relief);
 }
 
 ExactGhost::Surface ExactGhost::surface_at(const Piece& piece, const SpaceMetres& place_m) const {
@@ -85,7 +92,7 @@ ExactGhost::Surface ExactGhost::surface_at(const Piece& piece, const SpaceMetres
     const double above_m = inner(n, p), below_m = -piece.thickness_m - above_m;
     if (piece.thickness_m > 0 && below_m > above_m) return {below_m - radius_m, sum_of({}, -1, n)};
     if (!schema::is_raised(piece)) return {above_m - radius_m, n};
-    const Relief& relief = scene_.reliefs.of(*piece.relief);
+    const Relief& relief = relief_of(piece);
     const auto [u, v] = relief_axes(piece);
     const SplineValue at =
         spline_of(relief.levels.front(), place_on_level(relief, relief.levels.front(), 0, inner(u, p)),
@@ -489,6 +496,52 @@ void ExactGhost::carve(std::size_t index, const SpaceMetres& place_m, double fal
       }
 }
 
+// As core::press_clay, in double precision: the share of each grid point by its distance from the middle of
+// the cell, and of the 16 points that may rise those to which it is the nearest.
+void ExactGhost::press_clay(const Piece& piece, const SpaceMetres& place_m) {
+  Relief& relief = clay_.at(piece.name);
+  ReliefLevel& level = relief.levels.front();
+  const auto axes = relief_axes(piece);
+  const SpaceMetres p = sum_of(place_m, -1, {piece.x_m, piece.y_m, piece.z_m});
+  double middle[2];
+  for (int i = 0; i < 2; ++i)
+    middle[i] =
+        std::floor(place_on_level(relief, level, i, inner(axes[static_cast<std::size_t>(i)], p))) + 0.5;
+  const auto height = [&](double column, double row) -> float* {
+    const bool there = column >= 0 && row >= 0 && column < static_cast<double>(level.columns) &&
+                       row < static_cast<double>(level.rows);
+    return there ? &level.coefficients[static_cast<std::size_t>(row) * level.columns +
+                                       static_cast<std::size_t>(column)]
+                 : nullptr;
+  };
+  if (height(middle[0] - 0.5, middle[1] - 0.5) == nullptr ||
+      height(middle[0] + 0.5, middle[1] + 0.5) == nullptr)
+    return;
+  struct Point {
+    double x, y, r2;
+  };
+  std::vector<Point> points;
+  for (double y = -2.5; y < 3; ++y)
+    for (double x = -2.5; x < 3; ++x) points.push_back({x, y, x * x + y * y});
+  const schema::Clay& clay = *piece.clay;
+  for (const Point& point : points) {
+    if (point.r2 > 3) continue;
+    const double of = point.r2 < 1 ? 8.5 : 6.5, sinks_m = clay.half_m * (point.r2 < 1 ? 2 : 1);
+    float* const lower = height(middle[0] + point.x, middle[1] + point.y);
+    bool moves = lower != nullptr && *lower - sinks_m >= clay.least_m;
+    std::vector<float*> higher;
+    for (const Point& to : points) {
+      const bool gets = std::hypot(to.x - point.x, to.y - point.y) < (point.r2 < 1 ? 2.5 : 1.1);
+      if (!clay.kept || to.r2 != of || !gets) continue;
+      higher.push_back(height(middle[0] + to.x, middle[1] + to.y));
+      moves = moves && higher.back() != nullptr && *higher.back() + clay.half_m <= clay.most_m;
+    }
+    if (!moves) continue;
+    *lower = static_cast<float>(*lower - sinks_m);
+    for (float* const each : higher) *each = static_cast<float>(*each + clay.half_m);
+  }
+}
+
 SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& speed_mps) {
   const bool arrives = !placed_;
   if (arrives) ghost_m_ = hand_m;
@@ -518,6 +571,8 @@ SpaceMetres ExactGhost::force(const SpaceMetres& hand_m, const SpaceMetres& spee
     own = sum_of(own, force_n, held[i].normal);
     own = sum_of(own, 1, friction_force(piece, walls_[i], force_n, held[i].normal, on, relative_mps));
     sum = sum_of(sum, 1, own);
+    if (piece.clay && spring_n(piece, held[i].depth_m) > piece.clay->force_n)
+      press_clay(scene_.pieces[i], on);
     if (piece.slide) push_n[i] = -inner(own, unit_of(piece.slide->direction));
   }
   for (std::size_t i = 0; i < pieces_.size(); ++i)

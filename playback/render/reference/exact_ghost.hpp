@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "data-schema/device/device.hpp"
@@ -87,6 +89,8 @@ class ExactGhost {
   Held in_volume(std::size_t piece, const SpaceMetres& hand_m, double& outside_m);
   double fall_of_tick(std::size_t piece);
   void carve(std::size_t piece, const SpaceMetres& place_m, double fall);
+  const Relief& relief_of(const schema::Piece& piece) const;
+  void press_clay(const schema::Piece& piece, const SpaceMetres& place_m);
 
   const PreparedScene& scene_;
   const schema::Device& device_;
@@ -97,6 +101,7 @@ class ExactGhost {
   std::vector<schema::Piece> pieces_;                // where they are now
   std::vector<std::optional<ExactMesh>> meshes_;     // of each piece
   std::vector<std::optional<CarvedVolume>> carved_;  // of each piece that can be carved
+  std::map<std::string, Relief> clay_;               // by the names of pieces, as it is now
   std::vector<TouchedTriangle> triangles_;           // that the ghost met and is still near
 };
 
