@@ -18,7 +18,7 @@ using namespace tacto;
 namespace {
 
 void put(std::string& bytes, std::uint64_t number, int count) {
-  for (int i = 0; i < count; ++i) bytes += static_cast<char>(number >> (8 * i));
+  for (int i = 0; i < count; ++i, number >>= 8U) bytes += static_cast<char>(number);
 }
 
 std::uint32_t crc32_of(std::string_view content) {
