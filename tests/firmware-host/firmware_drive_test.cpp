@@ -168,6 +168,19 @@ TEST(FirmwareDrive, AnEncodersJumpIsAFaultAndZero) {
   }
 }
 
+TEST(FirmwareDrive, ATickWhileItIsArmedIsNoJump) {
+  FirmwareBench bench;
+  bench.board.encoder = 100'000;
+  bench.expect_ok(bench.code(kTestLimits));
+  bench.upload_constant(3);
+  bench.board.interrupted = bench.firmware.get();
+  bench.expect_ok(bench.code(wire::Arm{wire::DriveSource::profile, kTenKilohertz}));
+  bench.run(10);
+  EXPECT_EQ(bench.board.interrupted, nullptr);
+  EXPECT_TRUE(bench.faults.empty());
+  EXPECT_EQ(bench.pulse().state, DriveState::armed);
+}
+
 // The counter has 32 bits: after 2^31 - 1 comes -2^31, and the way from one to the other is one count.
 TEST(FirmwareDrive, TheEncodersWrapIsNoJump) {
   for (const int way : {1, -1, 100, -100}) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "firmware-host/core/firmware/firmware.hpp"
@@ -32,13 +33,17 @@ struct TestBoard {
   wire::Axes axes;
   wire::Channel channels[2] = {};
   wire::Note notes[1] = {};
+  core::Firmware* interrupted = nullptr;  ///< ticks once during the next reading of the encoder
 
   static TestBoard& of(void* board) { return *static_cast<TestBoard*>(board); }
 
   core::Hal hal() {
     core::Hal hal;
     hal.board = this;
-    hal.read_encoder = [](void* b) noexcept { return of(b).encoder; };
+    hal.read_encoder = [](void* b) noexcept {
+      if (core::Firmware* const firmware = std::exchange(of(b).interrupted, nullptr)) firmware->tick();
+      return of(b).encoder;
+    };
     hal.encoder_unseen = [](void* b) noexcept { return of(b).encoder_unseen; };
     hal.read_channels = [](void* b, std::int32_t* codes) noexcept {
       codes[0] = of(b).encoder * 65536;

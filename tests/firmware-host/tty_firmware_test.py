@@ -196,8 +196,9 @@ def identify_finds_the_tray(board):
     found = {row["parameter"]: row for row in said["parameters"]}
     for name, truth in TRAY.items():
         row = found[name]
-        # A true value is three half widths of a 95 % interval away once in 2e8.
-        assert abs(row["value"] - truth) < 1.5 * (row["high_of_95"] - row["low_of_95"]), (name, truth, row)
+        # A true value is three half widths of a 95 % interval away once in 2e8. Beside that, the steps of the DAC, 0.7 mV (RMS) of
+        # 1 V, are the same in each measurement: 1e-4 of a mean over 100 samples.
+        assert abs(row["value"] - truth) < 1.5 * (row["high_of_95"] - row["low_of_95"]) + 1e-4 * truth, (name, truth, row)
         print(f"{name}: {row['value']:.7g} ({row['low_of_95']:.7g} to {row['high_of_95']:.7g}), true {truth:.7g}")
 
 

@@ -52,8 +52,8 @@ bool Ticker::steer(const SceneChange& change) noexcept {
 void Ticker::arm(DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept {
   begin_arm(source);
   kernel_.set(setup);
-  supervisor_.arm(setup.limits, rate_millihertz);
   watch_.arm(setup.limits.counts_per_tick, setup.rate_hz, hal_.read_encoder(hal_.board));
+  supervisor_.arm(setup.limits, rate_millihertz);  // last: from here on a tick uses all of it
 }
 
 // Writes the data first, then the word after which the tick reads them.
