@@ -10,7 +10,7 @@
 
 namespace tacto::tests {
 
-inline constexpr uint32_t kVolumeFingerprint = 1657481873;
+inline constexpr uint32_t kVolumeFingerprint = 1154329669;
 
 /// A volume that a tool of three points carves, a second one around it, and clay whose volume is kept, with a
 /// wall's damper and friction.

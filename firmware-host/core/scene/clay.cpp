@@ -21,7 +21,7 @@ struct ClayPattern {
 
 // Of a quarter, which is turned around the middle of the cell.
 constexpr ClayPattern whole_pattern() noexcept {
-  constexpr ClayPoint kQuarter[] = {
+  constexpr ClayPoint kOfAQuarter[] = {
       {{1, 1}, {{3, 2}, {2, 3}}, 2}, {{2, 0}, {{3, 0}, {}}, 1}, {{2, 1}, {{3, 1}, {}}, 1}};
   const auto turn = [](ClayPlace& place) {
     const int8_t x = place.x;
@@ -29,7 +29,7 @@ constexpr ClayPattern whole_pattern() noexcept {
   };
   ClayPattern whole{};
   int count = 0;
-  for (ClayPoint point : kQuarter)
+  for (ClayPoint point : kOfAQuarter)
     for (int quarter = 0; quarter < 4; ++quarter) {
       whole.points[count++] = point;
       turn(point.from), turn(point.to[0]), turn(point.to[1]);
