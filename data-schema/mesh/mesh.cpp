@@ -405,10 +405,12 @@ Result<void> check_mesh(const Mesh& mesh, const std::string& where) {
       if (vertex >= mesh.vertices_m.size())
         return unsuitable(fmt::format("triangle {} has a vertex that is not there", i), "export it again");
   const MeshFigures figures = figures_of(mesh);
-  for (std::size_t i = 0; i < 3; ++i)
-    if (const double size_m = figures.most_m[i] - figures.least_m[i]; size_m > kLargestMesh_m)
-      return unsuitable(fmt::format("it is {:.4g} m large", size_m),
-                        fmt::format("at most {:g} m are possible: is the unit right?", kLargestMesh_m));
+  double size_m = 0;
+  for (std::size_t i = 0; i < 3; ++i) size_m = std::max(size_m, figures.most_m[i] - figures.least_m[i]);
+  if (size_m > kLargestMesh_m || size_m < kSmallestMesh_m)
+    return unsuitable(fmt::format("it is {:.4g} m large", size_m),
+                      fmt::format("from {:g} m to {:g} m are possible: is the unit right?", kSmallestMesh_m,
+                                  kLargestMesh_m));
   const MeshFaults faults = faults_of(mesh);
   if (faults.degenerate > 0)
     return unsuitable(

@@ -16,6 +16,8 @@ namespace tacto::schema {
 /// Limits of what is stored.
 inline constexpr std::size_t kMostTriangles = std::size_t{1} << 24;
 inline constexpr double kLargestMesh_m = 10;  ///< of the distances along x, y and z
+/// Least largest distance along an axis: the skin of a smaller one, 2^-18 of half of it, is none on a device.
+inline constexpr double kSmallestMesh_m = 1e-6;
 
 using MeshVertex = std::array<double, 3>;
 using MeshTriangle = std::array<std::uint32_t, 3>;
@@ -65,8 +67,8 @@ void merge_equal_vertices(Mesh& mesh);
 MeshRepair repair(Mesh& mesh, double merge_m);
 
 /// Errors, at `where`: unsuitable: no triangle, too many, a place that is not a number or larger than
-/// kLargestMesh_m apart, a triangle of vertices that are not there; faults_of() other than open and odd
-/// edges.
+/// kLargestMesh_m apart, or all within kSmallestMesh_m, a triangle of vertices that are not there;
+/// faults_of() other than open and odd edges.
 Result<void> check_mesh(const Mesh& mesh, const std::string& where);
 
 /// NAME.mesh.nc of a stem or file name.

@@ -182,5 +182,18 @@ TEST(MeshTest, AFileIsReadAsItWasWritten) {
   EXPECT_EQ(check_mesh(cube, "m").error().kind, ErrorKind::unsuitable);
 }
 
+// A file in micrometres that is taken for one in millimetres, and the other way round.
+TEST(MeshTest, OneThatIsTooSmallOrTooLargeIsRefused) {
+  for (const auto& [size_m, fits] :
+       {std::pair{2e-3, true}, {1e-6, true}, {0.9e-6, false}, {10.0, true}, {10.1, false}}) {
+    Mesh mesh = unit_cube();
+    for (auto& vertex : mesh.vertices_m)
+      for (double& place_m : vertex) place_m *= size_m;
+    const auto checked = check_mesh(mesh, "m");
+    EXPECT_EQ(checked.has_value(), fits) << size_m;
+    if (!checked) EXPECT_EQ(checked.error().kind, ErrorKind::unsuitable);
+  }
+}
+
 }  // namespace
 }  // namespace tacto::schema

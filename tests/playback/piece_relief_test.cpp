@@ -87,6 +87,33 @@ TEST(PieceReliefTest, ThroughTheHeightsOfTheMap) {
   }
 }
 
+// The second derivative of the height along a way, by a difference of the spline in double precision: its
+// third derivative, some 1e6 / m^2, changes it by less than 10 per m over 1 um; single precision by less than
+// 0.1.
+TEST(PieceReliefTest, TheBendAlongAWayIsThatOfTheSpline) {
+  const OnReliefs on({raised_floor()});
+  const auto& table = core::table_of<core::ReliefPieceTable>(on.view, on.view.layers[0]);
+  constexpr double kStep_m = 1e-6;
+  double largest = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double x = 4e-3 * std::sin(1.7 * i), y = 3e-3 * std::cos(2.3 * i), u = std::sin(0.9 * i),
+                 v = std::cos(0.9 * i);
+    const auto height = [&](double by_u, double by_v) { return on.height_m({x + by_u, y + by_v, 0}); };
+    const auto slope = [&](double by_u, double by_v) {
+      return (height(by_u, by_v) - height(-by_u, -by_v)) / (2 * kStep_m);
+    };
+    const double bend = (height(kStep_m * u, kStep_m * v) - 2 * height(0, 0) +
+                         height(-kStep_m * u, -kStep_m * v)) /
+                        (kStep_m * kStep_m),
+                 steep = std::hypot(1, slope(kStep_m, 0), slope(0, kStep_m));
+    const float found = core::relief_bend(table, {static_cast<float>(x), static_cast<float>(y), 0},
+                                          {static_cast<float>(u), static_cast<float>(v), 0});
+    EXPECT_NEAR(double{found}, std::max(0.0, bend / steep), 10) << i;
+    largest = std::max(largest, std::abs(bend));
+  }
+  EXPECT_GT(largest, 300);
+}
+
 // Places are in single precision from the origin of the piece: the bound is that of the issue.
 TEST(PieceReliefTest, TheKernelIsTheReference) {
   Piece tilted = raised_floor(), rough = raised_floor();

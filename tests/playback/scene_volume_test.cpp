@@ -162,6 +162,26 @@ TEST(SceneVolume, ItsDepthAndGradientAreThoseOfTheWeightsInDouble) {
   EXPECT_GT(largest, 0.5 * steepest);
 }
 
+// By it a wall is let go, and its next contact has its transient again.
+TEST(SceneVolume, OutsideItStatesHowFar) {
+  const schema::Volume volume = random_volume(-3000, 3000);
+  const std::vector<std::uint32_t> words = table_words(volume, piece_of_volume());
+  const auto& table = *reinterpret_cast<const core::VolumeTable*>(words.data());
+  std::mt19937 random(5);
+  std::uniform_int_distribution<std::int32_t> count(-180, 180);
+  int outside = 0, inside = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const std::int32_t counts[] = {count(random), count(random), count(random)};
+    const core::VolumeDepth depth =
+        core::depth_at(table, core::values_of(table), core::place_in(table, counts));
+    const core::VolumeTouch touch = core::touch_volume(table, counts, 500, nullptr);
+    EXPECT_EQ(touch.outside_m, depth.depth_m > 0 ? 0 : -depth.depth_m);
+    depth.depth_m > 0 ? ++inside : ++outside;
+  }
+  EXPECT_GT(inside, 500);
+  EXPECT_GT(outside, 500);
+}
+
 TEST(SceneVolume, BeyondTheOutermostValuesThereIsNoForce) {
   const schema::Volume volume = random_volume(1000, 1000);
   const std::vector<std::uint32_t> words = table_words(volume, piece_of_volume());
