@@ -85,7 +85,8 @@ struct SessionEnd {
 struct SessionForces {
   double peak_n = 0, continuous_n = 0;  ///< of the vector
   double slew_n_per_s = 0;
-  std::vector<DeviceAxis> axes;  ///< mass and friction are not known
+  std::vector<DeviceAxis> axes;          ///< mass and friction are not known
+  std::vector<std::string> slides = {};  ///< names of the pieces that slide, in the order of the block
 };
 
 struct SessionTexture {

@@ -124,6 +124,7 @@ Json forces_body(const SessionForces& forces) {
                             {"travel_m", {axis.travel_from_m, axis.travel_to_m}},
                             {"peak_n", axis.peak_force_n},
                             {"continuous_n", axis.continuous_force_n}});
+  if (!forces.slides.empty()) body["slides"] = forces.slides;
   return body;
 }
 
@@ -141,6 +142,7 @@ std::optional<SessionForces> forces_in(const Json& body) {
     axis.continuous_force_n = row["continuous_n"];
     forces.axes.push_back(std::move(axis));
   }
+  if (from.contains("slides")) forces.slides = from["slides"];
   return forces;
 }
 

@@ -191,7 +191,11 @@ Result<Report> run_force_session(const SessionVerbOptions& o) {
       return schema::fail(schema::ErrorKind::usage, "a session of forces is exported as .csv", output);
   for (const std::string& output : o.outputs)
     TACTO_TRY(schema::check_table_free(output, o.existing, is_force_session_table));
-  for (const std::string& output : o.outputs) TACTO_TRY(export_force_session(o.session, output, o.existing));
+  for (const std::string& output : o.outputs) {
+    const auto note = export_force_session(o.session, output, o.existing);
+    TACTO_TRY(note);
+    if (!note->empty()) cli::warn(fmt::format("{}: {}", output, *note));
+  }
   const auto session = read_force_session(o.session);
   TACTO_TRY(session);
   Report report;

@@ -125,8 +125,10 @@ Result<ForceProgram> make_force_program(const ForceRequest& request, const schem
         fmt::format("the scene needs {} bytes, the device has {}", prepared->room_bytes(), own.scene_bytes),
         file, prepared->remedy_for(own.scene_bytes));
   auto notes = limits_of_device(*prepared, device, *setup, hand);
-  return ForceProgram{std::move(*prepared), *limits, header_of(file, own, rate_hz), std::move(notes),
-                      std::move(held)};
+  schema::SessionHeader header = header_of(file, own, rate_hz);
+  for (const schema::Piece& piece : prepared->pieces)
+    if (piece.slide) header.forces->slides.push_back(piece.name);
+  return ForceProgram{std::move(*prepared), *limits, std::move(header), std::move(notes), std::move(held)};
 }
 
 Result<void> upload_scene(firmware_host::Client& client, const ForceProgram& forces) {

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <utility>
 
+#include "firmware-host/core/scene/scene_kernel.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
+#include "playback/session/session_replay.hpp"
 #include "playback/session/session_rows.hpp"
 
 namespace tacto::playback {
@@ -30,6 +33,29 @@ void add_tick(ForceSession& session, const SessionTick& tick, const std::vector<
   }
   session.limits.add(tick.flags);
   ++session.ticks;
+}
+
+std::vector<std::uint32_t> sliding_layers(const core::SceneView& scene) {
+  std::vector<std::uint32_t> layers;
+  for (std::uint32_t i = 0; i < scene.layer_count && scene.in_space; ++i)
+    if (core::table_of<core::PieceTable>(scene, scene.layers[i]).slide != 0) layers.push_back(i);
+  return layers;
+}
+
+// Of the pieces that slide, one after the other, tick by tick; and why there are no more.
+std::pair<std::vector<float>, std::string> slides_of(const std::string& name, std::size_t slides) {
+  std::vector<float> places_m;
+  if (slides == 0) return {};
+  std::vector<std::uint32_t> layers;
+  const auto replayed = replay_session(name, {}, {}, [&](const core::SceneKernel& kernel) {
+    if (places_m.empty()) layers = sliding_layers(kernel.scene());
+    if (layers.size() != slides) return;
+    for (const std::uint32_t layer : layers) places_m.push_back(kernel.slid_m(layer));
+  });
+  if (!replayed) return {places_m, schema::message(replayed.error())};
+  if (replayed->same()) return {places_m, ""};
+  return {places_m, fmt::format("from tick {} on the places of pieces that slide can't be computed again",
+                                places_m.size() / slides)};
 }
 
 }  // namespace
@@ -59,11 +85,15 @@ Result<ForceSession> read_force_session(const std::string& name, const ForceTick
   return session;
 }
 
-Result<void> export_force_session(const std::string& name, const std::string& file,
-                                  schema::Existing existing) {
+Result<std::string> export_force_session(const std::string& name, const std::string& file,
+                                         schema::Existing existing) {
   auto reader = schema::SessionReader::open(name);
   TACTO_TRY(reader);
   const std::vector<schema::DeviceAxis> axes = reader->header().forces->axes;
+  const std::vector<std::string> slides = reader->header().forces->slides;
+  const auto computed = slides_of(name, slides.size());
+  const std::vector<float>& slid_m = computed.first;
+  std::size_t slid = 0;
   schema::PendingFiles files;
   const auto temporary = files.add(file);
   TACTO_TRY(temporary);
@@ -71,7 +101,9 @@ Result<void> export_force_session(const std::string& name, const std::string& fi
   out << "tick,time_s";
   for (const schema::DeviceAxis& axis : axes) out << ',' << axis.name << "_m";
   for (const schema::DeviceAxis& axis : axes) out << ",force_" << axis.name << "_n";
-  out << ",playing,fault,late,limited,rms_limited\n";
+  out << ",playing,fault,late,limited,rms_limited";
+  for (const std::string& piece : slides) out << ",slide_" << piece << "_m";
+  out << '\n';
   const auto write = [&](const SessionTick& tick, double time_s) {
     out << fmt::format("{},{:.9f}", tick.tick, time_s);
     for (std::size_t i = 0; i < axes.size(); ++i)
@@ -81,12 +113,15 @@ Result<void> export_force_session(const std::string& name, const std::string& fi
          {std::uint32_t{wire::kTickPlaying}, std::uint32_t{wire::kTickFault}, std::uint32_t{wire::kTickLate},
           wire::kTickAmplitudeLimited | wire::kTickSlewLimited, std::uint32_t{wire::kTickEnergyLimited}})
       out << ((tick.flags & flags) != 0 ? ",1" : ",0");
+    for (std::size_t i = 0; i < slides.size(); ++i)
+      out << (slid < slid_m.size() ? fmt::format(",{}", slid_m[slid++]) : ",");
     out << '\n';
   };
   TACTO_TRY(read_force_session(name, write));
   out.flush();
   if (!out) return fail(ErrorKind::cannot_write, "can't be written", file, "is the disk full?");
-  return files.commit(existing);
+  TACTO_TRY(files.commit(existing));
+  return computed.second;
 }
 
 }  // namespace tacto::playback

@@ -32,8 +32,10 @@ using ForceTickSink = std::function<void(const schema::SessionTick& tick, double
 schema::Result<ForceSession> read_force_session(const std::string& name, const ForceTickSink& sink = {});
 
 /// The ticks as CSV: tick, time_s, NAME_m and force_NAME_n of each axis, playing, fault, late, limited (a
-/// peak or the slew), rms_limited. Errors: as read_force_session; cannot_write; usage.
-schema::Result<void> export_force_session(const std::string& name, const std::string& file,
-                                          schema::Existing existing);
+/// peak or the slew), rms_limited, and of each piece that slides slide_NAME_m, its place along its direction
+/// after the tick: computed again (replay_session()), so it is empty from the first tick on that cannot be.
+/// Returns a note of that, or an empty string. Errors: as read_force_session; cannot_write; usage.
+schema::Result<std::string> export_force_session(const std::string& name, const std::string& file,
+                                                 schema::Existing existing);
 
 }  // namespace tacto::playback

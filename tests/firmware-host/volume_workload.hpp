@@ -87,6 +87,7 @@ class VolumeWorkload {
     core::VolumeTable table;
     core::ToolPoint points[3];
     int16_t values[kValues] = {};
+    int16_t largest[2] = {32767, 0};  // of its one block
   };
   struct Whole {
     core::VolumeTable table;

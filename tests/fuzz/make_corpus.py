@@ -196,6 +196,7 @@ def volume(samples, spacing_m, m_per_value, carve=(0, 0, 0), points=()):
     axes = b"".join(struct.pack("<iIiIfI", (n - 1) // 2, (n - 1) % 2 << 31, int(1e-5 / spacing_m), int(1e-5 / spacing_m % 1 * 2**32), 1 / spacing_m, n) for n in samples)
     values = [1000 - 300 * (x + y + z) for z in range(samples[2]) for y in range(samples[1]) for x in range(samples[0])]
     values += [0] * (len(values) % 2)
+    values += [1000, 0] if points else []  # the largest of its one block of cells
     offsets = b"".join(struct.pack("<3i3I", *whole, *part) for whole, part in points)
     return kind, numbers, table + axes + struct.pack("<fffIiII", 12.5, m_per_value, *carve, 0, len(points)) + offsets + struct.pack(f"<{len(values)}h", *values)
 

@@ -129,7 +129,7 @@ MAY_INCLUDE = {
         "data-schema/{base device mesh volume} firmware-host/core/{kernel scene} playback/{model prepare prepare/relief prepare/scene} "
         "spatial/{dsp/filter dsp/fourier}",
     "playback/session":
-        "data-schema/{base files session wav} firmware-host/{core/firmware core/kernel core/wire link} playback/model",
+        "data-schema/{base files session wav} firmware-host/{core/firmware core/kernel core/scene core/wire link} playback/model",
     "playback/stability": "data-schema/{device scene} firmware-host/{core/scene sim/planar}",
     "playback/strokes":
         "data-schema/{base texture} firmware-host/{core/firmware core/kernel core/wire} playback/{choose model render "

@@ -196,6 +196,35 @@ TEST(SceneMeshTest, ACornerHoldsAlongItsExactDiagonal) {
   EXPECT_NEAR(edge[2], 0, 1e-3);
 }
 
+// From outside over a corner of a cube, and down its exact diagonal, where three faces are as near: at each
+// corner other triangles meet. The ghost stays on the corner, and the force is that of all three faces.
+TEST(SceneMeshTest, BelowAConvexCornerTheExactDiagonalHolds) {
+  constexpr double kHalf_m = 0.01;
+  schema::Mesh cube;
+  for (int i = 0; i < 8; ++i)
+    cube.vertices_m.push_back({(i & 1) != 0 ? kHalf_m : -kHalf_m, (i & 2) != 0 ? kHalf_m : -kHalf_m,
+                               (i & 4) != 0 ? kHalf_m : -kHalf_m});
+  cube.triangles = {{4, 5, 7}, {4, 7, 6}, {0, 3, 1}, {0, 2, 3}, {0, 1, 5}, {0, 5, 4},
+                    {2, 7, 3}, {2, 6, 7}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  MeshOnArm arm(cube, 1e-5);
+  for (const Point& corner : cube.vertices_m)
+    for (const int counts_a_tick : {1, 7, 40}) {
+      arm.ghost.rest();
+      for (int count = 1100; count >= 500; count -= counts_a_tick) {
+        const double at_m = count * 1e-5, depth_m = kHalf_m - at_m;
+        const Point force_n = arm.at(scaled(at_m / kHalf_m, corner)), ghost_m = arm.ghost_m();
+        EXPECT_LT(winding_number(cube, ghost_m), 0.5) << count;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double outwards = corner[k] > 0 ? 1 : -1;
+          EXPECT_NEAR(outwards * force_n[k], kMeshStiffness * std::max(0.0, depth_m), 2e-4) << count;
+          if (depth_m > 0) {
+            EXPECT_NEAR(ghost_m[k], corner[k], 1e-6) << count;
+          }
+        }
+      }
+    }
+}
+
 // Below the face A (z = 0, x < 0) at the depth d, past an edge at which the surface turns down by theta, and
 // back. The ghost passes late: at x = 0, and on the way back at x = -d tan(theta). So it loses
 // K d^2 sin^2(theta) / 2 there, and K d^2 tan^2(theta) / 2 (the issue's formula for the depth d /
@@ -240,6 +269,33 @@ TEST(SceneMeshTest, PushesAtAllEdgesAndCornersAreHeld) {
       EXPECT_LT(winding_number(ball, arm.ghost_m()), 0.5) << place[0] << " " << place[1];
     }
   }
+}
+
+// As many as the issue names, on a ball of 20,480 triangles: what falls through is nearer to the middle than
+// any triangle.
+TEST(SceneMeshTest, PushesAt40962EdgesAndCornersOfAFineBallAreHeld) {
+  constexpr double kRadius_m = 0.05;
+  const schema::Mesh ball = icosphere(5, kRadius_m);
+  double least_m = kRadius_m;
+  std::vector<Point> places = ball.vertices_m;
+  for (const auto& [i, j, k] : ball.triangles) {
+    const Point &a = ball.vertices_m[i], &b = ball.vertices_m[j], &c = ball.vertices_m[k];
+    const Point area = cross_of(minus_of(b, a), minus_of(c, a));
+    least_m = std::min(least_m, inner_of(area, a) / size_of_point(area));
+    for (const auto& [from, to] : {std::pair{i, j}, {j, k}, {k, i}})
+      if (from < to)  // each edge once
+        places.push_back(scaled(0.5, minus_of(ball.vertices_m[from], scaled(-1, ball.vertices_m[to]))));
+  }
+  ASSERT_EQ(places.size(), 40'962U);
+  MeshOnArm arm(ball, 1e-6);
+  int fallen = 0;
+  for (const Point& place : places) {
+    arm.ghost.rest();
+    Point force_n;
+    for (int i = 0; i < 15; ++i) force_n = arm.at(scaled(1.02 - 0.004 * i, place));
+    if (size_of_point(arm.ghost_m()) < least_m || !(inner_of(force_n, place) > 0)) ++fallen;
+  }
+  EXPECT_EQ(fallen, 0);
 }
 
 // A ball with dents and spikes. A hand that begins in it touches nothing until it is out.

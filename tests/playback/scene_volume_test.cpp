@@ -397,5 +397,41 @@ TEST(SceneVolume, TheForceOfAToolIsTheSumOverItsPoints) {
   EXPECT_EQ(fault_of(block_around(other, 500), view), core::SceneFault::structure);
 }
 
+// A tool around a ball in an empty volume, whose last blocks are not whole: as if no block were empty.
+TEST(SceneVolume, PointsInEmptyBlocksDoNotMatter) {
+  schema::Volume volume;
+  volume.samples = {41, 34, 50}, volume.spacing_m = {4e-4, 5e-4, 6e-4};
+  for (int i = 0; i < 41 * 34 * 50; ++i) {
+    const double x = 0.4 * (i % 41 - 20), y = 0.5 * (i / 41 % 34 - 16.5), z = 0.6 * (i / (41 * 34) - 24.5);
+    volume.stored.push_back(static_cast<std::int16_t>(1000 * (6 - std::hypot(x, y, z))));
+  }
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> at_m(-8e-3, 8e-3);
+  std::vector<std::array<double, 3>> tool_m(100);
+  for (auto& point_m : tool_m)
+    for (double& each : point_m) each = at_m(random);
+  const auto words =
+      volume_table(piece_of_volume(), volume, core::PieceTable{}, {1e-5, 1e-5, 1, 1e-5}, tool_m);
+  const auto& table = *reinterpret_cast<const core::VolumeTable*>(words.data());
+  std::vector<std::uint32_t> full = words;
+  auto* const largest = reinterpret_cast<std::int16_t*>(full.data() + full.size() - block_words_of(table));
+  ASSERT_EQ(block_words_of(table), (5 * 5 * 7 + 1) / 2);
+  EXPECT_GT(std::count_if(largest, largest + 5 * 5 * 7, [](std::int16_t each) { return each < -101; }), 40);
+  std::fill_n(largest, 5 * 5 * 7, INT16_MAX);
+  int inside = 0, away = 0;
+  for (int n = 0; n < 3000; ++n) {
+    std::int32_t counts[3];
+    for (std::int32_t& count : counts) count = static_cast<std::int32_t>(3e5 * at_m(random));
+    const core::VolumeTouch a = core::touch_volume(table, counts, 500, nullptr),
+                            b = core::touch_volume(*reinterpret_cast<const core::VolumeTable*>(full.data()),
+                                                   counts, 500, nullptr);
+    EXPECT_EQ(std::memcmp(&a.push_m, &b.push_m, sizeof a.push_m), 0) << n;
+    EXPECT_EQ(a.outside_m > core::kLetGo_m, b.outside_m > core::kLetGo_m) << n;
+    inside += a.outside_m == 0, away += a.outside_m > core::kLetGo_m;
+  }
+  EXPECT_GT(inside, 300);
+  EXPECT_GT(away, 100);
+}
+
 }  // namespace
 }  // namespace tacto::playback

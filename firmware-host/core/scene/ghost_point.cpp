@@ -404,6 +404,7 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
   SpacePlace last = ghost_;  // at which the ghost was outside
   bool outside = false;
   uint32_t touched = 0;
+  int slides = 0;  // in a corner of reliefs each pass could be one, the dearest of all steps
   static_assert(kMostPieces <= 32);
   const float settled_m = settled_on_meshes(scene);
   for (int pass = 0; pass <= kGhostPasses; ++pass) {  // the last one moves no more, and gives the force
@@ -423,7 +424,9 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
     const Goal goal = nearest_allowed(planes, straight);
     hold(planes, goal, straight, holding);
     if (nearest_m >= -kInside_m) last = ghost_, of_last = holding, outside = true;
-    if (goal.count == 1 && settle_on(scene, hand, step_m, touched, holding)) {
+    const bool settles = goal.count == 1 && (kind_of(scene, holding.piece[0]) != SceneLayerKind::relief ||
+                                             ++slides <= kMostSlides);
+    if (settles && settle_on(scene, hand, step_m, touched, holding)) {
       if (holding.count > 0) break;
       continue;
     }

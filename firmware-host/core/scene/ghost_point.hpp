@@ -10,6 +10,7 @@
 namespace tacto::core {
 
 inline constexpr int kGhostPasses = 12;           ///< moves of a tick, at most
+inline constexpr int kMostSlides = 4;             ///< of them along a relief (slid_on_relief())
 inline constexpr uint32_t kMostTouched = 6;       ///< pieces that hold the ghost or may hold it: the nearest
 inline constexpr uint32_t kMostHolding = 3;       ///< planes that hold it
 inline constexpr float kFarthestInSpace_m = 100;  ///< beyond, a hand touches nothing

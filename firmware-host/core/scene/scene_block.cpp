@@ -396,7 +396,8 @@ SceneFault check_volume(SceneView& view, const SceneLayer& layer, uint32_t room,
     values *= axis.samples;
   }
   if (table.points > kMostToolPoints) return SceneFault::structure;
-  const uint64_t all = kHead + table.points * (sizeof(ToolPoint) / sizeof(uint32_t)) + (values + 1) / 2;
+  const uint64_t all = kHead + table.points * (sizeof(ToolPoint) / sizeof(uint32_t)) + (values + 1) / 2 +
+                       block_words_of(table);
   if (all > room) return SceneFault::structure;
   words = static_cast<uint32_t>(all);
   view.tables_change = view.tables_change || table.carve_n > 0;

@@ -65,6 +65,15 @@ VolumePlace moved(const VolumePlace& hand, const ToolPoint& point) noexcept {
   return place;
 }
 
+// Of the block of a place between values.
+int16_t largest_at(const VolumeTable& table, const VolumePlace& place) noexcept {
+  uint32_t block[3];
+  for (int i = 0; i < 3; ++i)
+    block[i] = static_cast<uint32_t>(static_cast<uint64_t>(place.along[i]) >> 32) / kVolumeBlock;
+  const uint32_t row = blocks_of(table.along[0]), layer = row * blocks_of(table.along[1]);
+  return largest_of_blocks(table)[block[2] * layer + block[1] * row + block[0]];
+}
+
 // Whole values; the rest is kept for the next tick that carves.
 int32_t fall_of_tick(VolumeTable& table) noexcept {
   const uint32_t sum = table.carve_rest + table.carve_per_tick;
@@ -103,18 +112,22 @@ VolumeDepth depth_at(const VolumeTable& table, const int16_t* values, const Volu
   return {table.m_per_value * level.above, outwards(table, level.rise)};
 }
 
-// The sum is that of values, without a branch on which points are inside: 1,000 of them are read while others
-// are on their way from memory.
+// Half of the points of a tool are outside or more, and their values, which are all over the memory, take
+// most of the time: of those the block's largest value is read alone. Others have no branch on which of them
+// are inside: they are read while others are on their way from memory.
 VolumeTouch touch_volume(VolumeTable& table, const int32_t (&counts)[3], float stiffness) noexcept {
   auto* const values = const_cast<int16_t*>(values_of(table));
   const VolumePlace hand = place_in(table, counts);
   const ToolPoint origin, *const points = table.points > 0 ? points_of(table) : &origin;
+  const float low = table.iso - kLetGo_m / table.m_per_value - 1;  // 1: more than rounding
   SpaceVector sum;
   float highest = -1e30F;
   int32_t fall = -1;  // of this tick, once for all points
   for (uint32_t i = 0; i == 0 || i < table.points; ++i) {
     Cell cell;
-    if (!cell_of(table, moved(hand, points[i]), cell)) continue;
+    const VolumePlace place = moved(hand, points[i]);
+    if (!cell_of(table, place, cell)) continue;
+    if (table.points > 0 && static_cast<float>(largest_at(table, place)) < low) continue;
     const Level level = level_at(table, values, cell);
     highest = level.above > highest ? level.above : highest;
     const SpaceVector push = (level.above > 0 ? level.above : 0) * level.rise;

@@ -3,6 +3,9 @@
 // gradient, of one interpolant (Massie 1996; McNeely 1999).
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "firmware-host/core/scene/piece.hpp"
 
 namespace tacto::core {
@@ -22,7 +25,7 @@ struct VolumeAxis {
 static_assert(sizeof(VolumeAxis) == 24);
 
 /// This, then the points of the tool, then the values: i16, those along x next to each other, then along y,
-/// then along z; two in a word.
+/// then along z; two in a word. With a tool then the largest values of its blocks, in the same order.
 struct VolumeTable {
   PieceTable piece;  ///< its form is not used: a unit vector and the half extent
   VolumeAxis along[3];
@@ -47,8 +50,30 @@ inline const ToolPoint* points_of(const VolumeTable& table) noexcept {
   return reinterpret_cast<const ToolPoint*>(&table + 1);
 }
 
+inline uint32_t value_words_of(const VolumeTable& table) noexcept {
+  return (table.along[0].samples * table.along[1].samples * table.along[2].samples + 1) / 2;
+}
+
+/// A block is this many cells along each axis, the last one fewer; a cell is between two values.
+inline constexpr uint32_t kVolumeBlock = 8;
+
+inline uint32_t blocks_of(const VolumeAxis& axis) noexcept {
+  return (axis.samples + kVolumeBlock - 2) / kVolumeBlock;
+}
+
+/// Of the largest values of the blocks, i16.
+inline uint32_t block_words_of(const VolumeTable& table) noexcept {
+  const VolumeAxis* const along = table.along;
+  return table.points > 0 ? (blocks_of(along[0]) * blocks_of(along[1]) * blocks_of(along[2]) + 1) / 2 : 0;
+}
+
 inline const int16_t* values_of(const VolumeTable& table) noexcept {
   return reinterpret_cast<const int16_t*>(points_of(table) + table.points);
+}
+
+/// Precondition: with a tool. Not below any value that a point in the block reads: values only fall.
+inline const int16_t* largest_of_blocks(const VolumeTable& table) noexcept {
+  return values_of(table) + 2 * static_cast<size_t>(value_words_of(table));
 }
 
 /// A place in samples, each 2^-32 of one.
@@ -72,13 +97,14 @@ VolumeDepth depth_at(const VolumeTable& table, const int16_t* values, const Volu
 
 struct VolumeTouch {
   SpaceVector push_m;       ///< sum over the points: depth x its gradient, outwards; 0 outside
-  float outside_m = 1e30F;  ///< minus the largest depth; 0 inside
+  float outside_m = 1e30F;  ///< minus the largest depth, or more than kLetGo_m; 0 inside
 };
 
 /// With the stiffness K the force is K x push_m, the gradient of the potential K depth^2 / 2 of the depths
 /// above 0, summed over the points: so a closed path gains no energy. Where that of a point is above carve_n
-/// the values around it fall, from the next point on: a potential that falls gives no energy either. A table
-/// with carve_n is in the kernel's own memory (SceneView::as_in()). Safe in the tick: one step per point.
+/// the values around it fall, from the next point on: a potential that falls gives no energy either. Of a
+/// tool, points in blocks whose values are all more than kLetGo_m outside are not looked at. A table with
+/// carve_n is in the kernel's own memory (SceneView::as_in()). Safe in the tick: one step per point.
 VolumeTouch touch_volume(VolumeTable& table, const int32_t (&counts)[3], float stiffness) noexcept;
 
 }  // namespace tacto::core

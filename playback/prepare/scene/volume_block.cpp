@@ -34,6 +34,25 @@ core::VolumeAxis axis_of(std::size_t samples, double spacing_m, double step_m, d
           static_cast<float>(1 / spacing_m),          static_cast<std::uint32_t>(samples)};
 }
 
+// As core::largest_of_blocks(): a block reads the first values of the next one, too.
+std::vector<std::int16_t> largest_in_blocks(const Volume& volume) {
+  const auto [columns, rows, layers] = volume.samples;
+  constexpr std::size_t kSide = core::kVolumeBlock;
+  std::vector<std::int16_t> all;
+  for (std::size_t z = 0; z + 1 < layers; z += kSide)
+    for (std::size_t y = 0; y + 1 < rows; y += kSide)
+      for (std::size_t x = 0; x + 1 < columns; x += kSide) {
+        std::int16_t largest = INT16_MIN;
+        for (std::size_t k = z; k < std::min(layers, z + kSide + 1); ++k)
+          for (std::size_t j = y; j < std::min(rows, y + kSide + 1); ++j) {
+            const std::int16_t* const row = &volume.stored[volume.at(0, j, k)];
+            largest = std::max(largest, *std::max_element(row + x, row + std::min(columns, x + kSide + 1)));
+          }
+        all.push_back(largest);
+      }
+  return all;
+}
+
 double stored_iso(const Piece& piece, const Volume& volume) {
   return (piece.iso - volume.offset) / volume.scale;
 }
@@ -91,13 +110,18 @@ std::vector<std::uint32_t> volume_table(const Piece& piece, const Volume& volume
       points[n].whole[i] = static_cast<std::int32_t>(samples >> 32);
       points[n].part[i] = static_cast<std::uint32_t>(samples);
     }
-  const std::size_t point_bytes = points.size() * sizeof(core::ToolPoint),
-                    value_bytes = 2 * volume.stored.size();
-  std::vector<std::uint32_t> words((sizeof table + point_bytes + value_bytes + 3) / sizeof(std::uint32_t));
+  const std::size_t point_bytes = points.size() * sizeof(core::ToolPoint);
+  const std::size_t block_words = core::block_words_of(table);
+  std::vector<std::uint32_t> words((sizeof table + point_bytes) / sizeof(std::uint32_t) +
+                                   core::value_words_of(table) + block_words);
   auto* const at = reinterpret_cast<std::byte*>(words.data());
   std::memcpy(at, &table, sizeof table);
   std::copy_n(reinterpret_cast<const std::byte*>(points.data()), point_bytes, at + sizeof table);
-  std::memcpy(at + sizeof table + point_bytes, volume.stored.data(), value_bytes);
+  std::memcpy(at + sizeof table + point_bytes, volume.stored.data(), 2 * volume.stored.size());
+  if (block_words > 0) {
+    const std::vector<std::int16_t> largest = largest_in_blocks(volume);
+    std::memcpy(words.data() + words.size() - block_words, largest.data(), 2 * largest.size());
+  }
   return words;
 }
 
