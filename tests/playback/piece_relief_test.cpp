@@ -91,14 +91,14 @@ TEST(PieceReliefTest, ThroughTheHeightsOfTheMap) {
 // third derivative, some 1e6 / m^2, changes it by less than 10 per m over 1 um; single precision by less than
 // 0.1.
 TEST(PieceReliefTest, TheBendAlongAWayIsThatOfTheSpline) {
-  const OnReliefs on({raised_floor()});
+  const ArmOnPieces on({raised_floor()});
   const auto& table = core::table_of<core::ReliefPieceTable>(on.view, on.view.layers[0]);
   constexpr double kStep_m = 1e-6;
   double largest = 0;
   for (int i = 0; i < 200; ++i) {
     const double x = 4e-3 * std::sin(1.7 * i), y = 3e-3 * std::cos(2.3 * i), u = std::sin(0.9 * i),
                  v = std::cos(0.9 * i);
-    const auto height = [&](double by_u, double by_v) { return on.height_m({x + by_u, y + by_v, 0}); };
+    const auto height = [&](double by_u, double by_v) { return height_below(on, {x + by_u, y + by_v, 0}); };
     const auto slope = [&](double by_u, double by_v) {
       return (height(by_u, by_v) - height(-by_u, -by_v)) / (2 * kStep_m);
     };

@@ -165,8 +165,8 @@ TEST(SceneVolume, ItsDepthAndGradientAreThoseOfTheWeightsInDouble) {
 // By it a wall is let go, and its next contact has its transient again.
 TEST(SceneVolume, OutsideItStatesHowFar) {
   const schema::Volume volume = random_volume(-3000, 3000);
-  const std::vector<std::uint32_t> words = table_words(volume, piece_of_volume());
-  const auto& table = *reinterpret_cast<const core::VolumeTable*>(words.data());
+  std::vector<std::uint32_t> words = table_words(volume, piece_of_volume());
+  auto& table = *reinterpret_cast<core::VolumeTable*>(words.data());
   std::mt19937 random(5);
   std::uniform_int_distribution<std::int32_t> count(-180, 180);
   int outside = 0, inside = 0;
@@ -174,7 +174,7 @@ TEST(SceneVolume, OutsideItStatesHowFar) {
     const std::int32_t counts[] = {count(random), count(random), count(random)};
     const core::VolumeDepth depth =
         core::depth_at(table, core::values_of(table), core::place_in(table, counts));
-    const core::VolumeTouch touch = core::touch_volume(table, counts, 500, nullptr);
+    const core::VolumeTouch touch = core::touch_volume(table, counts, 500);
     EXPECT_EQ(touch.outside_m, depth.depth_m > 0 ? 0 : -depth.depth_m);
     depth.depth_m > 0 ? ++inside : ++outside;
   }
@@ -410,9 +410,8 @@ TEST(SceneVolume, PointsInEmptyBlocksDoNotMatter) {
   std::vector<std::array<double, 3>> tool_m(100);
   for (auto& point_m : tool_m)
     for (double& each : point_m) each = at_m(random);
-  const auto words =
-      volume_table(piece_of_volume(), volume, core::PieceTable{}, {1e-5, 1e-5, 1, 1e-5}, tool_m);
-  const auto& table = *reinterpret_cast<const core::VolumeTable*>(words.data());
+  auto words = volume_table(piece_of_volume(), volume, core::PieceTable{}, {1e-5, 1e-5, 1, 1e-5}, tool_m);
+  auto& table = *reinterpret_cast<core::VolumeTable*>(words.data());
   std::vector<std::uint32_t> full = words;
   auto* const largest = reinterpret_cast<std::int16_t*>(full.data() + full.size() - block_words_of(table));
   ASSERT_EQ(block_words_of(table), (5 * 5 * 7 + 1) / 2);
@@ -422,9 +421,9 @@ TEST(SceneVolume, PointsInEmptyBlocksDoNotMatter) {
   for (int n = 0; n < 3000; ++n) {
     std::int32_t counts[3];
     for (std::int32_t& count : counts) count = static_cast<std::int32_t>(3e5 * at_m(random));
-    const core::VolumeTouch a = core::touch_volume(table, counts, 500, nullptr),
-                            b = core::touch_volume(*reinterpret_cast<const core::VolumeTable*>(full.data()),
-                                                   counts, 500, nullptr);
+    const core::VolumeTouch a = core::touch_volume(table, counts, 500),
+                            b = core::touch_volume(*reinterpret_cast<core::VolumeTable*>(full.data()), counts,
+                                                   500);
     EXPECT_EQ(std::memcmp(&a.push_m, &b.push_m, sizeof a.push_m), 0) << n;
     EXPECT_EQ(a.outside_m > core::kLetGo_m, b.outside_m > core::kLetGo_m) << n;
     inside += a.outside_m == 0, away += a.outside_m > core::kLetGo_m;
