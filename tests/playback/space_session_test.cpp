@@ -21,6 +21,7 @@
 #include "data-schema/volume/volume.hpp"
 #include "firmware-host/core/kernel/tick_kernel.hpp"
 #include "firmware-host/core/scene/scene_kernel.hpp"
+#include "firmware-host/core/scene/volume.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
 #include "firmware-host/sim/planar/planar_device.hpp"
 #include "playback/player/force_program.hpp"
@@ -132,9 +133,12 @@ class SpaceSession : public testing::Test {
     tick_again(options, scene.pieces.size(), carved);
   }
   static std::vector<std::int16_t> carved_in(const core::SceneKernel& kernel) {
-    for (std::uint32_t i = 0; i < kernel.scene().layer_count; ++i)
-      if (const std::int16_t* const values = kernel.carved_values(i); values != nullptr)
-        return {values, values + kVoxels * kVoxels * kVoxels};
+    const core::SceneView now = kernel.scene_now();
+    for (std::uint32_t i = 0; i < now.layer_count; ++i) {
+      if (now.layers[i].kind != static_cast<std::uint16_t>(core::SceneLayerKind::volume)) continue;
+      const std::int16_t* const values = core::values_of(core::table_of<core::VolumeTable>(now, now.layers[i]));
+      return {values, values + kVoxels * kVoxels * kVoxels};
+    }
     return {};
   }
   std::vector<schema::SessionTick> ticks_of(const std::string& session) const {
