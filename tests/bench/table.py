@@ -157,7 +157,7 @@ def print_table(ours, theirs, used, corpus):
         volume = ours[f"TouchVolume/{points}/iterations:{ticks}"]
         title = f"volume of 256^3 values, {points} point" + "s" * (points > 1)
         print(f"{title:64} median {volume['median_ns'] / 1e3:.2f} us, p99 {volume['p99_ns'] / 1e3:.2f} us (median at most {most})")
-    for kept, title, most in ((0, "clay, its surface and a press", 0.2), (1, "the same, its volume kept", 0.25)):
+    for kept, title, most in ((0, "clay, its surface and a press", 0.2), (1, "the same, its volume kept", 0.3)):
         clay = ours[f"PressClay/{kept}/iterations:200000"]
         print(f"{title:64} median {clay['median_ns'] / 1e3:.2f} us, p99 {clay['p99_ns'] / 1e3:.2f} us (median at most {most})")
     clock = {jobs: rate for jobs, (rate, _) in corpus.items()}

@@ -2,7 +2,7 @@
 // A tick in a volume of 256^3 values: a point at most 0.3 us, a tool of 1,000 points 20 us. The workload,
 // which any program can repeat: values 0.5 mm apart that fall by 1000 per mm of the distance from the middle,
 // 0 at 50 mm; a hand on a circle of 49 mm in a plane that turns, at 0.2 m/s, places in whole um, 1 kHz; the
-// points of the tool even on a ball of 20 mm. Clay, its surface and a press: at most 0.2 us, kept 0.25, on
+// points of the tool even on a ball of 20 mm. Clay, its surface and a press: at most 0.2 us, kept 0.3, on
 // 256^2 heights 1 mm apart, a point on a circle of 60 mm at 0.2 m/s. Each tick is timed alone.
 #include <benchmark/benchmark.h>
 

@@ -53,6 +53,7 @@ class VolumeWorkload {
     clay.table.clay = {1, 0x1p-14F, -0x1p-7F, 0x1p-7F, 1};
     clay.relief = {500, 1};
     clay.levels[0] = {{{4, 0, {}}, {4, 7, {}}}, {200, 200}, kClaySide, kClaySide, 0};
+#pragma GCC unroll 1
     for (float& height : clay.heights) height = static_cast<float>(value()) * 0x1p-24F;
     const uint32_t bytes = sizeof block_;
     block_.header.check = core::scene_check(&block_, bytes);
@@ -97,7 +98,7 @@ class VolumeWorkload {
     core::ReliefPieceTable table;
     core::ReliefTable relief;
     core::ReliefLevelTable levels[1];
-    float heights[kClaySide * kClaySide] = {};
+    float heights[kClaySide * kClaySide];  // all are set
   };
   static constexpr uint32_t kTableWords = (sizeof(Carved) + sizeof(Whole) + sizeof(Clay)) / sizeof(uint32_t);
   struct Block {

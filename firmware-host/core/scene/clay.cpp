@@ -42,6 +42,7 @@ constexpr ClayPattern kPattern = whole_pattern();
 class ClayGrid {
  public:
   ClayGrid(const float* heights, const ReliefLevelTable& level, int32_t column, int32_t row) noexcept {
+#pragma GCC unroll 1
     for (int i = 0; i < kSide; ++i) {
       columns_[i] = held(column + i - kBefore, level.columns);
       rows_[i] = heights + static_cast<size_t>(held(row + i - kBefore, level.rows)) * level.columns;
@@ -58,15 +59,19 @@ class ClayGrid {
   const float* rows_[kSide];
 };
 
-// The largest change from one step to the next, absolute: step(line, at) of all places of the lines.
-template <class Step>
-float largest_change(int first_line, int last_line, int first, int last, Step step) noexcept {
+// Of the differences from a point to the next one along x (dx = 1) or y (0), the largest change from place to
+// place, absolute, on lines along the rows or the columns. Not inlined: flash is small.
+[[gnu::noinline]] float largest_change(const ClayGrid& h, int first_line, int first, int last,
+                                       bool along_rows, int dx) noexcept {
   float most = 0;
-  for (int line = first_line; line <= last_line; ++line) {
-    float before = step(line, first);
-    for (int at = first + 1; at <= last; ++at) {
-      const float after = step(line, at), size = __builtin_fabsf(after - before);
-      most = size > most ? size : most;
+#pragma GCC unroll 1
+  for (int line = first_line; line < last; ++line) {
+    float before = 0;
+#pragma GCC unroll 1
+    for (int at = first; at <= last; ++at) {
+      const int x = along_rows ? at : line, y = along_rows ? line : at;
+      const float after = h.at(x + dx, y + 1 - dx) - h.at(x, y), size = __builtin_fabsf(after - before);
+      most = at > first && size > most ? size : most;
       before = after;
     }
   }
@@ -77,6 +82,15 @@ const float* heights_of(const ReliefPieceTable& table) noexcept {
   return coefficients_of(relief_of(table), levels_of(relief_of(table))[0]);
 }
 
+// Null beside the grid.
+[[gnu::noinline]] float* height_at(float* heights, const ReliefLevelTable& level, const int32_t (&cell)[2],
+                                   ClayPlace place) noexcept {
+  const auto column = static_cast<uint32_t>(cell[0] + place.x),
+             row = static_cast<uint32_t>(cell[1] + place.y);
+  if (column >= level.columns || row >= level.rows) return nullptr;  // below 0: a large one
+  return heights + static_cast<size_t>(row) * level.columns + column;
+}
+
 }  // namespace
 
 // A second derivative of a B-spline surface is a mean of second differences of its coefficients; the largest
@@ -84,13 +98,10 @@ const float* heights_of(const ReliefPieceTable& table) noexcept {
 float clay_bend_per_m(const ReliefPieceTable& table, int32_t column, int32_t row, int reach) noexcept {
   const ReliefLevelTable& level = levels_of(relief_of(table))[0];
   const ClayGrid h(heights_of(table), level, column, row);
-  const int end = reach + 1;
-  float along_x = largest_change(-reach, end, -reach - 2, end + 1,
-                                 [&](int y, int x) { return h.at(x + 1, y) - h.at(x, y); }),
-        along_y = largest_change(-reach, end, -reach - 2, end + 1,
-                                 [&](int x, int y) { return h.at(x, y + 1) - h.at(x, y); });
-  const float mixed = largest_change(-reach - 1, end, -reach - 1, end + 1,
-                                     [&](int x, int y) { return h.at(x + 1, y) - h.at(x, y); });
+  const int end = reach + 2;
+  float along_x = largest_change(h, -reach, -reach - 2, end, true, 1),
+        along_y = largest_change(h, -reach, -reach - 2, end, false, 0);
+  const float mixed = largest_change(h, -reach - 1, -reach - 1, end, false, 1);
   const float* const per_m = level.samples_per_m;
   along_x *= per_m[0] * per_m[0], along_y *= per_m[1] * per_m[1];
   return (along_x > along_y ? along_x : along_y) + per_m[0] * per_m[1] * mixed;
@@ -107,20 +118,16 @@ void press_clay(ReliefPieceTable& table, SpaceVector place) noexcept {
     if (cell[i] < 0 || static_cast<uint32_t>(cell[i]) + 1 >= counts[i]) return;
   }
   auto* const heights = const_cast<float*>(heights_of(table));
-  const auto height = [&](ClayPlace place) -> float* {
-    const auto column = static_cast<uint32_t>(cell[0] + place.x),
-               row = static_cast<uint32_t>(cell[1] + place.y);
-    const bool there = column < level.columns && row < level.rows;  // below 0: a large one
-    return there ? heights + static_cast<size_t>(row) * level.columns + column : nullptr;
-  };
   const ClayTable& clay = table.clay;
+#pragma GCC unroll 1
   for (const ClayPoint& point : kPattern.points) {
     const float sinks_m = static_cast<float>(point.parts) * clay.half_m;
     const int rising = clay.kept != 0 ? point.parts : 0;
-    float *const from = height(point.from), *to[2] = {};
+    float *const from = height_at(heights, level, cell, point.from), *to[2] = {};
     bool moves = from != nullptr && *from - sinks_m >= clay.least_m;
+#pragma GCC unroll 1
     for (int k = 0; k < rising; ++k) {
-      to[k] = height(point.to[k]);
+      to[k] = height_at(heights, level, cell, point.to[k]);
       moves = moves && to[k] != nullptr && *to[k] + clay.half_m <= clay.most_m;
     }
     if (!moves) continue;
