@@ -136,7 +136,8 @@ class SpaceSession : public testing::Test {
     const core::SceneView now = kernel.scene_now();
     for (std::uint32_t i = 0; i < now.layer_count; ++i) {
       if (now.layers[i].kind != static_cast<std::uint16_t>(core::SceneLayerKind::volume)) continue;
-      const std::int16_t* const values = core::values_of(core::table_of<core::VolumeTable>(now, now.layers[i]));
+      const std::int16_t* const values =
+          core::values_of(core::table_of<core::VolumeTable>(now, now.layers[i]));
       return {values, values + kVoxels * kVoxels * kVoxels};
     }
     return {};
