@@ -83,7 +83,7 @@ class Search {
     if (pattern.names.empty())
       take(schema::is_file(text + ".json") ? text + ".json" : text);
     else
-      TACTO_TRY(walk(pattern));
+      TACTO_TRY(walk(pattern, text));
     if (found_.size() + known_ > before) return {};
     return schema::fail(ErrorKind::not_found, "names no recording", text,
                         "quote a pattern, for example 'raw/**/*.json'");
@@ -92,7 +92,7 @@ class Search {
   FoundRecordings result() && { return {{found_.begin(), found_.end()}, others_}; }
 
  private:
-  Result<void> walk(const Pattern& pattern) {
+  Result<void> walk(const Pattern& pattern, const std::string& text) {
     const fs::path from = pattern.folder.empty() ? "." : pattern.folder;
     const bool any_depth = std::ranges::find(pattern.names, kAnyFolders) != pattern.names.end();
     std::error_code failed;
@@ -110,8 +110,8 @@ class Search {
       }
     }
     if (failed)
-      return schema::fail(ErrorKind::not_found, "the folder cannot be read: " + failed.message(),
-                          folder.string(), "check its name and its permissions");
+      return schema::fail(ErrorKind::not_found, folder.string() + " cannot be listed: " + failed.message(),
+                          text);
     return {};
   }
 
