@@ -653,7 +653,9 @@ def a_slide_is_that_of_its_differential_equation():
     assert played["lost_ticks"] == 0 and again["same_to_the_bit"] is True and again["ticks_compared"] == played["ticks"], again
     run("session", "block", "-o", "block.csv")
     exported = np.genfromtxt("block.csv", delimiter=",", names=True)["slide_block_m"]
-    assert len(exported) == played["ticks"] and np.abs(exported[:2000] - slid[:2000]).max() < 1e-9, "as render computes it"
+    away = np.abs(exported[:2000] - slid[:2000]).max()
+    # As render computes it: the device's rate is 1000 Hz within 24 bits, so a tenth of a count.
+    assert len(exported) == played["ticks"] and away < 1e-6, away
     # A damaged part ends the column, not the table.
     whole = pathlib.Path("block.session").read_bytes()
     pathlib.Path("cut.session").write_bytes(whole[:len(whole) // 2] + bytes(64) + whole[len(whole) // 2 + 64:])
