@@ -5,8 +5,6 @@
 // a pause the ticks follow each other at once, and the tree stays in the processor's cache; with a pause of 1
 // ms, as on a device, other programs use the cache between two ticks: median at most 4 us, p99 15 us. No
 // friction: the force along the motion, over the force along the radius, is 0 in the mean (at most 1e-3).
-// And on an ellipsoid of 50, 40 and 30 mm, the hand at 98 % of the same places: median at most 0.3 us; the
-// ghost on the surface within 1e-6 of its equation, whose constant is 1.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -52,20 +50,21 @@ schema::Mesh ball_of_rings(std::uint32_t rings, std::uint32_t columns, double ra
 }
 
 // One piece of 2 N/mm on a device without limits.
-struct PieceScene {
+struct MeshScene {
   std::vector<std::uint32_t> words;
   core::SceneView view;
   core::ForceSetup setup;
   std::vector<float> live;
 
-  PieceScene(core::SceneLayerKind kind, const std::vector<std::uint32_t>& table) {
+  explicit MeshScene(const schema::Mesh& mesh) {
+    const std::vector<std::uint32_t> table = mesh_table(mesh, {});
     core::SceneHeader header;
     header.patches = header.layers = 1;
     header.numbers = core::kPieceNumbers + core::kWallStateWords;
     header.table_words = static_cast<std::uint32_t>(table.size());
     core::ScenePatch space;
     space.layers = 1;
-    const core::SceneLayer layer{static_cast<std::uint16_t>(kind), 0, 0};
+    const core::SceneLayer layer{static_cast<std::uint16_t>(core::SceneLayerKind::mesh), 0, 0};
     const float numbers[core::kPieceNumbers + core::kWallStateWords] = {2000};
     const auto append = [&](const void* part, std::size_t bytes) {
       const std::size_t before = words.size();
@@ -90,7 +89,7 @@ struct PieceScene {
 void GhostOnMeshOf99856(benchmark::State& state) {
   using Clock = std::chrono::steady_clock;
   const schema::Mesh ball = ball_of_rings(158, 316, kBall_m);
-  PieceScene scene(core::SceneLayerKind::mesh, mesh_table(ball, {}));
+  MeshScene scene(ball);
   core::GhostPoint ghost;
   const float step_m[3] = {1e-6F, 1e-6F, 1e-6F};
   std::vector<double> ticks_ns;
@@ -139,47 +138,6 @@ void GhostOnMeshOf99856(benchmark::State& state) {
 }
 BENCHMARK(GhostOnMeshOf99856)->ArgName("pause_ms")->Arg(0)->Iterations(200'000);
 BENCHMARK(GhostOnMeshOf99856)->ArgName("pause_ms")->Arg(1)->Iterations(10'000);
-
-void GhostOnEllipsoid(benchmark::State& state) {
-  using Clock = std::chrono::steady_clock;
-  constexpr double kHalf_m[3] = {0.05, 0.04, 0.03};
-  core::PieceTable table;
-  for (int i = 0; i < 3; ++i) table.form[i] = static_cast<float>(1 / (kHalf_m[i] * kHalf_m[i]));
-  table.form[9] = -1;
-  std::vector<std::uint32_t> words(sizeof table / sizeof(std::uint32_t));
-  std::memcpy(words.data(), &table, sizeof table);
-  PieceScene scene(core::SceneLayerKind::quadric, words);
-  core::GhostPoint ghost;
-  const float step_m[3] = {1e-6F, 1e-6F, 1e-6F};
-  std::vector<double> ticks_ns;
-  double worst = 0;
-  int tick = -5;
-  for (auto _ : state) {
-    const double turn = kWay_m / kHand_m * tick, tilt = 0.37 * std::sin(0.113 * turn);
-    const double way[3] = {std::cos(turn) * std::cos(tilt), std::sin(turn) * std::cos(tilt), std::sin(tilt)};
-    core::SpaceHand hand;
-    for (int i = 0; i < 3; ++i)
-      hand.counts[i] =
-          static_cast<std::int32_t>(std::lround((tick < 0 ? 1.02 : 0.98) * kHalf_m[i] * way[i] / kStep_m));
-    const auto begin = Clock::now();
-    core::SpaceVector force = ghost.force(scene.view, scene.live.data(), hand, step_m, scene.setup);
-    benchmark::DoNotOptimize(force);
-    const std::chrono::duration<double, std::nano> took = Clock::now() - begin;
-    if (++tick <= 0) continue;
-    ticks_ns.push_back(took.count());
-    const core::SpacePlace& at = ghost.place();
-    const double rest_m[3] = {double{at.rest_m.x}, double{at.rest_m.y}, double{at.rest_m.z}};
-    double value = -1;
-    for (int i = 0; i < 3; ++i)
-      value += double{table.form[i]} * std::pow(at.counts[i] * double{step_m[i]} + rest_m[i], 2);
-    worst = std::max(worst, std::abs(value));
-  }
-  std::ranges::sort(ticks_ns);
-  state.counters["median_ns"] = ticks_ns[ticks_ns.size() / 2];
-  state.counters["p99_ns"] = ticks_ns[ticks_ns.size() * 99 / 100];
-  state.counters["worst_value"] = worst;
-}
-BENCHMARK(GhostOnEllipsoid)->Iterations(200'000);
 
 }  // namespace
 }  // namespace tacto::playback

@@ -196,9 +196,10 @@ TEST(SceneMeshTest, ACornerHoldsAlongItsExactDiagonal) {
   EXPECT_NEAR(edge[2], 0, 1e-3);
 }
 
-// From outside over a corner of a cube, and down its exact diagonal, where three faces are as near: at each
-// corner other triangles meet. The ghost stays on the corner, and the force is that of all three faces.
-TEST(SceneMeshTest, BelowAConvexCornerTheExactDiagonalHolds) {
+// From outside over a corner of a cube, and down its exact diagonal: at each corner other triangles meet.
+// Three faces are as near, and the corner is farther, so the ghost may stay on it or go to a face, but not
+// in.
+TEST(SceneMeshTest, BelowAConvexCornerTheExactDiagonalIsPushedOut) {
   constexpr double kHalf_m = 0.01;
   schema::Mesh cube;
   for (int i = 0; i < 8; ++i)
@@ -214,13 +215,9 @@ TEST(SceneMeshTest, BelowAConvexCornerTheExactDiagonalHolds) {
         const double at_m = count * 1e-5, depth_m = kHalf_m - at_m;
         const Point force_n = arm.at(scaled(at_m / kHalf_m, corner)), ghost_m = arm.ghost_m();
         EXPECT_LT(winding_number(cube, ghost_m), 0.5) << count;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const double outwards = corner[k] > 0 ? 1 : -1;
-          EXPECT_NEAR(outwards * force_n[k], kMeshStiffness * std::max(0.0, depth_m), 2e-4) << count;
-          if (depth_m > 0) {
-            EXPECT_NEAR(ghost_m[k], corner[k], 1e-6) << count;
-          }
-        }
+        const double of_face_n = kMeshStiffness * std::max(0.0, depth_m);
+        EXPECT_GE(inner_of(force_n, corner) / kHalf_m, of_face_n - 1e-3) << count;
+        EXPECT_LE(size_of_point(force_n), std::sqrt(3.0) * of_face_n + 1e-3) << count;
       }
     }
 }

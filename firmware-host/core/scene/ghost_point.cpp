@@ -404,7 +404,7 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
   SpacePlace last = ghost_;  // at which the ghost was outside
   bool outside = false;
   uint32_t touched = 0;
-  int slides = 0;  // in a corner of reliefs each pass could be one, the dearest of all steps
+  slides_ = 0;
   static_assert(kMostPieces <= 32);
   const float settled_m = settled_on_meshes(scene);
   for (int pass = 0; pass <= kGhostPasses; ++pass) {  // the last one moves no more, and gives the force
@@ -425,7 +425,7 @@ GhostPoint::Holding GhostPoint::follow(const SceneView& scene, const SpacePlace&
     hold(planes, goal, straight, holding);
     if (nearest_m >= -kInside_m) last = ghost_, of_last = holding, outside = true;
     const bool settles = goal.count == 1 && (kind_of(scene, holding.piece[0]) != SceneLayerKind::relief ||
-                                             ++slides <= kMostSlides);
+                                             ++slides_ <= kMostSlides);
     if (settles && settle_on(scene, hand, step_m, touched, holding)) {
       if (holding.count > 0) break;
       continue;

@@ -79,6 +79,7 @@ class GhostPoint {
   SpacePlace ghost_;
   TouchedTriangles touched_;
   bool placed_ = false;
+  int slides_ = 0;  // of this tick; not in the frame of follow(), which has to fit a board
 };
 
 }  // namespace tacto::core
