@@ -65,13 +65,12 @@ ZOOM = """new Promise((done) => {
 })"""
 
 # A further connection of the page to the daemon: for each message with ticks when it came, its first and last number, and the
-# largest drive; and when the loaded texture became another one.
+# largest drive.
 TICKS = """import('/ticks.js').then(({decodeTicks}) => {
   window.heard = [];
   const socket = new WebSocket(`ws://${location.host}/daemon`);
   socket.onmessage = ({data}) => {
     const now_ms = performance.now(), message = JSON.parse(data);
-    if (message.event === 'status' && message.loaded !== window.loaded) [window.loaded, window.loaded_ms] = [message.loaded, now_ms];
     if (message.event !== 'ticks') return;
     const {rows} = decodeTicks(message, 1 / 2000);
     window.heard.push({now_ms, from: rows[0].number, to: rows.at(-1).number, peak: Math.max(...rows.map(({value}) => Math.abs(value)))});
@@ -184,13 +183,13 @@ def measure_ticks(chrome, address, client):
     for i in range(SLIDES):
         time.sleep(1)
         textures.append(chrome.value("""new Promise((done) => {
-          const slider = document.getElementById('shape-stretch'), from_ms = performance.now();
+          const slider = document.getElementById('shape-stretch'), from_ms = performance.now(), before = document.getElementById('shape-plays').textContent;
           slider.value = %d;
           slider.dispatchEvent(new Event('input', {bubbles: true}));
-          const look = () => (window.loaded_ms > from_ms ? done(window.loaded_ms - from_ms) : setTimeout(look, 1));
+          const look = () => { const now = document.getElementById('shape-plays').textContent; if (now !== before && !now.includes('on its way')) done(performance.now() - from_ms); else setTimeout(look, 1); };
           look();
         })""" % (104 + 4 * i)))  # another factor each time
-    say(f"texture slider until the page knows that the device fades to it, ms: {median_and_worst(textures)} (at most 500)")
+    say(f"texture slider until the device has faded to it and takes the next one, ms: {median_and_worst(textures)} (at most 500)")
 
 
 # What people do on a page, again and again: once every 2 s. A computer that stalls may end the playback of the daemon.
