@@ -23,7 +23,7 @@ struct PowerAssumptions {
 inline constexpr double kPowerGoal = 0.8;
 /// A power of 80 % is known within 1.6 % (standard error; the people that were drawn make most of it).
 inline constexpr int kSimulatedPeople = 5000, kSimulatedStudies = 10'000;
-inline constexpr int kMostPeople = 200;         ///< in a group
+inline constexpr int kMostPeople = 200;  ///< in a group
 
 struct StudyPower {
   /// Of the simulated people's fits, in each condition: geometric mean, standard deviation of ln W; and that
