@@ -25,6 +25,7 @@ class PiecesWorkload {
     block_.header.numbers = kPieces * kWords;
     block_.header.table_words = sizeof block_.tables / sizeof(uint32_t);
     block_.patch = {0, 0, 1, 0, 1000, 1000, 0, kPieces, 0};
+#pragma GCC unroll 1
     for (uint32_t i = 0; i < kPieces; ++i) {
       block_.layers[i] = {kKinds[i], static_cast<uint16_t>(i * kWords), 0};
       const float wall[core::kPieceNumbers] = {2000, 4, 0.1F, 3000, 2, 0.5F, 0.6F, 0.4F, 1, 1};
@@ -56,14 +57,12 @@ class PiecesWorkload {
     ball.levels[0] = {{{4, 0, {}}, {4, 7, {}}}, {1e3F, 1e3F}, 9, 9, 0};
     pipe.texture = {3, {300, 500}, 1, {{0, 1, 0}, {0.6F, 0, 0.8F}}};
     WorkloadRandom height{32};
-    for (float& coefficient : floor.coefficients)
-      coefficient = static_cast<float>(height()) * (2e-5F / 32768);
-    for (float& coefficient : ball.coefficients) coefficient = static_cast<float>(height()) * (3e-4F / 32768);
+    height.fill(floor.coefficients, 2e-5F / 32768);
+    height.fill(ball.coefficients, 3e-4F / 32768);
     raised.table = {{{0, 0, -2500}, {}, {0, 0, 1}, {}}, {{0.8F, 0.6F, 0}, {-0.6F, 0.8F, 0}}, {}, 8e3F};
     raised.relief = {500, 1};
     raised.levels[0] = {{{4, 0, {}}, {4, 7, {}}}, {500, 500}, 9, 9, 0};
-    for (float& coefficient : raised.coefficients)
-      coefficient = static_cast<float>(height()) * (2e-3F / 32768);
+    height.fill(raised.coefficients, 2e-3F / 32768);
     // A tetrahedron: a root and two leaves.
     constexpr float kSize_m = 0.015F;
     mesh.table = {{{-1200, -1500, 900}, {}, {0, 0, 1, kSize_m}, {}}, kSize_m * 0x1p-18F, 3, 4, 4};

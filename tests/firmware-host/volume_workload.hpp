@@ -27,6 +27,7 @@ class VolumeWorkload {
     block_.header.table_words = kTableWords;
     block_.patch = {0, 0, 1, 0, 1000, 1000, 0, kLayers, 0};
     const float wall[core::kPieceNumbers] = {800, 2, 0.05F, 0, 0, 0, 0.5F, 0.3F, 1, 1};
+#pragma GCC unroll 1
     for (uint32_t i = 0; i < kLayers; ++i) {
       block_.layers[i] = {kKinds[i], static_cast<uint16_t>(i * kWords), kTables[i]};
       for (uint32_t j = 0; j < core::kPieceNumbers; ++j) block_.numbers[i * kWords + j] = wall[j];
@@ -53,8 +54,7 @@ class VolumeWorkload {
     clay.table.clay = {1, 0x1p-14F, -0x1p-7F, 0x1p-7F, 1};
     clay.relief = {500, 1};
     clay.levels[0] = {{{4, 0, {}}, {4, 7, {}}}, {200, 200}, kClaySide, kClaySide, 0};
-#pragma GCC unroll 1
-    for (float& height : clay.heights) height = static_cast<float>(value()) * 0x1p-24F;
+    value.fill(clay.heights, 0x1p-24F);
     const uint32_t bytes = sizeof block_;
     block_.header.check = core::scene_check(&block_, bytes);
     core::SceneView view;
