@@ -92,11 +92,11 @@ def browser(address):
             flags.append("--no-sandbox")
         process = subprocess.Popen([program, *flags, "about:blank"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
-            until, told = time.monotonic() + WAIT_S, pathlib.Path(profile, "DevToolsActivePort")
-            while not told.exists() or len(told.read_text().split()) < 2:
+            until, printed = time.monotonic() + WAIT_S, pathlib.Path(profile, "DevToolsActivePort")
+            while not printed.exists() or len(printed.read_text().split()) < 2:
                 assert time.monotonic() < until and process.poll() is None, "chromium does not start"
                 time.sleep(0.1)
-            port, path = told.read_text().split()
+            port, path = printed.read_text().split()
             root = WebSocket(int(port), path)
             target = root.ask(id=1, method="Target.getTargets")["result"]["targetInfos"]
             page = next(t["targetId"] for t in target if t["type"] == "page")

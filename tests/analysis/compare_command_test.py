@@ -293,22 +293,22 @@ def more_than_two_give_all_pairs():
     names = ["first", "second", "third"]
     for i, name in enumerate(names):
         write_texture(name, rng.normal(0, 0.01 * (i + 1), 9000))
-    told = tacto.run_json("compare", *names)
+    printed = tacto.run_json("compare", *names)
     pairs = [(names[i], names[j]) for i in range(3) for j in range(i + 1, 3)]
-    assert [(pair["a"], pair["b"]) for pair in told["pairs"]] == pairs, told["pairs"]
-    for pair in told["pairs"]:
+    assert [(pair["a"], pair["b"]) for pair in printed["pairs"]] == pairs, printed["pairs"]
+    for pair in printed["pairs"]:
         alone = tacto.run_json("compare", pair["a"], pair["b"])
         assert (pair["beyond_measurement_noise"], pair["spectral_distance_db"]) == (alone["beyond_measurement_noise"], alone["spectral_distance_db"]), (pair, alone)
-        row = told["matrix"][names.index(pair["a"])]
+        row = printed["matrix"][names.index(pair["a"])]
         assert row["input"] == pair["a"] and row[f"{names.index(pair['b']) + 1}_db"] == alone["spectral_distance_db"], row
     for surface in "CE":
         tacto.run("record", "-d", f"sim:surface={surface},strokes=6", "--strokes", "6", "-o", surface)
     tacto.run("record", "-d", "sim:surface=C,strokes=6,seed=2", "--strokes", "6", "-o", "C2")
-    told = tacto.run_json("compare", "C", "C2", "E")
+    printed = tacto.run_json("compare", "C", "C2", "E")
     alone = tacto.run_json("compare", "C", "E")
-    last = told["pairs"][1]
+    last = printed["pairs"][1]
     assert (last["a"], last["b"], last["verdict"], last["p"]) == ("C", "E", alone["verdict"], alone["p"]), (last, alone)
-    assert told["matrix"][0]["3"] == alone["verdict"] and told["matrix"][2] == {"number": 3, "input": "E"}, told["matrix"]
+    assert printed["matrix"][0]["3"] == alone["verdict"] and printed["matrix"][2] == {"number": 3, "input": "E"}, printed["matrix"]
     tacto.run("compare", *names, "-o", "x.html", code=2)
     tacto.run("compare", "first", "second", "first", code=2)
 

@@ -218,7 +218,7 @@ def write_study_with_subjects():
     pathlib.Path("people").mkdir()
     side = json.loads(pathlib.Path("A.json").read_text())
     channels = [{**channel, "source": f"input of {CODE.lower()}"} for channel in side["channels"]]
-    copy("A", f"people/{CODE}_oak", subject=CODE, notes=f"as told by {CODE.upper()}, not 70 mm/s", channels=channels,
+    copy("A", f"people/{CODE}_oak", subject=CODE, notes=f"as printed by {CODE.upper()}, not 70 mm/s", channels=channels,
          marks=[{"frame": 5, "label": f"x{CODE}x"}], faults=[{"frame": 6, "what": f"{CODE} sneezed"}], warnings=[f"of {CODE}"], surface=f"{CODE}'s oak",
          source_file=f"{CODE}.csv", finger="index", x_form={f"{CODE} says": [f"{CODE}", 7, 12]})
     copy("B", "people/plain", subject=SHORT, notes=f"after {CODE}; subject 7, 70 mm/s")

@@ -446,7 +446,7 @@ TEST(ExperimentRun, AnAdaptiveJournalCutAtEachLineGoesOnWithTheSameLevels) {
   }
 }
 
-// Against the staircase and QUEST+ themselves, which are told the counted answers only: attempts 7, 14 and 21
+// Against the staircase and QUEST+ themselves, which get the counted answers only: attempts 7, 14 and 21
 // fail.
 TEST(ExperimentRun, AdaptiveLevelsFollowFromTheAnswersThatCount) {
   const schema::Protocol protocol = adaptive(schema::LevelMethod::staircase);

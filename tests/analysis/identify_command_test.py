@@ -69,9 +69,9 @@ def table_one_comes_back():
 
 def interval_is_visible(words, row):
     """Value, low and high are exact to a twentieth of half the interval: two digits of it."""
-    told = [float(word) for word in re.fullmatch(r"(\S+) \((\S+) to (\S+)\)", words).groups()]
+    printed = [float(word) for word in re.fullmatch(r"(\S+) \((\S+) to (\S+)\)", words).groups()]
     half = (row["high_of_95"] - row["low_of_95"]) / 2
-    for number, key in zip(told, ("value", "low_of_95", "high_of_95")):
+    for number, key in zip(printed, ("value", "low_of_95", "high_of_95")):
         assert abs(number - row[key]) <= half / 20, (words, row)
 
 

@@ -137,9 +137,9 @@ def a_recording_takes_it_along():
     side = json.loads(pathlib.Path("known.json").read_text())
     codes, _ = soundfile.read("known.wav", dtype="int32", always_2d=True)
     for channel, (number, truth) in {"normal_force": (2, 0.8), "net_force": (3, 0.3)}.items():
-        told = side["channels"][number]
-        assert told["name"] == channel and told["calibration"]["scale_method"] == "weights", told
-        force = codes[1000:, number].mean() * told["scale"] + told["offset"]
+        printed = side["channels"][number]
+        assert printed["name"] == channel and printed["calibration"]["scale_method"] == "weights", printed
+        force = codes[1000:, number].mean() * printed["scale"] + printed["offset"]
         assert abs(force - truth) < 1e-3, (channel, force)
     assert side["channels"][0]["calibration"]["scale_method"] == "released weight"
     assert side["channels"][1]["calibration"]["scale_method"] == "travel"
@@ -181,11 +181,11 @@ def the_file_is_one_of_ours():
     report = tacto.run_json("info", FILE)
     assert report["serial"] == "sim-7" and len(report["entries"]) == len(entries()) >= 7
     # A zero is stored as a code; its value in newtons is stored beside it.
-    for told, kept in zip(report["entries"], entries(), strict=True):
+    for printed, kept in zip(report["entries"], entries(), strict=True):
         if "zero" in kept:
-            assert told["zero_as_stored"] == kept["zero"] and "zero" not in told, told
+            assert printed["zero_as_stored"] == kept["zero"] and "zero" not in printed, printed
             newtons = kept["zero"] * kept.get("scale", kept["nominal_scale"])
-            assert abs(told["zero_n"] - newtons) < 1e-12 and told["zero_uncertainty_n"] < 0.1, told
+            assert abs(printed["zero_n"] - newtons) < 1e-12 and printed["zero_uncertainty_n"] < 0.1, printed
     first = entries()[0]
     assert first["method"] == "tare" and first["degrees_of_freedom"] == 19
 

@@ -40,8 +40,8 @@ def numbers_are_those_of_scipy():
     for compressed in (False, True):
         scipy.io.savemat("trial.mat", made, do_compression=compressed)
         channels = [part for name, (text, _) in asked.items() for part in ("--channel", f"{name}={text}")]
-        told = tacto.run_json("import", "trial.mat", "-o", "oak", "--force", "--time-column", "t_s", *channels)
-        assert told["sample_rate_hz"] == 10_000 and told["frames"] == ROWS and told["gaps"] == 0, told
+        printed = tacto.run_json("import", "trial.mat", "-o", "oak", "--force", "--time-column", "t_s", *channels)
+        assert printed["sample_rate_hz"] == 10_000 and printed["frames"] == ROWS and printed["gaps"] == 0, printed
         for k, (_, values) in enumerate(asked.values()):
             assert np.array_equal(stored("oak")[:, k], np.ravel(values).astype(float)), (compressed, k)
         header = json.loads(pathlib.Path("oak.json").read_text())
@@ -50,12 +50,12 @@ def numbers_are_those_of_scipy():
 
 def without_options_it_lists():
     scipy.io.savemat("trial.mat", variables())
-    told = tacto.run_json("import", "trial.mat")
-    arrays = {row["name"]: row for row in told["arrays"]}
+    printed = tacto.run_json("import", "trial.mat")
+    arrays = {row["name"]: row for row in printed["arrays"]}
     assert arrays["data.encoder.count"]["class"] == "int16" and arrays["data.encoder.count"]["size"] == f"{ROWS}x1", arrays
     assert arrays["touch"]["class"] == "logical" and arrays["z"]["not_imported"] and not arrays["acc"]["not_imported"], arrays
-    tacto.run(*shlex.split(told["next"])[1:])
-    assert pathlib.Path("trial.wav").exists(), told
+    tacto.run(*shlex.split(printed["next"])[1:])
+    assert pathlib.Path("trial.wav").exists(), printed
     tacto.run("import", "trial.mat", "-o", "x", code=USAGE)
     tacto.run("import", "nothing.mat", code=NOT_FOUND)
 
@@ -81,8 +81,8 @@ def nan_is_refused_or_becomes_a_gap():
     words = ["import", "holes.mat", "-o", "x", "--rate", "1kHz", "--channel", "tangential_force=f*1N"]
     _, said = tacto.run(*words, code=MALFORMED)
     assert "sample 500" in said and not pathlib.Path("x.wav").exists(), said
-    told = tacto.run_json(*words, "--mask-outliers")
-    assert (told["frames"], told["gaps"]) == (ROWS - 2, 1), told
+    printed = tacto.run_json(*words, "--mask-outliers")
+    assert (printed["frames"], printed["gaps"]) == (ROWS - 2, 1), printed
     assert np.array_equal(stored("x")[:, 0], np.delete(force_n, [500, 501]))
 
 

@@ -33,14 +33,14 @@ def coarse_positions_are_fitted():
     x_um, z_nm = made()
     for digits in (4, 2, 1):  # 0.1 um is three pitches
         table(x_um, z_nm, digits)
-        told = imported()
+        stated = imported()
         digit_um = 10.0**-digits
         # The grid and the one that made the positions are both within half a digit of each printed position, the ends included.
-        assert abs(told["pitch_m"] * 1e6 - PITCH_UM) <= 2 * digit_um / (ROWS - 1), (digits, told)
-        assert told["unevenness_m"] * 1e6 <= digit_um / 2 * (1 + 1e-6), (digits, told)
+        assert abs(stated["pitch_m"] * 1e6 - PITCH_UM) <= 2 * digit_um / (ROWS - 1), (digits, stated)
+        assert stated["unevenness_m"] * 1e6 <= digit_um / 2 * (1 + 1e-6), (digits, stated)
         if digits < 4:  # least squares is another fit of the same grid: it is within the same bound
             slope_um = np.polyfit(np.arange(ROWS), np.round(x_um, digits), 1)[0]
-            assert abs(told["pitch_m"] * 1e6 - slope_um) <= 2 * digit_um / (ROWS - 1), (digits, told, slope_um)
+            assert abs(stated["pitch_m"] * 1e6 - slope_um) <= 2 * digit_um / (ROWS - 1), (digits, stated, slope_um)
     assert np.array_equal(tacto.soundfile.read("p.texture.wav", dtype="float64")[0], (np.round(z_nm, 3) * 1e-9).astype(np.float32))
     table(x_um[::-1], z_nm[::-1], 2)
     assert imported()["direction"] == -1
@@ -61,10 +61,10 @@ def units_of_the_heading_and_the_preamble():
     preamble = "Dektak XT\nStylus force,3,mg\n\nScan \xb5m,133\n"
     for encoding, sign in (("utf-8", "\xc5"), ("latin-1", "\xc5"), ("utf-8", "\u212b")):
         table(x_um, 10 * z_nm, unit=sign, preamble=preamble, encoding=encoding)
-        told = imported("--notes", "second scan")
-        assert abs(told["highest_m"] - z_nm.max() * 1e-9) < 1e-12, told
+        stated = imported("--notes", "second scan")
+        assert abs(stated["highest_m"] - z_nm.max() * 1e-9) < 1e-12, stated
         notes = json.loads(pathlib.Path("p.texture.json").read_text())["notes"]
-        assert "Dektak XT; Stylus force,3,mg; Scan \xb5m,133; second scan" in notes and "roughness" not in told, notes
+        assert "Dektak XT; Stylus force,3,mg; Scan \xb5m,133; second scan" in notes and "roughness" not in stated, notes
 
 
 def stated_roughness_is_compared():
@@ -84,8 +84,8 @@ def a_profile_of_matlab():
     import scipy.io
     x_um, z_nm = made()
     scipy.io.savemat("p.mat", {"x": x_um, "z": z_nm})
-    told = tacto.run_json("import", "p.mat", "-o", "m", "--channel", "position=x*1um", "--channel", "height=z*1nm")
-    assert abs(told["pitch_m"] * 1e6 / PITCH_UM - 1) < 1e-9, told
+    stated = tacto.run_json("import", "p.mat", "-o", "m", "--channel", "position=x*1um", "--channel", "height=z*1nm")
+    assert abs(stated["pitch_m"] * 1e6 / PITCH_UM - 1) < 1e-9, stated
     scipy.io.savemat("p.mat", {"x": x_um**2, "z": z_nm})
     assert "sample" in tacto.error_of("import", "p.mat", "-o", "n", "--channel", "position=x*1um", "--channel", "height=z*1nm", code=UNSUITABLE)["where"]
 

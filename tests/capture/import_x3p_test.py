@@ -42,12 +42,12 @@ def each_type_along_rows_and_columns():
         matrix = stored_matrix(letter)
         made_m = (matrix.astype(float) * 1e-9 + 5e-7).astype(np.float32)  # a texture has 32 bits
         content = x3p(main_xml(letter, matrix.tobytes()), matrix.tobytes())
-        told = imported(content, "--row", "7")
-        assert np.array_equal(heights(), made_m[6]) and told["pitch_m"] == PITCH_X_M, (letter, told)
+        printed = imported(content, "--row", "7")
+        assert np.array_equal(heights(), made_m[6]) and printed["pitch_m"] == PITCH_X_M, (letter, printed)
         texture = json.loads(pathlib.Path("s.texture.json").read_text())
         assert texture["source_origin_m"] == 1e-3 and "row 7" in texture["notes"] and "T-1" in texture["notes"], texture
-        told = imported(content, "--column", "40")
-        assert np.array_equal(heights(), made_m[:, 39]) and told["pitch_m"] == PITCH_Y_M, (letter, told)
+        printed = imported(content, "--column", "40")
+        assert np.array_equal(heights(), made_m[:, 39]) and printed["pitch_m"] == PITCH_Y_M, (letter, printed)
         assert np.array_equal(tacto_points(content, "5..10"), made_m[6, 4:10])
         assert json.loads(pathlib.Path("s.texture.json").read_text())["source_origin_m"] == 1e-3 + 4 * PITCH_X_M
     profile = stored_matrix("D")[0]
@@ -121,11 +121,11 @@ def square_xml(letter, points, *more, **others):
 def a_whole_surface_is_a_height_map_of_a_scene():
     for letter in TYPES:
         matrix = stored_matrix(letter)
-        told = imported(x3p(square_xml(letter, matrix.tobytes()), matrix.tobytes()), "-o", "map.height.nc")
+        printed = imported(x3p(square_xml(letter, matrix.tobytes()), matrix.tobytes()), "-o", "map.height.nc")
         with netCDF4.Dataset("map.height.nc") as file:
             assert np.array_equal(file["height"][:], (matrix.astype(float) * 1e-9 + 5e-7).astype(np.float32)), letter
             assert file.pitch_m == PITCH_X_M and "T-1" in file.notes and "surface" in file.notes, file
-        assert (told["columns"], told["rows"]) == (COLUMNS, ROWS), told
+        assert (printed["columns"], printed["rows"]) == (COLUMNS, ROWS), printed
     rough_m = np.random.default_rng(3).normal(0, 20e-9, (ROWS, COLUMNS))
     imported(x3p(square_xml("D", rough_m.tobytes(), scale=1, offset=0.05), rough_m.tobytes()), "-o", "map.height.nc")
     with netCDF4.Dataset("map.height.nc") as file:
@@ -145,8 +145,8 @@ def a_whole_surface_is_a_height_map_of_a_scene():
     assert np.allclose(forces["force_x_n"], -0.04, rtol=1e-3) and np.allclose(forces["force_y_n"], 0, atol=4e-5), forces
     # A row, and a profile, are maps of one row; PRF has no pitch along y.
     assert imported(x3p(main_xml("D", plane.tobytes()), plane.tobytes()), "-o", "map.height.nc", "--row", "3")["rows"] == 1
-    told = imported(x3p(main_xml("D", plane[0].tobytes(), feature="PRF", sizes=(COLUMNS, 1, 1)), plane[0].tobytes()), "-o", "map.height.nc")
-    assert (told["columns"], told["rows"]) == (COLUMNS, 1), told
+    printed = imported(x3p(main_xml("D", plane[0].tobytes(), feature="PRF", sizes=(COLUMNS, 1, 1)), plane[0].tobytes()), "-o", "map.height.nc")
+    assert (printed["columns"], printed["rows"]) == (COLUMNS, 1), printed
 
 
 def a_surface_that_is_no_height_map_is_refused():

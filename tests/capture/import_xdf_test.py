@@ -77,11 +77,11 @@ def each_type_is_exact():
         else:
             values = rng.normal(size=(ROWS, 2)).astype(dtype)
         data = file_header() + header(7, "F", 2, 1000, kind) + samples(7, values, 100 + np.arange(ROWS) / 1000, every=250) + footer(7, ROWS)
-        told = imported(data, "--channel", "b:signal=ch2")
+        printed = imported(data, "--channel", "b:signal=ch2")
         assert np.array_equal(stored("x"), values.astype(float)), kind
         times_s, numbers = read_with_numpy(data, 7)
         assert np.array_equal(stored("x"), numbers.astype(float)), kind
-        assert told["sample_rate_hz"] == round(1 / np.mean(np.diff(times_s)), 6) == 1000 and told["gaps"] == 0, told
+        assert printed["sample_rate_hz"] == round(1 / np.mean(np.diff(times_s)), 6) == 1000 and printed["gaps"] == 0, printed
 
 
 def counts_above_2_24_and_beyond_2_53():
@@ -115,12 +115,12 @@ def libxdf_reads_the_same_numbers_up_to_2_24():
             values = rng.integers(-limit, limit, (ROWS, 2), endpoint=True).astype(dtype)
             values[0] = [limit, -limit]
         data = file_header() + header(7, "F", 2, 1000, kind) + samples(7, values, 100 + np.arange(ROWS) / 1000, every=250) + footer(7, ROWS)
-        told = imported(data, "--channel", "b:signal=ch2")
+        printed = imported(data, "--channel", "b:signal=ch2")
         times_s, numbers = read_with_libxdf("F", 2)
         ours = stored("x")
         assert np.array_equal(ours.astype("<f4") if kind == "double64" else ours, numbers), kind
         # Stamps of 100 s are rounded by 1.4e-14 s, and libxdf adds up 249 periods.
-        assert abs(1 / np.mean(np.diff(times_s)) - told["sample_rate_hz"]) < 1e-6, kind
+        assert abs(1 / np.mean(np.diff(times_s)) - printed["sample_rate_hz"]) < 1e-6, kind
     values = rng.normal(size=(ROWS, 2)).astype("<f4")
     imported(many_streams(values), "--stream", "Force", channel="normal_force=Fz")
     assert np.array_equal(stored("x")[:, 0], read_with_libxdf("Force", 2)[1][:, 1])
@@ -145,11 +145,11 @@ def many_streams(values):
 def streams_are_listed_and_chosen():
     values = np.random.default_rng(2).normal(size=(ROWS, 2)).astype("<f4")
     pathlib.Path("trial.xdf").write_bytes(many_streams(values))
-    told = tacto.run_json("import", "trial.xdf")
-    rows = {row["name"]: row for row in told["streams"]}
+    printed = tacto.run_json("import", "trial.xdf")
+    rows = {row["name"]: row for row in printed["streams"]}
     assert rows["Force"]["channels"] == "Fx, Fz" and rows["Force"]["samples"] == ROWS and rows["Force"]["nominal_rate_hz"] == 1000, rows
     assert rows["Markers"]["not_imported"] and not rows["Eye"]["not_imported"], rows
-    tacto.run(*shlex.split(told["next"])[1:])
+    tacto.run(*shlex.split(printed["next"])[1:])
     assert np.array_equal(stored("trial")[:, 0], values[:, 0].astype(float))
     assert sidecar("trial")["channels"][0]["scale"] == 1  # the unit is the header's: N
     for name in ("Force", "2"):
@@ -173,8 +173,8 @@ def one_stream(times_s, nominal, kind="int32", offsets=(), every=250):
 
 def gaps_are_kept():
     kept = np.setdiff1d(np.arange(ROWS), [*range(700, 710), 2000])  # 10 and 1 missing
-    told = imported(one_stream(5000 + kept / 1000, 1000, every=1))
-    assert told["sample_rate_hz"] == 1000 and told["frames"] == kept.size, told
+    printed = imported(one_stream(5000 + kept / 1000, 1000, every=1))
+    assert printed["sample_rate_hz"] == 1000 and printed["frames"] == kept.size, printed
     assert [(gap["frame"], gap["count"]) for gap in sidecar("x")["gaps"]] == [(700, 10), (1990, 1)], sidecar("x")["gaps"]
     # An irregular stream has no nominal rate; its times may be even all the same.
     assert imported(one_stream(kept / 1000, 0, every=1))["gaps"] == 2
@@ -187,9 +187,9 @@ def times_that_are_not_stated_do_not_add_up_rounding():
     """Stamps of the Unix clock have steps of 0.24 us: added 30,000 times, periods of 0.1 ms would drift."""
     values = np.arange(30_000, dtype="<i4").reshape(-1, 1)
     data = file_header() + header(1, "F", 1, 10_000, "int32") + samples(1, values, 1.764e9 + np.arange(30_000) / 10_000, every=30_000) + footer(1, 30_000)
-    told = imported(data)
+    printed = imported(data)
     # The first and last time are rounded by half a step each, in 3 s.
-    assert abs(told["sample_rate_hz"] / 10_000 - 1) < 2.4e-7 / 3 and told["gaps"] == 0 and "warnings" not in told, told
+    assert abs(printed["sample_rate_hz"] / 10_000 - 1) < 2.4e-7 / 3 and printed["gaps"] == 0 and "warnings" not in printed, printed
 
 
 def a_pause_of_any_length_is_a_gap():
@@ -197,10 +197,10 @@ def a_pause_of_any_length_is_a_gap():
     times_s = 1e5 + np.arange(20_000) / 1000
     times_s[10_000:] += 0.1505  # 150.5 periods; the step is 151.5
     times_s[15_000:] += 0.0017
-    told = imported(one_stream(times_s, 1000, every=1))
+    printed = imported(one_stream(times_s, 1000, every=1))
     gaps = [(gap["frame"], gap["count"]) for gap in sidecar("x")["gaps"]]
-    assert told["sample_rate_hz"] == 1000 and [frame for frame, _ in gaps] == [10_000, 15_000], (told, gaps)
-    assert abs(gaps[0][1] - 150.5) <= 0.5 and gaps[1][1] == 2 and len(told["warnings"]) == 2, (gaps, told)  # the pauses, and the gaps
+    assert printed["sample_rate_hz"] == 1000 and [frame for frame, _ in gaps] == [10_000, 15_000], (printed, gaps)
+    assert abs(gaps[0][1] - 150.5) <= 0.5 and gaps[1][1] == 2 and len(printed["warnings"]) == 2, (gaps, printed)  # the pauses, and the gaps
     assert imported(one_stream(times_s, 0, every=1))["sample_rate_hz"] == 1000
 
 
@@ -247,26 +247,26 @@ def scattered_times_are_fitted():
     sample = np.arange(rows) + np.where(np.arange(rows) >= 40_000, 7501, 0)
     times_s = 1e5 + sample / rate_hz + np.repeat(rng.normal(0, 2e-3, rows // 50), 50)
     data = one_stream(times_s, 2500, every=50)
-    told = imported(data)
+    printed = imported(data)
     # A slope through n/50 independent errors of 2 ms: relative error 2 ms sqrt(12 / (n/50)) / duration; five times that.
     bound = 5 * 2e-3 * np.sqrt(12 / (rows / 50)) / (rows / rate_hz)
-    assert abs(told["sample_rate_hz"] / rate_hz - 1) < bound, (told, bound)
+    assert abs(printed["sample_rate_hz"] / rate_hz - 1) < bound, (printed, bound)
     assert [gap["frame"] for gap in sidecar("x")["gaps"]] == [40_000] and abs(sidecar("x")["gaps"][0]["count"] - 7501) <= 2, sidecar("x")["gaps"]
     times_s, numbers = read_with_numpy(data, 1)
     parts = [slice(0, 40_000), slice(40_000, rows)]
     centred = [(np.arange(rows)[part] - np.mean(np.arange(rows)[part]), times_s[part] - times_s[part].mean()) for part in parts]
     slope = sum(np.dot(x, y) for x, y in centred) / sum(np.dot(x, x) for x, _ in centred)
-    assert abs(told["sample_rate_hz"] * slope - 1) < 1e-9, (told, slope)
+    assert abs(printed["sample_rate_hz"] * slope - 1) < 1e-9, (printed, slope)
     assert np.array_equal(stored("x"), numbers)
-    assert any("RMS" in warning for warning in told["warnings"]), told
+    assert any("RMS" in warning for warning in printed["warnings"]), printed
 
 
 def clock_offsets_give_the_recorders_rate():
     times_s = 500 + np.arange(30_000) / 1000
     offsets = [(t, 17.5 - 40e-6 * (t - 500)) for t in np.arange(500, 530, 5.0)]  # the stream's clock is 40 ppm fast
-    told = imported(one_stream(times_s, 1000, offsets=offsets))
-    assert abs(told["sample_rate_hz"] - 1000 / (1 - 40e-6)) < 1e-6, told
-    assert "faster" in told["clock"] and " 40 ppm" in told["clock"], told
+    printed = imported(one_stream(times_s, 1000, offsets=offsets))
+    assert abs(printed["sample_rate_hz"] - 1000 / (1 - 40e-6)) < 1e-6, printed
+    assert "faster" in printed["clock"] and " 40 ppm" in printed["clock"], printed
     assert imported(one_stream(times_s, 1000, offsets=offsets[:2]))["sample_rate_hz"] == 1000  # too few to fit
 
 
@@ -278,22 +278,22 @@ def wrong_offsets_change_no_rate_and_noise_is_no_drift():
     for drift, wrong in ((40e-6, ()), (40e-6, (3,)), (40e-6, (0, 11)), (0, (7,)), (300e-6, (5,))):
         ahead_s = 17.5 - drift * (stamps - 500) + rng.normal(0, 2e-5, stamps.size)
         ahead_s[list(wrong)] += 0.7
-        told = imported(one_stream(times_s, 1000, offsets=list(zip(stamps, ahead_s))))
+        printed = imported(one_stream(times_s, 1000, offsets=list(zip(stamps, ahead_s))))
         host_s = stamps + ahead_s
         slope, _, low, high = scipy.stats.theilslopes(stamps - host_s, host_s, 0.95)
         expected = 1000 * (1 + slope) if low * high > 0 else 1000
-        assert abs(told["sample_rate_hz"] / expected - 1) < 1e-9, (drift, wrong, told, expected)
+        assert abs(printed["sample_rate_hz"] / expected - 1) < 1e-9, (drift, wrong, printed, expected)
         # 20 us at each end of 55 s: 0.5 ppm; with two of 12 offsets wrong the median shifts by less than 2 ppm.
-        assert abs(told["sample_rate_hz"] / 1000 - 1 - drift) < 3e-6, (drift, wrong, told)
-        assert bool(told.get("warnings")) == (drift > 100e-6), told
+        assert abs(printed["sample_rate_hz"] / 1000 - 1 - drift) < 3e-6, (drift, wrong, printed)
+        assert bool(printed.get("warnings")) == (drift > 100e-6), printed
     three = [(500, 17.5), (506, 17.501), (512, 17.503)]
     assert imported(one_stream(times_s, 1000, offsets=three))["sample_rate_hz"] == 1000
     noise = list(zip(stamps, 17.5 + rng.normal(0, 1e-3, stamps.size)))
-    told = imported(one_stream(times_s, 1000, offsets=noise))
-    assert told["sample_rate_hz"] == 1000 and "warnings" not in told, told
+    printed = imported(one_stream(times_s, 1000, offsets=noise))
+    assert printed["sample_rate_hz"] == 1000 and "warnings" not in printed, printed
     many = np.arange(500, 560, 0.02)  # 3,000 offsets are reduced to medians
-    told = imported(one_stream(times_s, 1000, offsets=list(zip(many, 17.5 - 40e-6 * (many - 500)))))
-    assert abs(told["sample_rate_hz"] - 1000 / (1 - 40e-6)) < 1e-6, told
+    printed = imported(one_stream(times_s, 1000, offsets=list(zip(many, 17.5 - 40e-6 * (many - 500)))))
+    assert abs(printed["sample_rate_hz"] - 1000 / (1 - 40e-6)) < 1e-6, printed
 
 
 def a_reset_clock_is_refused_with_its_time():
@@ -320,14 +320,14 @@ def markers_become_marks_by_the_recorders_clock():
             b"".join(clock_offset(2, markers_s(t), t - markers_s(t)) for t, _ in offsets) +
             texts(2, [[labels[1]], [labels[0]]], markers_s(at_s[[1, 0]])) + samples(1, np.arange(30_000, dtype="<i4").reshape(-1, 1), own_s) +
             texts(2, [[label] for label in labels[2:]], markers_s(at_s[2:])) + footer(1, 30_000) + footer(2, 4))
-    told = imported(data)
+    printed = imported(data)
     expected = [(round((t - 2000) * 1000), label) for t, label in zip(at_s, ["begin", "Stütze links", "Stütze rechts", ""])]
     assert [(mark["frame"], mark["label"]) for mark in sidecar("x")["marks"]] == expected, (sidecar("x")["marks"], expected)
-    assert told["marks"] == 4 and "warnings" not in told, told
+    assert printed["marks"] == 4 and "warnings" not in printed, printed
     rows = {row["name"]: row["not_imported"] for row in tacto.run_json("import", "trial.xdf")["streams"]}
     assert "marks" in rows["Markers"] and not rows["F"], rows
-    told = imported(data, "--rate", "1kHz")
-    assert "marks" not in told and any("markers" in warning for warning in told["warnings"]), told
+    printed = imported(data, "--rate", "1kHz")
+    assert "marks" not in printed and any("markers" in warning for warning in printed["warnings"]), printed
     tacto.run("validate", "x")
 
 
@@ -338,11 +338,11 @@ def marks_beside_gaps_and_outside():
     head = (file_header() + header(1, "F", 1, 1000, "int32") + header(2, "A", 2, 0, "string") + header(3, "B", 1, 0, "string") +
             samples(1, values, 50 + kept / 1000, every=1))
     at_s = 50 + np.array([-0.0006, -0.0004, 0.6994, 0.705, 0.7095, 1.5, 2.9994, 2.9996])
-    told = imported(head + texts(2, [[b"x", b"%d" % i] for i in range(at_s.size)], at_s) + texts(3, [[b"y"]], [51.5]) + footer(1, kept.size))
+    printed = imported(head + texts(2, [[b"x", b"%d" % i] for i in range(at_s.size)], at_s) + texts(3, [[b"y"]], [51.5]) + footer(1, kept.size))
     marks = [(mark["frame"], mark["label"]) for mark in sidecar("x")["marks"]]
     assert marks == [(0, "A: x 1"), (699, "A: x 2"), (700, "A: x 3"), (700, "A: x 4"), (1490, "A: x 5"), (1490, "B: y"), (2989, "A: x 6")], marks
-    assert sum("2 markers" in warning for warning in told["warnings"]) == 1, told
-    assert sum("clock offsets" in warning for warning in told["warnings"]) == 2, told
+    assert sum("2 markers" in warning for warning in printed["warnings"]) == 1, printed
+    assert sum("clock offsets" in warning for warning in printed["warnings"]) == 2, printed
     imported(head + texts(2, [[b"x", b"end"]], [52.0]) + footer(1, kept.size), "--mask-outliers")
     document = sidecar("x")
     frame = document["marks"][0]["frame"]  # time is kept, with one frame fewer before it
@@ -358,8 +358,8 @@ def damaged_markers_are_refused():
         assert imported(start + chunk(3, content) + end, code=MALFORMED)["where"].startswith("trial.xdf")
         assert not pathlib.Path("x.wav").exists()
     reset = clock_offset(2, 0, 5) + clock_offset(2, 5, -400)
-    told = imported(start + reset + texts(2, [[b"hello"]], [1]) + end)
-    assert "marks" not in told and any("reset" in warning for warning in told["warnings"]), told
+    printed = imported(start + reset + texts(2, [[b"hello"]], [1]) + end)
+    assert "marks" not in printed and any("reset" in warning for warning in printed["warnings"]), printed
     imported(file_header() + header(2, "M", 0, 0, "string") + header(1, "F", 1, 1000, "int32") + end)
 
 
@@ -376,9 +376,9 @@ def a_cut_file_is_read_to_its_last_whole_chunk_and_says_so():
         done = tacto.subprocess.run([tacto.COMMAND, *words], capture_output=True, text=True)
         complete = max(0, sum(end < size for end in ends) - 1)
         if done.returncode == 0:
-            told = json.loads(done.stdout)
-            assert told["frames"] in (150 * complete, 150 * (complete + 1)) and told["warnings"], (size, told)
-            assert np.array_equal(stored("c"), values[:told["frames"]])
+            printed = json.loads(done.stdout)
+            assert printed["frames"] in (150 * complete, 150 * (complete + 1)) and printed["warnings"], (size, printed)
+            assert np.array_equal(stored("c"), values[:printed["frames"]])
         else:
             # Shorter than "XDF:" it is a table; without a header or samples there is nothing to import.
             assert done.returncode in (USAGE, MALFORMED) and complete == 0, (size, done)

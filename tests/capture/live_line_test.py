@@ -94,18 +94,18 @@ def the_terminal_is_left_as_it_was():
 
 def strokes_are_told_again(side):
     assert len(side["strokes"]) >= 2, side.get("strokes")
-    told = tacto.run_json("info", "oak")["strokes"]
-    for stored, shown in zip(side["strokes"], told, strict=True):
+    printed = tacto.run_json("info", "oak")["strokes"]
+    for stored, shown in zip(side["strokes"], printed, strict=True):
         assert shown["length_m"] == stored["length_m"] and shown["mean_speed_mps"] == stored["mean_speed_mps"]
         cut = stored is side["strokes"][-1]  # by the end of the recording
         assert abs(stored["mean_speed_mps"] - 0.05) < 0.02 and (0.005 if cut else 0.015) < stored["length_m"] < 0.021, stored
         assert shown["speed_in_band"] == (0.035 <= stored["mean_speed_mps"] <= 0.065)
         assert shown["load_in_band"] == (0.25 <= stored["mean_normal_n"] <= 0.75)
         assert stored["clipped_samples"] == 0 and stored["lost_frames"] == 0
-    assert [stroke["direction"] for stroke in told[:2]] == [1, -1]
+    assert [stroke["direction"] for stroke in printed[:2]] == [1, -1]
     row = next(row for row in tacto.run_json("list", ".")["list"] if row["name"] == "oak")
-    assert row["strokes"] == len(told) and row["clipped_samples"] == 0 and row["lost_frames"] == 0
-    assert abs(row["mean_speed_mps"] - sum(s["mean_speed_mps"] for s in told) / len(told)) < 1e-12
+    assert row["strokes"] == len(printed) and row["clipped_samples"] == 0 and row["lost_frames"] == 0
+    assert abs(row["mean_speed_mps"] - sum(s["mean_speed_mps"] for s in printed) / len(printed)) < 1e-12
 
 
 def loud_strokes_are_counted_as_clipped():
@@ -121,8 +121,8 @@ def what_is_missing_counts_in_the_duration():
     side["data"].pop("numbers_sha256")
     side["gaps"] = [{"frame": 1000, "device_sequence": 1500, "count": 500}]
     pathlib.Path("hole.json").write_text(json.dumps(side))
-    told = tacto.run_json("record", "-d", "replay:hole", "-o", "hole2", "--allow-gaps")
-    durations = [told["duration_s"], tacto.run_json("info", "hole2")["duration_s"],
+    printed = tacto.run_json("record", "-d", "replay:hole", "-o", "hole2", "--allow-gaps")
+    durations = [printed["duration_s"], tacto.run_json("info", "hole2")["duration_s"],
                  next(row for row in tacto.run_json("list", ".")["list"] if row["name"] == "hole2")["duration_s"]]
     assert all(abs(duration - 0.45) < 1e-9 for duration in durations), durations
 
@@ -132,17 +132,17 @@ def clocks_are_fitted():
     for ppm in (0, 250, -1200):
         name = f"clock{ppm}"
         tacto.run("record", "-d", f"sim:finger=up,clock_ppm={ppm}", "-o", name, "--time", "20s")
-        told = tacto.run_json("info", name)
-        assert abs(told["clock_drift_ppm"] - ppm) <= max(1, 4 * told["clock_drift_uncertainty_ppm"]), told
-        assert told["clock_scatter_s"] < 5e-3, told
+        printed = tacto.run_json("info", name)
+        assert abs(printed["clock_drift_ppm"] - ppm) <= max(1, 4 * printed["clock_drift_uncertainty_ppm"]), printed
+        assert printed["clock_scatter_s"] < 5e-3, printed
     # In real time: 12 s of a device that is 3 % fast take 12 / 1.03 s.
     begun = time.monotonic()
     tacto.run("record", "-d", "sim:finger=up,clock_ppm=30000,paced=1", "-o", "wall", "--time", "12s")
     took = time.monotonic() - begun
     assert 12 / 1.03 - 0.05 < took, took
-    told = tacto.run_json("info", "wall")
-    assert abs(told["clock_drift_ppm"] - 30000) < max(30, 4 * told["clock_drift_uncertainty_ppm"]), told
-    print(f"3 % fast, paced: found {told['clock_drift_ppm']:.1f} +- {told['clock_drift_uncertainty_ppm']:.1f} ppm")
+    printed = tacto.run_json("info", "wall")
+    assert abs(printed["clock_drift_ppm"] - 30000) < max(30, 4 * printed["clock_drift_uncertainty_ppm"]), printed
+    print(f"3 % fast, paced: found {printed['clock_drift_ppm']:.1f} +- {printed['clock_drift_uncertainty_ppm']:.1f} ppm")
 
 
 def test():

@@ -28,9 +28,9 @@ def a_recording_comes_back_whole():
     np.savetxt("raw.csv", np.column_stack([time_s, force_n, position_m]), delimiter=",", header="t,f,x", comments="", fmt="%.17g")
     columns = ["--time-column", "t*1s", "--channel", "tangential_force=f*1N", "--channel", "position=x*1m"]
     tacto.run("import", "raw.csv", "-o", "oak", *columns)
-    told = tacto.run_json("export", "oak")
-    assert (told["rows"], told["gaps"], told["missing_frames"], told["written"]) == (8996, 2, 4, "oak.csv"), told
-    assert told["columns"] == ["time_s", "tangential_force_n", "position_m"], told
+    printed = tacto.run_json("export", "oak")
+    assert (printed["rows"], printed["gaps"], printed["missing_frames"], printed["written"]) == (8996, 2, 4, "oak.csv"), printed
+    assert printed["columns"] == ["time_s", "tangential_force_n", "position_m"], printed
     table = table_of("oak.csv")
     assert np.array_equal(table["tangential_force_n"], force_n) and np.array_equal(table["position_m"], position_m)
     assert np.allclose(table["time_s"], time_s, rtol=0, atol=1e-9)  # of its text
@@ -42,10 +42,10 @@ def a_recording_comes_back_whole():
 
 def simulated_data_say_so_in_each_row():
     tacto.run("record", "-d", "sim:surface=C", "--time", "2s", "-o", "c")
-    told = tacto.run_json("export", "c", "-o", "tables/c.csv")
-    assert told["simulated"] and told["written"] == "tables/c.csv", told
+    printed = tacto.run_json("export", "c", "-o", "tables/c.csv")
+    assert printed["simulated"] and printed["written"] == "tables/c.csv", printed
     table = table_of("tables/c.csv")
-    assert np.all(table["simulated"] == 1) and table.size == told["rows"]
+    assert np.all(table["simulated"] == 1) and table.size == printed["rows"]
     header = json.loads(pathlib.Path("c.json").read_text())
     codes, _ = tacto.soundfile.read("c.wav", dtype="int32", always_2d=True)
     for i, channel in enumerate(header["channels"]):
@@ -60,16 +60,16 @@ def a_texture_and_an_average():
     tacto.run("spatial", "c", "--average", "-o", "mean")
     text, _ = tacto.run("export", "c-01", "-o", "-")
     pathlib.Path("piped.csv").write_text(text)
-    told = tacto.run_json("export", "c-01.texture.json")
-    assert told["written"] == "c-01.texture.csv" and pathlib.Path("c-01.texture.csv").read_text() == text, told
+    printed = tacto.run_json("export", "c-01.texture.json")
+    assert printed["written"] == "c-01.texture.csv" and pathlib.Path("c-01.texture.csv").read_text() == text, printed
     position_m, values, _ = tacto.texture("c-01")
     table = table_of("piped.csv")
     assert np.allclose(table["position_m"], position_m, rtol=1e-11, atol=0) and np.array_equal(table["tangential_force_n"], values)
     stem = next(pathlib.Path(".").glob("mean*.texture.json")).name
-    told = tacto.run_json("export", stem, "-o", "mean.csv")
+    printed = tacto.run_json("export", stem, "-o", "mean.csv")
     both, _ = tacto.soundfile.read(stem.replace(".json", ".wav"), dtype="float64")
     table = table_of("mean.csv")
-    assert told["columns"] == ["position_m", "tangential_force_n", "spread_n"], told
+    assert printed["columns"] == ["position_m", "tangential_force_n", "spread_n"], printed
     assert np.array_equal(np.column_stack([table["tangential_force_n"], table["spread_n"]]), both)
 
 
@@ -101,17 +101,17 @@ def mpeg_haptics_keep_the_error_that_was_asked_for():
         tacto.run("record", "-d", f"sim:surface={surface}", "--time", "2s", "-o", surface)
         tacto.run("spatial", surface, "-o", ".")
         for most_percent in np.exp(rng.uniform(np.log(0.05), np.log(5), 2)):
-            told = tacto.run_json("export", f"{surface}-01", "-o", "x.hjif", "--max-error", f"{most_percent}%", "--force")
+            printed = tacto.run_json("export", f"{surface}-01", "-o", "x.hjif", "--max-error", f"{most_percent}%", "--force")
             position_m, values, _ = tacto.texture(f"{surface}-01")
             at_m, force_n = read_hjif("x.hjif")
-            assert at_m[0] == 0 and position_m[-1] - at_m[-1] < 1e-6 and len(at_m) == told["keyframes"]
+            assert at_m[0] == 0 and position_m[-1] - at_m[-1] < 1e-6 and len(at_m) == printed["keyframes"]
             found = error_of(at_m, force_n, position_m, values)
-            assert abs(100 * found / told["error_percent"] - 1) < 1e-6 and 100 * found <= most_percent, (found, told, most_percent)
+            assert abs(100 * found / printed["error_percent"] - 1) < 1e-6 and 100 * found <= most_percent, (found, printed, most_percent)
             # The next distance has a larger error: cubic interpolation between the texture's samples gives its keyframes.
-            step_m = told["keyframe_distance_m"] + 1e-6
+            step_m = printed["keyframe_distance_m"] + 1e-6
             wide_m = np.append(np.arange(0, at_m[-1] - 1e-9, step_m), at_m[-1])
-            assert 100 * error_of(wide_m, CubicSpline(position_m, values)(wide_m), position_m, values) > 0.999 * most_percent, told
-            print(f"{surface}: {told['error_percent']:.3g} % of {most_percent:.3g} % at {1e6 * told['keyframe_distance_m']:.0f} um")
+            assert 100 * error_of(wide_m, CubicSpline(position_m, values)(wide_m), position_m, values) > 0.999 * most_percent, printed
+            print(f"{surface}: {printed['error_percent']:.3g} % of {most_percent:.3g} % at {1e6 * printed['keyframe_distance_m']:.0f} um")
     _, said = tacto.run("export", "A-01", "-o", "y.hjif", "--max-error", "1e-9%", code=UNSUITABLE)
     assert "--max-error" in said and not pathlib.Path("y.hjif").exists(), said
     tacto.run("export", "A", "-o", "y.hjif", code=UNSUITABLE)
@@ -129,8 +129,8 @@ def of_the_real_finger():
     position_m, values, _ = tacto.texture("plain")
     middle = (position_m >= 10e-3) & (position_m <= 80e-3)
     for step_um, whole_db, middle_db in ((2, -62, -79), (5, -53, -63), (10, -46, -52)):
-        told = tacto.run_json("export", "plain", "-o", "f.hjif", "--max-error", f"{100 * 10 ** ((whole_db + 1) / 20)}%", "--force")
-        assert round(1e6 * told["keyframe_distance_m"]) >= step_um, told
+        printed = tacto.run_json("export", "plain", "-o", "f.hjif", "--max-error", f"{100 * 10 ** ((whole_db + 1) / 20)}%", "--force")
+        assert round(1e6 * printed["keyframe_distance_m"]) >= step_um, printed
         exact_m = np.append(np.arange(0, position_m[-1] - 1e-9, step_um * 1e-6), position_m[-1])
         peak = np.max(np.abs(values))
         amplitudes = (CubicSpline(position_m, values)(exact_m) / peak).astype(np.float32).astype(float)
@@ -139,7 +139,7 @@ def of_the_real_finger():
         print(f"real finger, keyframes every {step_um} um: {found[0]:.1f} dB, 10-80 mm {found[1]:.1f} dB")
         assert abs(found[0] - whole_db) < 1 and abs(found[1] - middle_db) < 1, (step_um, found)
         at_m, force_n = read_hjif("f.hjif")
-        assert abs(100 * error_of(at_m, force_n, position_m, values) / told["error_percent"] - 1) < 1e-6, told
+        assert abs(100 * error_of(at_m, force_n, position_m, values) / printed["error_percent"] - 1) < 1e-6, printed
 
 
 def write_texture(name, values, pitch_m):
@@ -162,11 +162,11 @@ def the_error_is_kept_in_100_random_textures():
         if number % 4 == 0:
             values += (position_m > rng.uniform(0, position_m[-1]))
         write_texture("r", 0.05 * values, pitch_m)
-        told = tacto.run_json("export", "r", "-o", "r.hjif", "--max-error", f"{most_percent}%", "--force")
+        printed = tacto.run_json("export", "r", "-o", "r.hjif", "--max-error", f"{most_percent}%", "--force")
         stored_m, stored, _ = tacto.texture("r")
         found = 100 * error_of(*read_hjif("r.hjif"), stored_m, stored)
         # Rounding may leave out the last sample, one of 200 at least: half of that in the RMS.
-        assert found <= most_percent and abs(found / told["error_percent"] - 1) < 1 / 400, (number, found, told, most_percent)
+        assert found <= most_percent and abs(found / printed["error_percent"] - 1) < 1 / 400, (number, found, printed, most_percent)
 
 
 def provenance_of(mat):
@@ -175,17 +175,17 @@ def provenance_of(mat):
 
 def matlab_files_hold_the_physical_values():
     tacto.run("record", "-d", "sim:surface=C,speed=50mm/s", "--time", "3s", "-o", "c")
-    told = tacto.run_json("export", "c", "-o", "c.mat")
+    printed = tacto.run_json("export", "c", "-o", "c.mat")
     header, mat = json.loads(pathlib.Path("c.json").read_text()), scipy.io.loadmat("c.mat")
     codes, _ = tacto.soundfile.read("c.wav", dtype="int32", always_2d=True)
     tacto.run("export", "c", "-o", "c.csv")
     table = table_of("c.csv")
     for i, channel in enumerate(header["channels"]):
-        values = mat[told["variables"][1 + i]][:, 0]
-        assert np.array_equal(values, table[told["variables"][1 + i]]) and values.size == codes.shape[0], channel
+        values = mat[printed["variables"][1 + i]][:, 0]
+        assert np.array_equal(values, table[printed["variables"][1 + i]]) and values.size == codes.shape[0], channel
         assert np.allclose(values, codes[:, i] * channel["scale"] + channel["offset"], rtol=1e-15, atol=0), channel
     assert mat["sample_rate_hz"] == header["sample_rate_hz"] and provenance_of(mat)["sha256"] == hashlib.sha256(pathlib.Path("c.wav").read_bytes()).hexdigest()
-    assert provenance_of(mat)["simulated"] == told["simulated"] and told["simulated"]
+    assert provenance_of(mat)["simulated"] == printed["simulated"] and printed["simulated"]
     header["notes"] = "Zo\u00eb, \u03b1 \U0001f600."
     pathlib.Path("c.json").write_text(json.dumps(header))
     tacto.run("export", "c", "-o", "n.mat")

@@ -67,7 +67,7 @@ def many_requests_at_once():
 
 
 def a_thousand_clients():
-    """Clients above the limit are told so; those that play continue to play."""
+    """Clients above the limit get an error; those that play continue to play."""
     prepare_files(most_clients=8)
     with daemon():
         client = Client()

@@ -151,8 +151,8 @@ def gain_kept_with_the_texture():
                 answer = json.loads(lines.readline())
                 assert answer["ok"], answer
     tacto.run("validate", "oak")
-    told = tacto.run_json("info", "oak")
-    assert abs(told["playback_gain_m_per_n"] - 4e-4) < 1e-12 and told["gain_set_by"] == "token", told
+    printed = tacto.run_json("info", "oak")
+    assert abs(printed["playback_gain_m_per_n"] - 4e-4) < 1e-12 and printed["gain_set_by"] == "token", printed
     played = tacto.run_json("play", "oak", "-d", "sim:", "--time", "0.2s", "-o", "kept")
     assert abs(played["gain_m_per_n"] - 4e-4) < 1e-12 and played["gain_set_by"] == "token", played
     assert tacto.run_json("play", "oak", "-d", "sim:", "--time", "0.2s", "--gain", "0.1mm/N", "-o", "named")["gain_m_per_n"] == 1e-4

@@ -81,13 +81,13 @@ def a_texture_changed_in_mid_play():
     assert 0 <= changed - info["changes"][0]["tick"] < 2000 and info["textures"][0]["texture"].endswith("oak.texture.json"), info
     tacto.run("validate", session)
     tacto.run("session", session, "-o", "changed.nc")
-    told = tacto.run_json("info", "changed.nc")["changes"]
+    printed = tacto.run_json("info", "changed.nc")["changes"]
     again = info["changes"][1]["tick"]
     after = next(i + 1 for i, s in enumerate(described["strokes"]) if s["from_s"] > (changed + 500) / 2000 and s["to_s"] < again / 2000)
     found = tacto.run_json("compare", session, "cork", "--stroke-a", str(after))
     assert abs(found["gain"] - 1) < 0.1, found
     tacto.error_of("compare", session, "oak", "--stroke-a", str(after), code=5)
-    assert len(told) == 2 and told[0].endswith("cork.texture.json") and "over 0.1 s: " in told[0], told
+    assert len(printed) == 2 and printed[0].endswith("cork.texture.json") and "over 0.1 s: " in printed[0], printed
     ticks = ticks_of(session)
     drive = ticks["drive_v"]
     one, two = drive[600:3000], drive[changed + 400:changed + 2800]  # 1.2 s each: a pass of the finger and its rests

@@ -183,13 +183,13 @@ def a_scene_of_forces_is_played_and_set():
         shown = tacto.run("ctl", "top", "--time", "0s", "--socket", "control")[0]
         assert "x -1.500 N" in shown and "drive" not in shown and "gain" not in shown, shown
         assert client.must(request="set", number=number, value=100)["over_s"] == 0.01
-        told = [watcher.next_event("set")]  # at once: of a watcher that does not read, events are dropped
+        printed = [watcher.next_event("set")]  # at once: of a watcher that does not read, events are dropped
         steady_force(client, -3)
         tacto.run("ctl", "set", number, "20", "--over", "0s", "--socket", "control")
-        told.append(watcher.next_event("set"))
+        printed.append(watcher.next_event("set"))
         steady_force(client, -0.6)
         tacto.run("ctl", "set", "bench.0.centre_x_m", "-0.01", "--socket", "control")
-        told.append(watcher.next_event("set"))
+        printed.append(watcher.next_event("set"))
         steady_force(client, -0.8)
         refused(client, 1, request="set", number=number, value=201)
         refused(client, 1, request="set", number="bench.spring.centre_y_m", value=0)
@@ -222,7 +222,7 @@ def a_scene_of_forces_is_played_and_set():
         wait_for_state(client, "armed")
         client.must(request="disarm")
         wait_for_state(client, "idle")
-        assert [(event["number"], event["value"], event["over_s"]) for event in told] == [(number, 100, 0.01), (number, 20, 0), ("bench.0.centre_x_m", -0.01, 0.01)], told
+        assert [(event["number"], event["value"], event["over_s"]) for event in printed] == [(number, 100, 0.01), (number, 20, 0), ("bench.0.centre_x_m", -0.01, 0.01)], printed
     assert tacto.run_json("replay", session)["same_to_the_bit"] is True
     events = [event["event"] for event in tacto.run_json("session", session)["events"]]
     assert {"move bench 0.01 m,0 m over 0.01 s", "move bench -0.01 m,0 m over 0 s", "raise bench"} <= set(events), events

@@ -228,11 +228,11 @@ def full_disk_for_the_log():
         client.ask(request="disarm")
         kept = client.must(request="status")
         assert kept["recorder_lost_ticks"] >= status["recorder_lost_ticks"] and kept["lost_ticks"] == kept["recorder_lost_ticks"], kept
-        told = [e for e in watcher.rest_of_events() if e["event"] == "recorder"]
+        printed = [e for e in watcher.rest_of_events() if e["event"] == "recorder"]
         # The first event may come before a tick is lost: the failure is known, and the buffer is not yet full.
-        counts = [event["lost_ticks"] for event in told]
-        assert told and all(event["why"] for event in told), told
-        assert counts == sorted(counts) and counts[-1] > 0, told
+        counts = [event["lost_ticks"] for event in printed]
+        assert printed and all(event["why"] for event in printed), printed
+        assert counts == sorted(counts) and counts[-1] > 0, printed
         said = [process.stderr.readline() for _ in range(5)]
         assert any("ticks are not in the session" in line for line in said), said
     described = tacto.run_json("info", session)
@@ -259,11 +259,11 @@ def the_service_manager_is_told():
             beats = [manager.recv(1000).decode() for _ in range(4)]
             took_s = time.monotonic() - began
             assert sum("WATCHDOG=1" in beat for beat in beats) >= 3 and took_s < 4 * SLOW, (beats, took_s)
-        told = []
+        printed = []
         with contextlib.suppress(TimeoutError):
-            while not told or "STOPPING=1" not in told[-1]:
-                told.append(manager.recv(1000).decode())
-        assert "STOPPING=1" in told[-1], told
+            while not printed or "STOPPING=1" not in printed[-1]:
+                printed.append(manager.recv(1000).decode())
+        assert "STOPPING=1" in printed[-1], printed
 
 
 def the_terminal_goes_away():

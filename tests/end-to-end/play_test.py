@@ -305,8 +305,8 @@ def a_full_disk_is_an_error():
     if done.stdout:
         assert json.loads(done.stdout)["lost_ticks"] > 1000, done
     replayed = subprocess.run([tacto.COMMAND, "replay", "full"], capture_output=True, text=True, timeout=60)
-    told = ("ticks are missing", "never closed", "has no ticks")  # depends on which blocks fit
-    assert any(words in replayed.stderr for words in told), replayed
+    printed = ("ticks are missing", "never closed", "has no ticks")  # depends on which blocks fit
+    assert any(words in replayed.stderr for words in printed), replayed
 
 
 def any_damage_is_told():
@@ -324,8 +324,8 @@ def any_damage_is_told():
             done = subprocess.run([tacto.COMMAND, verb, "damaged"], capture_output=True, text=True, timeout=60)
             # In the three spare bytes of a block it has no effect.
             spare = done.returncode == 0 and tacto.run_json("validate", "damaged.session")["valid"]
-            told = done.returncode == 4 and "byte" in done.stderr
-            assert spare or told, (at, done)
+            printed = done.returncode == 4 and "byte" in done.stderr
+            assert spare or printed, (at, done)
 
 
 def wrong_use():

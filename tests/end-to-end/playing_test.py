@@ -30,8 +30,8 @@ def play_prints_the_power_that_its_band_keeps():
         write_path(f"time_s,position_mm\n0,4\n{seconds},20\n")
         pathlib.Path("out.session").unlink(missing_ok=True)
         played = tacto.run_json("play", "oak", "--finger-path", "path.csv", "-d", "sim:", "-o", "out")
-        told = tacto.run_json("session", "out")
-        assert played["power_kept_percent"] == told["power_kept_percent"] and played["mean_speed_mps"] == told["mean_speed_mps"], (played, told)
+        printed = tacto.run_json("session", "out")
+        assert played["power_kept_percent"] == printed["power_kept_percent"] and played["mean_speed_mps"] == printed["mean_speed_mps"], (played, printed)
         assert np.isclose(played["mean_speed_mps"], 0.016 / seconds, rtol=0.05), played
         assert (played["power_kept_percent"] >= 90) == enough, played
 

@@ -48,7 +48,7 @@ def other_config(**changed):
 
 @contextlib.contextmanager
 def daemon(code=0, **options):
-    """A daemon that is ready; at the end it is told to stop, and must exit with `code`."""
+    """A daemon that is ready; at the end it is asked to stop, and must exit with `code`."""
     process = subprocess.Popen([DAEMON, "--config", "tactographd.json"], stderr=subprocess.PIPE, text=True, **options)
     said = []
     while not said or "ready" not in said[-1]:

@@ -151,8 +151,8 @@ def a_newer_version_is_said_once():
             lines = [line for line in said.splitlines() if "newer than this program's" in line]
             assert len(lines) == len(newer), (verb, said)
             for name, passed_over in newer.items():
-                told = [line for line in lines if name.split(".")[0] in line and "1.9" in line and f"ignored: {passed_over}" in line]
-                assert len(told) == 1, (name, lines)
+                printed = [line for line in lines if name.split(".")[0] in line and "1.9" in line and f"ignored: {passed_over}" in line]
+                assert len(printed) == 1, (name, lines)
 
 
 def a_rate_that_leaves_the_resonance_in_is_named():

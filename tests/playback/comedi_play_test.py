@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Playing on a data acquisition card, against a FAKE libcomedi (fake_comedi.cpp, preloaded), because the kernel's
-comedi_test has neither counters nor digital lines. What the fake card was told is compared with the session, tick by
+comedi_test has neither counters nor digital lines. What the fake card was printed is compared with the session, tick by
 tick. tests/usb/comedi_test.py plays through the real library and kernel. Usage: comedi_play_test.py FAKE-LIBRARY
 """
 import copy
@@ -95,14 +95,14 @@ def is_what_the_card_was_told(name):
     pathlib.Path(f"{name}.csv").unlink(missing_ok=True)
     tacto.run("session", name, "-o", f"{name}.csv")
     table = np.genfromtxt(f"{name}.csv", delimiter=",", names=True)
-    told = ticks_of(lines)
+    printed = ticks_of(lines)
     first = next(value for what, value in lines if what == "count")
-    counts = (told[:, 0] - first) & COUNTER_MOST
+    counts = (printed[:, 0] - first) & COUNTER_MOST
     wanted = np.stack([table["encoder_count"], np.round((table["drive_v"] + 10) * MOST / 20)], axis=1)
-    pairs = np.stack([counts, told[:, 1]], axis=1)
+    pairs = np.stack([counts, printed[:, 1]], axis=1)
     starts = [i for i in range(len(pairs) - len(wanted) + 1) if np.array_equal(pairs[i], wanted[0]) and np.array_equal(pairs[i:i + len(wanted)], wanted)]
     assert starts, (len(pairs), wanted[:5], pairs[:5])
-    levels = told[starts[0]:starts[0] + len(wanted), 2]
+    levels = printed[starts[0]:starts[0] + len(wanted), 2]
     assert np.all(np.diff(levels) != 0), "the watchdog's line changes in each tick"
 
 

@@ -89,8 +89,8 @@ def three_formats_give_one_mesh():
         assert said["triangles"] == 12 and said["vertices"] == 8 and said["closed"] is True, said
         assert abs(said["volume_m3"] - 8e-6) < 1e-12 and abs(said["size_x_m"] - 0.02) < 1e-9 and abs(said["longest_edge_m"] - 0.02 * 2**0.5) < 1e-9, said
         assert said["files"] == [f"{name[-3:]}.mesh.nc"], said
-        told = run_json("info", f"{name[-3:]}.mesh.nc")
-        assert told["kind"] == "mesh" and told["triangles"] == 12 and told["source"].startswith(name) and "SHA-256" in told["source"], told
+        printed = run_json("info", f"{name[-3:]}.mesh.nc")
+        assert printed["kind"] == "mesh" and printed["triangles"] == 12 and printed["source"].startswith(name) and "SHA-256" in printed["source"], printed
         with netCDF4.Dataset(f"{name[-3:]}.mesh.nc") as file:
             assert file["vertex"].units == "m" and file["vertex"].shape == (8, 3) and file["triangle"].dtype == np.int32, file
             at = np.asarray(file["vertex"])[np.asarray(file["triangle"])]

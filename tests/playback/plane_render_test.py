@@ -161,19 +161,19 @@ def a_filtered_step_rests_and_a_steeper_one_swings():
         """RMS of the last quarter, m, and sigma. The highest place is at the centre of the patch, so a step rises a quarter of a period before it: at `at`, m."""
         write_scene("step", patch(x_m=at + period / 4, width_m=0.1, layers=[grooves("square", period, depth, kappa, filter_margin=margin)]))
         # The soft hand's mass of 1e-4 kg is not in the limit of the free device.
-        told = run_json("explain", "step.scene.json", "--device", device, *(("--hand", hand) if hand != "push" else ()))
-        sigma = told["layers"][0]["filter_m"]
-        assert abs(sigma / (margin * np.sqrt(0.242 * kappa * depth / told["stiffness_limit_n_per_m"])) - 1) < 1e-5, told
+        printed = run_json("explain", "step.scene.json", "--device", device, *(("--hand", hand) if hand != "push" else ()))
+        sigma = printed["layers"][0]["filter_m"]
+        assert abs(sigma / (margin * np.sqrt(0.242 * kappa * depth / printed["stiffness_limit_n_per_m"])) - 1) < 1e-5, printed
         push = kappa * depth * np.exp(-0.5) / (np.sqrt(2 * np.pi) * sigma)
         write_path("push.csv", {"time_s": [0, 0.001, 40], "x_m": [at - sigma, at - sigma + push / hand_stiffness, at - sigma + push / hand_stiffness]})
         run("render", "step.scene.json", "--finger-path", "push.csv", "--device", device, "--hand", hand, "-o", "step.csv", "--force")
         place = np.genfromtxt("step.csv", delimiter=",", names=True)["x_m"]
-        return np.std(place[3 * len(place) // 4:]), sigma, told["stiffness_limit_n_per_m"]
+        return np.std(place[3 * len(place) // 4:]), sigma, printed["stiffness_limit_n_per_m"]
 
     swings = {}
     for margin in (1.03, 0.97):
-        rms, sigma, told = swing(margin)
-        assert abs(told / limit - 1) < 1e-5 and abs(sigma / (margin * bare) - 1) < 1e-5, (told, limit)
+        rms, sigma, printed = swing(margin)
+        assert abs(printed / limit - 1) < 1e-5 and abs(sigma / (margin * bare) - 1) < 1e-5, (printed, limit)
         swings[margin] = rms / sigma
     print(f"  a step with sigma 1.03 and 0.97 times the limit: RMS swing {swings[1.03]:.2g} and {swings[0.97]:.2g} sigma")
     # At rest a motion of the beginning has become smaller by e^(-0.35 * 30): its damping is 6 % of 1.17 N s/m on 0.1 kg. The swing is the issue's.
@@ -410,9 +410,9 @@ def bodies_that_are_too_stiff_are_refused():
     largest = min((1 - e) / q, 2 * (1 + e) / (p - q) if p > q else np.inf)
     limit(lasso(mass, 0, 0.01, damping), 1.001 * largest, False)
     limit(lasso(mass, 0, 0.01, damping), 0.999 * largest, True)
-    told = run_json("explain", "stiff.scene.json", "--device", "sandpaper-1990")["layers"][0]
+    printed = run_json("explain", "stiff.scene.json", "--device", "sandpaper-1990")["layers"][0]
     # 8 bytes, two numbers and nine of the state, a table of 16.
-    assert abs(told["stiffest_coupling_n_per_m"] / largest - 1) < 1e-9 and told["bytes"] == 8 + 44 + 16, told
+    assert abs(printed["stiffest_coupling_n_per_m"] / largest - 1) < 1e-9 and printed["bytes"] == 8 + 44 + 16, printed
 
 
 def a_stiff_spring_is_stable_at_1_khz_and_not_at_100_hz():

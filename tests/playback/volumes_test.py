@@ -78,10 +78,10 @@ def every_type_and_encoding_gives_the_values():
     stored, scale, offset, _ = values_in("v.volume.nc")
     error = abs(stored * scale + offset - values.astype(float)).max()
     assert 0 < error <= said["rounded_by_at_most"] * (1 + 1e-9) < np.ptp(values) / 65000, (error, said)
-    told = run_json("info", "v.volume.nc")
-    assert told["kind"] == "volume" and told["source"].startswith("v.nrrd (SHA-256 ") and abs(told["size_x_m"] - 2e-6) < 1e-15, told
+    printed = run_json("info", "v.volume.nc")
+    assert printed["kind"] == "volume" and printed["source"].startswith("v.nrrd (SHA-256 ") and abs(printed["size_x_m"] - 2e-6) < 1e-15, printed
     steps = [abs(np.diff(values.astype(float), axis=axis)).max() / 5e-7 for axis in range(3)]
-    assert max(steps) * 0.99 < told["steepest_value_per_m"] <= np.hypot(np.hypot(*steps[:2]), steps[2]) * 1.01, (told, steps)
+    assert max(steps) * 0.99 < printed["steepest_value_per_m"] <= np.hypot(np.hypot(*steps[:2]), steps[2]) * 1.01, (printed, steps)
     with netCDF4.Dataset("v.volume.nc") as file:
         assert file.sha256 == hashlib.sha256(stored.astype("<i2").tobytes()).hexdigest() and np.allclose(file["x"][:], 5e-7 * np.arange(-2, 3)), file
         assert abs(file["value"][:] - values).max() <= error * (1 + 1e-9)  # CF programs scale by themselves

@@ -24,10 +24,10 @@ def imported(*channels):
 
 
 def texture(*more):
-    told = tacto.run_json("spatial", "t", "-o", "t", "--force", "--grid", "0.5um", "--from", "0s", "--to", f"{(FRAMES - 1) / RATE_HZ}s", *more)
+    printed = tacto.run_json("spatial", "t", "-o", "t", "--force", "--grid", "0.5um", "--from", "0s", "--to", f"{(FRAMES - 1) / RATE_HZ}s", *more)
     sidecar = json.loads(pathlib.Path("t.texture.json").read_text())
     values = tacto.soundfile.read("t.texture.wav", dtype="float64")[0]
-    return told, sidecar, values[::4]
+    return printed, sidecar, values[::4]
 
 
 def band_limited(rng, low_hz=15, high_hz=500):
@@ -53,7 +53,7 @@ def the_spectrum_is_kept_and_the_waveform_named():
         axes = turning(rng, degrees)
         write_table(np.vstack([axes, axes[:1]]))
         imported("x:acceleration=ax*1m/s^2", "y:acceleration=ay*1m/s^2", "z:acceleration=az*1m/s^2")
-        told, sidecar, values = texture("--channel", "acceleration:dft321", "--band", "off")
+        printed, sidecar, values = texture("--channel", "acceleration:dft321", "--band", "off")
         expected = dft321(axes)
         # 32-bit samples; the times of the knots are found to some 1e-9 of a frame.
         error = np.max(np.abs(values - expected)) / np.max(np.abs(expected))
@@ -64,7 +64,7 @@ def the_spectrum_is_kept_and_the_waveform_named():
         assert source["reduction"] == "dft321" and source["axes"] == ["x", "y", "z"] and sidecar["unit"] == "m/s^2", source
         correlation = np.linalg.norm(axes @ expected) / np.linalg.norm(axes) / np.linalg.norm(expected)
         assert abs(source["waveform_correlation"] - correlation) < 1e-9, (source, correlation)
-        assert told["textures"][0]["waveform_correlation"] == source["waveform_correlation"] and "dft321" in told["reduction"], told
+        assert printed["textures"][0]["waveform_correlation"] == source["waveform_correlation"] and "dft321" in printed["reduction"], printed
         assert tacto.run_json("info", "t.texture.json")["waveform_correlation"] == source["waveform_correlation"]
         tacto.run("validate", "t.texture.json")
         found[degrees] = correlation

@@ -83,7 +83,7 @@ def expect_fall(name):
 
 
 def expect_quiet_once_woken(name):
-    """After SIGCONT the device gets no drive until the daemon is told to play again; the script has seen that rise."""
+    """After SIGCONT the device gets no drive until the daemon is asked to play again; the script has seen that rise."""
     woken = pathlib.Path(f"{name}.woken").read_text().strip()
     print(f"{name}: {woken} rises of the drive after SIGCONT, state {status(name)['state']}")
     assert woken == "0", woken
