@@ -124,7 +124,7 @@ void LiveRecorder::run(capture::RecordRequest request) {
     event.add("marks", header.marks.size()).add("ended", header.ended).add("warnings", header.warnings);
   }
   over_ = true;
-  tell(std::move(event));
+  tell(event);
 }
 
 Result<capture::Recorded> LiveRecorder::make(capture::RecordRequest request) {

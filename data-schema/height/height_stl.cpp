@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 
 #include "data-schema/height/height_map.hpp"
@@ -95,12 +94,11 @@ Result<void> write_height_stl(const std::string& path, const HeightMap& map, dou
   const auto temporary = files.add(path);
   TACTO_TRY(temporary);
   std::ofstream out(*temporary, std::ios::binary | std::ios::trunc);
-  char head[80] = {};
-  const std::string title =
+  std::string head =
       fmt::format("tactograph height map, millimetres, {} x {} heights", map.columns, map.rows);
-  std::memcpy(head, title.data(), std::min(title.size(), sizeof head));
+  head.resize(80);
   const auto count = static_cast<std::uint32_t>(triangles_of(map));
-  out.write(head, sizeof head);
+  out.write(head.data(), static_cast<std::streamsize>(head.size()));
   out.write(reinterpret_cast<const char*>(&count), sizeof count);
   StlTriangles triangles(out);
   write_triangles(map, base_m, triangles);
