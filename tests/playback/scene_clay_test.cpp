@@ -20,11 +20,12 @@
 #include "playback/prepare/scene/scene_device.hpp"
 #include "playback/render/reference/exact_relief.hpp"
 #include "playback/render/reference/exact_scene.hpp"
+#include "tests/playback/arm_on_pieces.hpp"
 
 namespace tacto::playback {
 namespace {
 
-using PressedPlace = std::array<double, 3>;
+using PressedPlace = ArmOnPieces::Place;
 
 constexpr int kClayColumns = 21, kClayRows = 17;
 constexpr double kClayPitch_m = 1e-3, kClayStiffness = 2000;
@@ -46,33 +47,11 @@ schema::Piece clay_of(const std::string& name, double sink_m_per_s, double thick
   return clay;
 }
 
-struct OnClay {
-  schema::Device device = *schema::read_device("arm");
-  core::ForceSetup setup;
-  PreparedScene scene;
-  std::vector<float> live;
-  core::SceneView view;
-  core::SceneKernel kernel;
-  double count_m = 1e-6, unit_m = 0;
+struct OnClay : ArmOnPieces {
+  double unit_m = 0;
   std::vector<std::int64_t> before;
 
-  explicit OnClay(const schema::Piece& clay) {
-    for (schema::DeviceAxis& axis : device.axes) {
-      axis.encoder_step_m = count_m;
-      axis.peak_force_n = axis.continuous_force_n = 1e9;
-    }
-    device.peak_force_n = device.continuous_force_n = 1e9;
-    device.slew_n_per_s = 1e15;
-    schema::Scene of;
-    of.pieces = {clay};
-    setup = *force_setup_of(device, 1000);
-    setup.onset_s = 0;
-    auto prepared = prepare_scene(of, "s.scene.json", device, 1000);
-    EXPECT_TRUE(prepared) << schema::message(prepared.error());
-    scene = std::move(*prepared);
-    view = scene.view();
-    live.resize(view.live_words());
-    kernel.set(view, setup, live.data());
+  explicit OnClay(const schema::Piece& clay) : ArmOnPieces({clay}) {
     const schema::Clay& rule = *scene.pieces.front().clay;
     unit_m = std::exp2(std::ceil(std::log2(std::max(std::abs(rule.least_m), std::abs(rule.most_m)))) - 24);
     before = heights();
@@ -96,16 +75,6 @@ struct OnClay {
     return whole;
   }
   std::int64_t half() const { return std::llround(scene.pieces.front().clay->half_m / unit_m); }
-  std::vector<std::int32_t> counts_of(const PressedPlace& place_m) const {
-    std::vector<std::int32_t> counts;
-    for (const double along_m : place_m)
-      counts.push_back(static_cast<std::int32_t>(std::lround(along_m / count_m)));
-    return counts;
-  }
-  PressedPlace at(const PressedPlace& place_m) {
-    const core::ForceOutput output = kernel.tick(counts_of(place_m).data(), true);
-    return {double{output.unlimited_n[0]}, double{output.unlimited_n[1]}, double{output.unlimited_n[2]}};
-  }
   // As it is now.
   Relief surface() const {
     Relief relief = scene.reliefs.of(*scene.pieces.front().relief);
@@ -254,22 +223,13 @@ TEST(SceneClay, TheKernelIsTheReference) {
     OnClay on(clay_of("plain", kept ? 5e-4 : 4e-3, 4e-3, kept, [](int column, int row) {
       return 2e-4 * std::sin(0.6 * column) * std::cos(0.4 * row);
     }));
-    ExactScene exact(on.scene, on.device, 1000);
-    double largest_n = 0, error_n = 0;
     for (int i = 0; i < 3000; ++i) {
       const double t = 1e-3 * i;
-      const PressedPlace hand = {4e-3 * std::sin(2 * t), 3e-3 * std::cos(3.1 * t),
-                                 1e-3 - 3e-3 * std::min(t, 1.0)};
-      const PressedPlace force_n = on.at(hand);
-      const auto reference = exact.tick(on.counts_of(hand)).unlimited_n;
-      for (std::size_t k = 0; k < 3; ++k) {
-        largest_n = std::max(largest_n, std::abs(reference[k]));
-        error_n = std::max(error_n, std::abs(force_n[k] - reference[k]));
-      }
+      on.compare_at({4e-3 * std::sin(2 * t), 3e-3 * std::cos(3.1 * t), 1e-3 - 3e-3 * std::min(t, 1.0)});
     }
-    std::printf("[ measured ] clay: %.2g of %.3g N\n", error_n, largest_n);
-    EXPECT_GT(largest_n, 2);
-    EXPECT_LT(error_n, 2e-5 * largest_n);
+    std::printf("[ measured ] clay: %.2g of %.3g N\n", on.largest_error_n, on.largest_n);
+    EXPECT_GT(on.largest_n, 2);
+    EXPECT_LT(on.largest_error_n, 2e-5 * on.largest_n);
   }
 }
 
